@@ -1,0 +1,11 @@
+# skerry_folder(name source...): the sources of one folder as an object library that the library skerry is put together from.
+function(skerry_folder name)
+    if(ARGN)
+        add_library(skerry_${name} OBJECT ${ARGN})
+        target_link_libraries(skerry_${name} PUBLIC skerry_flags Eigen3::Eigen Threads::Threads)
+        set_target_properties(skerry_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+        target_sources(skerry PRIVATE $<TARGET_OBJECTS:skerry_${name}>)
+    else()
+        add_library(skerry_${name} INTERFACE)
+    endif()
+endfunction()

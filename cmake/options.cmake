@@ -1,0 +1,16 @@
+# All options of the project. Defaults are those of a user who builds it on its own.
+option(SKERRY_TESTS "Build the tests and examples" ${PROJECT_IS_TOP_LEVEL})
+option(SKERRY_PROFILING "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
+option(SKERRY_PROGRAM "Build the program skerry" ON)
+option(SKERRY_NO_CHECKS "Leave out SKERRY_CHECK" OFF)
+option(SKERRY_WARNINGS_AS_ERRORS "Stop at warnings" OFF)
+set(SKERRY_ARCH "native" CACHE STRING "Instruction set for -march; empty: the compiler's default")
+set(SKERRY_BACKENDS "tbb;openmp;threads" CACHE STRING "Threading backends to build, the default first")
+set(SKERRY_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
+
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Kind of build" FORCE)
+endif()
+if(PROJECT_IS_TOP_LEVEL)
+    set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+endif()

@@ -1,0 +1,40 @@
+// One row per attachment: nodes of one body held in space or moved by a script.
+#pragma once
+
+#include <cstdint>
+
+#include "components/body_table.h"
+#include "components/collider_table.h"
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+struct AttachmentTable {
+    Column<std::uint32_t> slot;
+    Column<Index> body;             // row of BodyTable
+    Column<Range> nodes;            // range in `node` and `anchor`
+    Column<RigidMotion> motion;     // of this step; a node sits at position + rotation anchor
+    Column<RigidMotion> initial;    // when it was attached
+    Column<MotionScript> script;
+    Column<Index> node;             // rows of NodeTable, of all attachments
+    Column<Vec3> anchor;            // m, of `node`, in the frame of the attachment
+    Column<Keyframe> keyframe;      // of all attachments, by script range
+
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot);
+        visit("body", body);
+        visit("nodes", nodes);
+        visit("motion", motion);
+        visit("initial", initial);
+        visit("script", script);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        visit("node", node);
+        visit("anchor", anchor);
+        visit("keyframe", keyframe);
+    }
+};
+
+}  // namespace skerry

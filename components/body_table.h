@@ -1,0 +1,74 @@
+// One row per body: ranges into the other tables, and its state as a whole.
+#pragma once
+
+#include <cstdint>
+
+#include "components/bvh_table.h"
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Rows begin .. end - 1 of some table.
+struct Range {
+    Index begin = 0;
+    Index end = 0;
+
+    Index size() const { return end - begin; }
+    bool operator==(const Range&) const = default;
+};
+
+enum class BodyKind : std::uint8_t {
+    deformable,
+    kinematic,  // a mesh collider: nodes without elements, moved by its collider
+};
+
+struct BodyTable {
+    Column<std::uint32_t> slot;       // handle slot of the body, or of the collider that a kinematic body belongs to
+    Column<BodyKind> kind;
+    Column<std::uint8_t> self_contact;
+    Column<Index> material;           // row of MaterialTable; no_index for a kinematic body
+    Column<Index> collider;           // row of ColliderTable of a kinematic body, else no_index
+    Column<Range> nodes;
+    Column<Range> node_blocks;
+    Column<Range> blocks;             // of ElementBlockTable
+    Column<Range> triangles;
+    Column<Range> edges;
+    Column<Range> vertices;
+    Column<Range> bvh_nodes;
+    Column<Index> element_count;
+    Column<Index> pinned_count;       // nodes without freedom
+    Column<Real> contact_distance;    // m, thickness of the contact shell; two bodies keep the mean of theirs
+    Column<Real> mean_edge;           // m, of the surface at rest
+    Column<Real> min_altitude;        // m, of the elements at rest
+    Column<Real> rest_step;           // s, stable step of the rest shape
+    Column<Real> stable_step;         // s, as last watched
+    Column<Real> max_speed;           // m/s, of this step's motion
+    Column<Real> travel;              // m, sum of step times max_speed since the body was added: no node moved further
+
+    void for_each_column(auto&& visit) {
+        visit("slot", slot);
+        visit("kind", kind);
+        visit("self_contact", self_contact);
+        visit("material", material);
+        visit("collider", collider);
+        visit("nodes", nodes);
+        visit("node_blocks", node_blocks);
+        visit("blocks", blocks);
+        visit("triangles", triangles);
+        visit("edges", edges);
+        visit("vertices", vertices);
+        visit("bvh_nodes", bvh_nodes);
+        visit("element_count", element_count);
+        visit("pinned_count", pinned_count);
+        visit("contact_distance", contact_distance);
+        visit("mean_edge", mean_edge);
+        visit("min_altitude", min_altitude);
+        visit("rest_step", rest_step);
+        visit("stable_step", stable_step);
+        visit("max_speed", max_speed);
+        visit("travel", travel);
+    }
+};
+
+}  // namespace skerry

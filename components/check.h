@@ -1,0 +1,25 @@
+// SKERRY_CHECK: a cheap test of something the caller promised. Alive unless SKERRY_NO_CHECKS is set (the release preset sets it).
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace skerry {
+
+/// A promise between parts of the engine was broken: a bug, never bad input.
+class CheckFailed : public std::logic_error {
+public:
+    using std::logic_error::logic_error;
+};
+
+[[noreturn]] inline void check_failed(const char* condition, const char* file, int line) {
+    throw CheckFailed(std::string(file) + ":" + std::to_string(line) + ": check failed: " + condition);
+}
+
+}  // namespace skerry
+
+#ifdef SKERRY_NO_CHECKS
+#define SKERRY_CHECK(condition) ((void)0)
+#else
+#define SKERRY_CHECK(condition) ((condition) ? (void)0 : ::skerry::check_failed(#condition, __FILE__, __LINE__))
+#endif

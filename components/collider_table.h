@@ -1,0 +1,75 @@
+// One row per collider: a rigid shape that stands still or moves by a script.
+#pragma once
+
+#include <cstdint>
+
+#include "components/column.h"
+#include "components/material_table.h"
+#include "components/types.h"
+
+namespace skerry {
+
+enum class ColliderShape : std::uint8_t { plane, sphere, box, capsule, cylinder, bucket, mesh };
+
+/// A shape in its own frame, centred at the origin; axes along z.
+struct ColliderGeometry {
+    ColliderShape shape;
+    Vec3 size;  // m. plane: unused (normal +z). sphere: (radius, -, -). box: half extents. capsule: (radius, half length of the
+                // segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height, wall): floor at z = 0, open
+                // above, material of thickness `wall` below and around. mesh: unused, see BodyTable::collider
+};
+
+/// Where a rigid shape is and how it moves during this step.
+struct RigidMotion {
+    Vec3 position;          // m
+    Mat3 rotation;          // shape frame to world
+    Vec3 velocity;          // m/s, of the origin, mean of the step
+    Vec3 angular_velocity;  // rad/s, mean of the step
+};
+
+/// One key of a script; between keys position is linear and rotation turns about a fixed axis.
+struct Keyframe {
+    Real time;        // s
+    Vec3 position;    // m
+    Vec3 rotation;    // rad, axis times angle
+};
+
+/// How a collider or an attachment moves.
+struct MotionScript {
+    Vec3 velocity;          // m/s, when there are no keys
+    Vec3 angular_velocity;  // rad/s, when there are no keys
+    Index key_begin;        // range in ColliderTable::keyframe or AttachmentTable::keyframe
+    Index key_end;
+};
+
+struct ColliderTable {
+    Column<std::uint32_t> slot;
+    Column<ColliderGeometry> geometry;
+    Column<RigidMotion> motion;            // of this step, by move_colliders
+    Column<RigidMotion> initial;           // at time 0
+    Column<MotionScript> script;
+    Column<Keyframe> keyframe;             // of all colliders, by script range
+    Column<std::uint8_t> has_surface;      // 0: the contact takes the body's surface properties
+    Column<SurfaceProperties> surface;
+    Column<Index> body;                    // row of the kinematic body of a mesh collider, else no_index
+    Column<Real> travel;                   // m, how far any of its points near a body can have moved, as BodyTable::travel
+
+    /// All columns that have one row per collider; `keyframe` is ragged and is visited on its own by for_each_column.
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot);
+        visit("geometry", geometry);
+        visit("motion", motion);
+        visit("initial", initial);
+        visit("script", script);
+        visit("has_surface", has_surface);
+        visit("surface", surface);
+        visit("body", body);
+        visit("travel", travel);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        visit("keyframe", keyframe);
+    }
+};
+
+}  // namespace skerry

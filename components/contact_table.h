@@ -1,0 +1,112 @@
+// Contacts of this step, and what they leave for the next one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider };
+enum class ContactState : std::uint8_t { open, stick, slide };
+
+/// Names the features that touch, across steps. `pair` holds what touches: bits 63..62 the kind of pair (0 two bodies, 1 body and
+/// collider), then the two handle slots (31 bits each). `feature` holds which parts: bit 63 set for edge-edge, bit 62 says which of
+/// the two bodies the point or first edge belongs to, then the two local feature numbers (31 bits each). Both are unique in a world and
+/// survive the removal of other bodies.
+struct ContactKey {
+    std::uint64_t pair;
+    std::uint64_t feature;
+
+    auto operator<=>(const ContactKey&) const = default;
+};
+
+/// A weighted stencil: relative velocity v = sum_a weight[a] u[node[a]]. Unused places repeat node[0] with weight 0.
+struct Stencil {
+    std::array<Index, 4> node;   // rows of NodeTable
+    std::array<Real, 4> weight;
+};
+
+/// What find_contacts writes of one contact, all at once.
+struct ContactRow {
+    ContactKey key;
+    ContactKind kind;
+    Stencil stencil;
+    Vec3 point;        // m, on the second partner
+    Vec3 normal;       // unit, from the second partner to the first (the point, the first edge)
+    Real gap;          // m, distance minus contact distance; > 0 apart
+    Real distance;     // m, signed distance of the surfaces themselves; < 0 overlap
+    Vec3 surface_velocity;  // m/s, of a collider at the point; 0 between bodies (their nodes say it)
+    Real static_friction;
+    Real dynamic_friction;
+    Real restitution;
+    Index first_body;   // row of BodyTable
+    Index second_body;  // row of BodyTable, or no_index
+    Index collider;     // row of ColliderTable, or no_index
+};
+
+/// One row per contact, in key order.
+struct ContactTable {
+    Column<ContactKey> key;
+    Column<ContactKind> kind;
+    Column<Stencil> stencil;
+    Column<Vec3> point;
+    Column<Vec3> normal;
+    Column<Real> gap;
+    Column<Real> distance;
+    Column<Vec3> surface_velocity;
+    Column<Real> static_friction;
+    Column<Real> dynamic_friction;
+    Column<Real> restitution;
+    Column<Index> first_body;
+    Column<Index> second_body;
+    Column<Index> collider;
+    Column<Vec3> impulse;          // N s, world frame, on the first partner; before the solve: the warm start
+    Column<Index> region;          // row of RegionTable, no_index for a contact without a moving node
+    Column<Vec3> slip;             // m/s, tangential relative velocity after the solve
+    Column<ContactState> state;
+
+    void for_each_column(auto&& visit) {
+        visit("key", key);
+        visit("kind", kind);
+        visit("stencil", stencil);
+        visit("point", point);
+        visit("normal", normal);
+        visit("gap", gap);
+        visit("distance", distance);
+        visit("surface_velocity", surface_velocity);
+        visit("static_friction", static_friction);
+        visit("dynamic_friction", dynamic_friction);
+        visit("restitution", restitution);
+        visit("first_body", first_body);
+        visit("second_body", second_body);
+        visit("collider", collider);
+        visit("impulse", impulse);
+        visit("region", region);
+        visit("slip", slip);
+        visit("state", state);
+    }
+    std::size_t size() const { return key.size(); }
+    void resize(std::size_t count) {
+        for_each_column([count](const char*, auto& column) { column.resize(count); });
+    }
+};
+
+/// Last step's impulses, in key order.
+struct WarmStartTable {
+    Column<ContactKey> key;
+    Column<Vec3> impulse;  // N s
+    Column<Vec3> normal;
+    Column<Real> step;     // s, one row: the step the impulses belong to; empty before the first
+
+    void for_each_column(auto&& visit) {
+        visit("key", key);
+        visit("impulse", impulse);
+        visit("normal", normal);
+        visit("step", step);
+    }
+};
+
+}  // namespace skerry

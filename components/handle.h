@@ -1,0 +1,71 @@
+// Handles with generations: how a user names a body, a collider, a material or an attachment.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Names one row of a table for as long as that row lives. A handle to a removed row is recognised as stale, also when its slot has
+/// been used again.
+template <class Tag>
+struct Handle {
+    std::uint32_t slot = 0xffffffffu;
+    std::uint32_t generation = 0;
+
+    auto operator<=>(const Handle&) const = default;
+};
+
+using MaterialHandle = Handle<struct MaterialTag>;
+using BodyHandle = Handle<struct BodyTag>;
+using ColliderHandle = Handle<struct ColliderTag>;
+using AttachmentHandle = Handle<struct AttachmentTag>;
+
+/// Maps handles to rows of a table whose rows move down when an earlier one is erased.
+template <class HandleType>
+class HandleMap {
+public:
+    /// A handle for the new last row, `row`. Freed slots are used again, the lowest first, so that the same calls give the same handles.
+    HandleType insert(Index row) {
+        std::uint32_t slot = 0;
+        while (slot < row_.size() && row_[slot] != no_index) ++slot;
+        if (slot == row_.size()) {
+            row_.push_back(no_index);
+            generation_.push_back(0);
+        }
+        row_[slot] = row;
+        return {slot, generation_[slot]};
+    }
+
+    /// The row of a live handle, or no_index for a stale or foreign one.
+    Index row(HandleType handle) const {
+        if (handle.slot >= row_.size() || generation_[handle.slot] != handle.generation) return no_index;
+        return row_[handle.slot];
+    }
+
+    /// Forgets a live handle; rows above its row move down by one.
+    void erase(HandleType handle) {
+        const Index erased = row_[handle.slot];
+        row_[handle.slot] = no_index;
+        ++generation_[handle.slot];
+        for (Index& row : row_)
+            if (row > erased) --row;
+    }
+
+    /// The live handle of a slot that a table row stores.
+    HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot]}; }
+
+    void for_each_column(auto&& visit) {
+        visit("row", row_);
+        visit("generation", generation_);
+    }
+
+private:
+    Column<Index> row_;  // by slot; no_index: free
+    Column<std::uint32_t> generation_;
+};
+
+}  // namespace skerry

@@ -1,0 +1,45 @@
+// One row per material.
+#pragma once
+
+#include <cstdint>
+
+#include "components/column.h"
+#include "components/options.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// What a kernel needs of a material, derived once.
+struct MaterialConstants {
+    MaterialModel model;
+    Real shear_modulus;   // Pa, Lame mu of small strain
+    Real lame_lambda;     // Pa, Lame lambda of small strain
+    Real density;         // kg/m^3
+};
+
+/// What a contact needs of a surface. A collider without its own takes the body's.
+struct SurfaceProperties {
+    Real static_friction;
+    Real dynamic_friction;
+    Real restitution;
+};
+
+struct MaterialTable {
+    Column<MaterialConstants> constants;
+    Column<SurfaceProperties> surface;
+    Column<Real> young_modulus;   // Pa
+    Column<Real> poisson_ratio;
+    Column<Real> damping;         // 1/s, rate at which deformation velocities decay; rigid motion is kept
+    Column<std::uint32_t> slot;   // handle slot
+
+    void for_each_column(auto&& visit) {
+        visit("constants", constants);
+        visit("surface", surface);
+        visit("young_modulus", young_modulus);
+        visit("poisson_ratio", poisson_ratio);
+        visit("damping", damping);
+        visit("slot", slot);
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,37 @@
+// One row per block of neighbouring nodes of one body.
+#pragma once
+
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+inline constexpr Index nodes_per_block = 256;  // fixed: sums over a body are sums over its blocks in order, whatever the worker count
+
+/// What one pass over a block of nodes found; added up per body in block order.
+struct NodeBlockSums {
+    Real mass;               // kg, of the nodes that move
+    Vec3 momentum;           // kg m/s
+    Vec3 first_moment;       // kg m, sum of m (x - origin)
+    Vec3 angular_momentum;   // kg m^2/s, about the origin given
+    Mat3 second_moment;      // kg m^2, sum of m (x - origin)(x - origin)^T
+};
+
+/// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next.
+struct NodeBlockTable {
+    Column<Index> begin;             // first node
+    Column<Index> end;               // one past the last node
+    Column<Index> body;              // row of BodyTable
+    Column<Real> max_speed_squared;  // m^2/s^2, of velocity_next + push_out, by check_state; not a number if any node's is not finite
+    Column<NodeBlockSums> sums;      // by damp_velocity
+
+    void for_each_column(auto&& visit) {
+        visit("begin", begin);
+        visit("end", end);
+        visit("body", body);
+        visit("max_speed_squared", max_speed_squared);
+        visit("sums", sums);
+    }
+};
+
+}  // namespace skerry

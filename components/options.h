@@ -1,0 +1,85 @@
+// The choices a user makes by name. Each enum has its names in one place (names()), which the scene reader, the program's
+// help and the reports share.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace skerry {
+
+enum class MaterialModel { linear, corotational, stable_neo_hookean };
+enum class Friction { cone, pyramid };
+enum class ContactRegions { separate, global, paper_algorithm_1 };
+enum class SolverMethod { pgs, pcg_pgs };
+enum class Backend { tbb, openmp, threads, serial };
+enum class WarmStart { off, on };
+
+template <class Enum>
+struct EnumNames;
+
+template <>
+struct EnumNames<MaterialModel> {
+    static constexpr std::array<std::pair<MaterialModel, std::string_view>, 3> table{{
+        {MaterialModel::linear, "linear"},
+        {MaterialModel::corotational, "corotational"},
+        {MaterialModel::stable_neo_hookean, "stable_neo_hookean"},
+    }};
+};
+template <>
+struct EnumNames<Friction> {
+    static constexpr std::array<std::pair<Friction, std::string_view>, 2> table{{
+        {Friction::cone, "cone"},
+        {Friction::pyramid, "pyramid"},
+    }};
+};
+template <>
+struct EnumNames<ContactRegions> {
+    static constexpr std::array<std::pair<ContactRegions, std::string_view>, 3> table{{
+        {ContactRegions::separate, "separate"},
+        {ContactRegions::global, "global"},
+        {ContactRegions::paper_algorithm_1, "paper_algorithm_1"},
+    }};
+};
+template <>
+struct EnumNames<SolverMethod> {
+    static constexpr std::array<std::pair<SolverMethod, std::string_view>, 2> table{{
+        {SolverMethod::pgs, "pgs"},
+        {SolverMethod::pcg_pgs, "pcg_pgs"},
+    }};
+};
+template <>
+struct EnumNames<Backend> {
+    static constexpr std::array<std::pair<Backend, std::string_view>, 4> table{{
+        {Backend::tbb, "tbb"},
+        {Backend::openmp, "openmp"},
+        {Backend::threads, "threads"},
+        {Backend::serial, "serial"},
+    }};
+};
+template <>
+struct EnumNames<WarmStart> {
+    static constexpr std::array<std::pair<WarmStart, std::string_view>, 2> table{{
+        {WarmStart::off, "off"},
+        {WarmStart::on, "on"},
+    }};
+};
+
+/// The name of a choice, as scenes and reports write it.
+template <class Enum>
+constexpr std::string_view name_of(Enum value) {
+    for (const auto& [candidate, name] : EnumNames<Enum>::table)
+        if (candidate == value) return name;
+    return "?";
+}
+
+/// The choice with this name, if there is one.
+template <class Enum>
+constexpr std::optional<Enum> from_name(std::string_view name) {
+    for (const auto& [value, candidate] : EnumNames<Enum>::table)
+        if (candidate == name) return value;
+    return std::nullopt;
+}
+
+}  // namespace skerry

@@ -1,0 +1,38 @@
+// Ragged<T>: rows of different length, stored as offsets and items.
+#pragma once
+
+#include <span>
+
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Read-only view of a Ragged.
+template <class T>
+struct RaggedView {
+    std::span<const Index> offset;  // row_count + 1 entries, the first 0
+    std::span<const T> item;
+
+    std::size_t size() const { return offset.empty() ? 0 : offset.size() - 1; }
+    std::span<const T> operator[](std::size_t row) const {
+        return item.subspan(static_cast<std::size_t>(offset[row]), static_cast<std::size_t>(offset[row + 1] - offset[row]));
+    }
+};
+
+/// Rows of different length. Row r is item[offset[r]] .. item[offset[r + 1] - 1].
+template <class T>
+struct Ragged {
+    Column<Index> offset;  // row_count + 1 entries, or none
+    Column<T> item;
+
+    std::size_t size() const { return offset.empty() ? 0 : offset.size() - 1; }
+    std::span<const T> operator[](std::size_t row) const { return view()[row]; }
+    RaggedView<T> view() const { return {offset, item}; }
+    void clear() {
+        offset.clear();
+        item.clear();
+    }
+};
+
+}  // namespace skerry

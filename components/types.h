@@ -1,0 +1,18 @@
+// The engine's number and vector types, and the choices a user makes by name. The only component header that is public
+// beside options.h: it is installed with the library.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+namespace skerry {
+
+using Real = double;
+using Vec3 = Eigen::Matrix<Real, 3, 1>;  // 24 bytes, no padding: a Column<Vec3> is a flat array of reals
+using Mat3 = Eigen::Matrix<Real, 3, 3>;
+
+using Index = std::int32_t;  // a row of a table
+inline constexpr Index no_index = -1;
+
+}  // namespace skerry

@@ -1,0 +1,83 @@
+// Tetrahedral meshes: built-in shapes and files.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// A tetrahedral mesh in its own frame. Tetrahedra index `nodes`; a positive tetrahedron has det(n1 - n0, n2 - n0, n3 - n0) > 0.
+struct Mesh {
+    std::vector<Vec3> nodes;                       // m
+    std::vector<std::array<Index, 4>> tetrahedra;  // rows of nodes
+};
+
+/// A closed or open triangle surface, counter-clockwise seen from outside.
+struct SurfaceMesh {
+    std::vector<Vec3> nodes;                      // m
+    std::vector<std::array<Index, 3>> triangles;  // rows of nodes
+};
+
+/// Built-in meshes. All are centred at the origin unless said, axes along z, with positive tetrahedra. Lengths in metres. `resolution`
+/// counts elements along the smallest extent unless said. Throw std::invalid_argument for sizes that are not positive.
+namespace mesh {
+
+/// A box of the given edge lengths, cut into cells (i, j, k) of five or six tetrahedra each.
+Mesh box(const Vec3& size, const std::array<int, 3>& cells);
+
+/// A ball: `resolution` elements across the diameter.
+Mesh ball(Real radius, int resolution);
+
+/// A solid cylinder of the given radius and height: `resolution` elements across the diameter.
+Mesh cylinder(Real radius, Real height, int resolution);
+
+/// A body of revolution about z: `profile` lists (radius, z) from bottom to top, z ascending and radii positive; between the points the
+/// outline is linear. `resolution` elements across the largest diameter.
+Mesh lathe(std::span<const std::array<Real, 2>> profile, int resolution);
+
+/// A skittle (a lathe with the outline of a ninepin) of the given height, standing on z = 0.
+Mesh skittle(Real height, int resolution);
+
+/// A table: a top of size x by y by thickness on four square legs, standing on z = 0. `cells_per_leg` elements across a leg.
+struct TableShape {
+    Real length = 0.5;       // m, along x
+    Real width = 0.3;        // m, along y
+    Real height = 0.3;       // m
+    Real thickness = 0.05;   // m, of the top
+    Real leg = 0.05;         // m, edge of a leg
+    int cells_per_leg = 1;
+};
+Mesh table(const TableShape& shape);
+
+/// Reads Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary) or TetGen .node/.ele (either name). Linear
+/// tetrahedra are taken, other element kinds are passed over; nodes no tetrahedron uses are dropped. Throws SceneError that names the file, the place and what
+/// was found and expected.
+Mesh read(const std::string& path);
+
+/// Reads the triangles of a file of the same kinds, or of a Wavefront .obj or an STL; of a tetrahedral file its boundary.
+SurfaceMesh read_surface(const std::string& path);
+
+/// The boundary of a tetrahedral mesh.
+SurfaceMesh boundary(const Mesh& mesh);
+
+}  // namespace mesh
+
+/// What `skerry inspect` prints of a mesh.
+struct MeshReport {
+    std::size_t nodes = 0, tetrahedra = 0, boundary_triangles = 0, components = 0;
+    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();   // m
+    Real volume = 0;                                   // m^3
+    Real mean_edge = 0, min_edge = 0, max_edge = 0;    // m
+    Real min_altitude = 0;                             // m
+    Real min_quality = 0, mean_quality = 0;            // 12 (3 V)^(2/3) / sum of squared edges: 1 is regular
+    std::size_t inverted = 0, flat = 0;                // tetrahedra of negative, of no volume
+    bool closed_manifold = false;                      // every boundary edge has two triangles
+};
+MeshReport inspect(const Mesh& mesh);
+
+}  // namespace skerry

@@ -1,0 +1,43 @@
+// Output of a run: a ParaView time series and a page that plays in a browser.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "skerry/scene.h"
+
+namespace skerry {
+
+/// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (velocity, speed, von Mises stress, body number) and one .vtp of the contacts
+/// (impulse, force, normal, gap, slip, state, region) a frame. Files appear complete or not at all. Throws SceneError when the folder
+/// cannot be written.
+class VtkWriter {
+public:
+    VtkWriter(const std::filesystem::path& folder, const std::string& name);
+    ~VtkWriter();
+    void write_frame(const World& world);
+    /// Writes the .pvd; frames written so far open without it, too.
+    void close();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Collects frames and writes one self-contained HTML page that plays the run: bodies coloured by speed or stress, contacts by stick or
+/// slide, play, scrub and orbit, stage times and energies as plots. Works offline; three.js is inlined.
+class PageWriter {
+public:
+    PageWriter(const std::filesystem::path& file, const std::string& title);
+    ~PageWriter();
+    void add_frame(const World& world);
+    /// Writes the page at once, with the report of the whole run. Throws SceneError when it cannot be written.
+    void close(const World& world);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skerry

@@ -1,0 +1,39 @@
+// Scenes: JSON files that describe a world and a run.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "skerry/world.h"
+
+namespace skerry {
+
+/// Changes that the caller makes to the settings of a scene.
+struct SceneOverrides {
+    std::optional<int> threads;
+    std::optional<Backend> backend;
+    std::optional<ContactRegions> contact_regions;
+    std::optional<SolverMethod> method;
+    std::optional<Friction> friction;
+    std::optional<Real> tolerance;
+    std::optional<Real> step_size;
+};
+
+/// A scene as built.
+struct Scene {
+    std::string name;
+    std::string description;
+    Real seconds = 2;            // s, length of a run unless asked otherwise
+    Real frame_step = 1.0 / 60;  // s, between frames of output
+    World world;
+};
+
+/// Reads and builds a scene. Mesh files are looked for beside it. Throws SceneError for anything it does not understand: unknown keys name
+/// the nearest known one.
+Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
+
+/// The JSON schema of scene files.
+std::string scene_schema();
+
+}  // namespace skerry

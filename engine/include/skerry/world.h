@@ -1,0 +1,89 @@
+// The world: deformable bodies, colliders and attachments, and the step that moves them.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skerry/error.h"
+#include "skerry/mesh.h"
+#include "skerry/report.h"
+#include "skerry/settings.h"
+
+namespace skerry {
+
+/// A simulation. Not safe for use from several threads at once; different worlds are independent. Functions that take a handle throw
+/// SceneError when it is stale, functions that take settings when a value is out of range.
+class World {
+public:
+    explicit World(const Settings& settings = {});
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    // Building. Allowed between steps; handles to everything else stay valid.
+    MaterialHandle add_material(const MaterialSettings& material);
+    BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
+    ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
+    /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion about `pivot`.
+    AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {}, const Vec3& pivot = Vec3::Zero());
+    void remove(BodyHandle body);
+    void remove(ColliderHandle collider);
+    void remove(AttachmentHandle attachment);
+    bool alive(BodyHandle body) const;
+    bool alive(ColliderHandle collider) const;
+    bool alive(AttachmentHandle attachment) const;
+
+    // Running.
+    /// Moves time on by dt in equal steps no longer than the stable step. A step that cannot be committed changes nothing and ends
+    /// the call: the report says which body and why.
+    StepReport advance(Real dt);
+    Real time() const;
+    const Settings& settings() const;
+    void set_gravity(const Vec3& gravity);
+    /// The step that advance would take at most, s.
+    Real stable_step() const;
+
+    // State of a body. Spans stay valid until bodies are added or removed; positions and velocities also change with advance.
+    std::span<const Vec3> positions(BodyHandle body) const;   // m
+    std::span<const Vec3> velocities(BodyHandle body) const;  // m/s
+    void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
+    /// External forces on the nodes, kept until set again, N.
+    void set_loads(BodyHandle body, std::span<const Vec3> load);
+    std::span<const std::array<Index, 3>> surface(BodyHandle body) const;        // boundary triangles, local nodes
+    std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;     // local nodes
+    std::vector<Real> von_mises_stress(BodyHandle body) const;                   // Pa, by tetrahedron
+    const std::string& name(BodyHandle body) const;
+    Real mass(BodyHandle body) const;                                            // kg
+    Vec3 center_of_mass(BodyHandle body) const;                                  // m
+    Real contact_distance(BodyHandle body) const;                                // m
+    Real mean_edge(BodyHandle body) const;                                       // m, of the rest surface
+    std::vector<BodyHandle> bodies() const;                                      // in the order added
+    std::vector<ColliderHandle> colliders() const;
+    /// Pose of a collider now: position and rotation (axis times angle).
+    MotionKey pose(ColliderHandle collider) const;
+    const Shape& shape(ColliderHandle collider) const;
+    const std::string& name(ColliderHandle collider) const;
+
+    // What happened.
+    std::span<const Contact> contacts() const;   // of the last step, in a fixed order
+    WorldReport report() const;
+    Energy energy() const;
+    /// Hash of everything that the next step depends on; equal on any number of threads and on every backend.
+    std::uint64_t state_hash() const;
+    /// Starts or stops recording what every worker does.
+    void set_tracing(bool on);
+    /// Writes what was recorded in the Trace Event Format, which Perfetto and chrome://tracing open.
+    void write_trace(std::ostream& out) const;
+    /// The stages of the step and which waits for which, as Graphviz dot text.
+    std::string step_graph() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace skerry

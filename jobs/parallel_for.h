@@ -1,0 +1,26 @@
+// Loops over rows in fixed blocks.
+#pragma once
+
+#include <algorithm>
+
+#include "jobs/executor.h"
+
+namespace skerry {
+
+/// Calls body(begin, end) for consecutive blocks of at most `block` rows that cover 0 .. count - 1. One block runs inline. The blocks do
+/// not depend on the worker count.
+template <class Body>
+void parallel_for(Executor& executor, std::size_t count, std::size_t block, Body&& body) {
+    if (count == 0) return;
+    if (count <= block) {
+        body(std::size_t{0}, count);
+        return;
+    }
+    const std::size_t blocks = (count + block - 1) / block;
+    executor.run_blocks(static_cast<Index>(blocks), [&](Index b) {
+        const std::size_t begin = static_cast<std::size_t>(b) * block;
+        body(begin, std::min(begin + block, count));
+    });
+}
+
+}  // namespace skerry

@@ -1,0 +1,18 @@
+// Which bodies, and which of their features, could touch soon (methods.md 6, items 1 to 3).
+#pragma once
+
+#include "components/pair_table.h"
+#include "jobs/executor.h"
+#include "systems/collision/collision_inputs.h"
+
+namespace skerry {
+
+/// Brings the pair list and the candidate lists up to date. Nothing close: one comparison per body, then returns false (skipped).
+/// Otherwise first the broad search (sweep over body boxes; only when some body used up its budget of travel), then, for each pair whose
+/// own budget is used up, a refit of its trees and a traversal, in parallel over those pairs. `boxes` are BvhTable::box, refit here.
+/// Every pair of features nearer than contact distance + pair skin is in the list of its pair; the pair is valid until the travel of both
+/// has used up the skin. Deterministic: pairs in key order, candidates in feature order.
+bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<Aabb> boxes,
+                     SearchState& search, PairTable& pairs);
+
+}  // namespace skerry

@@ -1,0 +1,18 @@
+// Carries impulses from the last step to this one (methods.md 2.7).
+#pragma once
+
+#include "components/contact_table.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+/// impulse = last step's impulse of the same key, turned so that the old normal becomes the new one, times h / last step; zero for a new
+/// contact. Both tables are in key order: a merge. Parallel over blocks of contacts. Returns false when there is nothing to do (skipped).
+bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal, const WarmStartTable& last, Real h,
+                      std::span<Vec3> impulse);
+
+/// Keeps this step's impulses for the next.
+void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse, Real h,
+                      WarmStartTable& last);
+
+}  // namespace skerry

@@ -1,0 +1,37 @@
+// Looks at the step before it is committed (methods.md 4.2, design.md section 2).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/node_block_table.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+enum class StepFault { none, not_finite, too_fast };
+
+/// Why a step must not be committed.
+struct StepVerdict {
+    StepFault fault = StepFault::none;
+    Index body = no_index;  // row of BodyTable
+    Index node = no_index;  // row of NodeTable, when one node is to blame
+    Real value = 0;         // not_finite: -; too_fast: displacement of this step over the smallest element altitude
+};
+
+struct CheckInputs {
+    std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
+    std::span<const Range> body_node_blocks;
+    std::span<const Real> body_min_altitude;  // m; 0 for a kinematic body: not judged by speed
+    std::span<const Vec3> velocity;           // m/s, at the start of the step
+    std::span<const Vec3> velocity_next;
+    std::span<const Vec3> push_out;
+};
+
+/// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is not finite, or nodes
+/// of one body that move apart by more than `max_strain_step` (fraction of its smallest altitude) in this step: `too_fast` compares the
+/// speed relative to the body's mean velocity, since common motion does not harm. Parallel over node blocks.
+StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
+                        std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
+
+}  // namespace skerry
