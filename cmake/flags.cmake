@@ -2,9 +2,15 @@
 add_library(skerry_flags INTERFACE)
 target_compile_features(skerry_flags INTERFACE cxx_std_20)
 # No contraction: the same source gives the same bits in a kernel and in its scalar twin.
-target_compile_options(skerry_flags INTERFACE -ffp-contract=off -fno-math-errno -fno-trapping-math -fopenmp-simd -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+target_compile_options(skerry_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -fno-math-errno -fno-trapping-math -fopenmp-simd -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion>)
 if(SKERRY_ARCH)
-    target_compile_options(skerry_flags INTERFACE -march=${SKERRY_ARCH} -mprefer-vector-width=512)
+    include(CheckCXXCompilerFlag)
+    target_compile_options(skerry_flags INTERFACE -march=${SKERRY_ARCH})
+    check_cxx_compiler_flag("-march=${SKERRY_ARCH} -mprefer-vector-width=512" SKERRY_WIDE_VECTORS)
+    if(SKERRY_WIDE_VECTORS)
+        target_compile_options(skerry_flags INTERFACE -mprefer-vector-width=512)
+    endif()
 endif()
 if(SKERRY_WARNINGS_AS_ERRORS)
     target_compile_options(skerry_flags INTERFACE -Werror)
