@@ -12,14 +12,14 @@ namespace skerry {
 
 struct AttachmentTable {
     Column<std::uint32_t> slot;
-    Column<Index> body;             // row of BodyTable
-    Column<Range> nodes;            // range in `node` and `anchor`
-    Column<RigidMotion> motion;     // of this step; a node sits at position + rotation anchor
-    Column<RigidMotion> initial;    // when it was attached
+    Column<Index> body;           // row of BodyTable
+    Column<Range> nodes;          // range in `node` and `anchor`
+    Column<RigidMotion> motion;   // of this step; a node sits at position + rotation anchor
+    Column<RigidMotion> initial;  // when it was attached
     Column<MotionScript> script;
-    Column<Index> node;             // rows of NodeTable, of all attachments
-    Column<Vec3> anchor;            // m, of `node`, in the frame of the attachment
-    Column<Keyframe> keyframe;      // of all attachments, by script range
+    Column<Index> node;         // rows of NodeTable, of all attachments
+    Column<Vec3> anchor;        // m, of `node`, in the frame of the attachment
+    Column<Keyframe> keyframe;  // of all attachments, by script range
 
     void for_each_row_column(auto&& visit) {
         visit("slot", slot);

@@ -24,27 +24,27 @@ enum class BodyKind : std::uint8_t {
 };
 
 struct BodyTable {
-    Column<std::uint32_t> slot;       // handle slot of the body, or of the collider that a kinematic body belongs to
+    Column<std::uint32_t> slot;  // handle slot of the body, or of the collider that a kinematic body belongs to
     Column<BodyKind> kind;
     Column<std::uint8_t> self_contact;
-    Column<Index> material;           // row of MaterialTable; no_index for a kinematic body
-    Column<Index> collider;           // row of ColliderTable of a kinematic body, else no_index
+    Column<Index> material;  // row of MaterialTable; no_index for a kinematic body
+    Column<Index> collider;  // row of ColliderTable of a kinematic body, else no_index
     Column<Range> nodes;
     Column<Range> node_blocks;
-    Column<Range> blocks;             // of ElementBlockTable
+    Column<Range> blocks;  // of ElementBlockTable
     Column<Range> triangles;
     Column<Range> edges;
     Column<Range> vertices;
     Column<Range> bvh_nodes;
     Column<Index> element_count;
-    Column<Index> pinned_count;       // nodes without freedom
-    Column<Real> contact_distance;    // m, thickness of the contact shell; two bodies keep the mean of theirs
-    Column<Real> mean_edge;           // m, of the surface at rest
-    Column<Real> min_altitude;        // m, of the elements at rest
-    Column<Real> rest_step;           // s, stable step of the rest shape
-    Column<Real> stable_step;         // s, as last watched
-    Column<Real> max_speed;           // m/s, of this step's motion
-    Column<Real> travel;              // m, sum of step times max_speed since the body was added: no node moved further
+    Column<Index> pinned_count;     // nodes without freedom
+    Column<Real> contact_distance;  // m, thickness of the contact shell; two bodies keep the mean of theirs
+    Column<Real> mean_edge;         // m, of the surface at rest
+    Column<Real> min_altitude;      // m, of the elements at rest
+    Column<Real> rest_step;         // s, stable step of the rest shape
+    Column<Real> stable_step;       // s, as last watched
+    Column<Real> max_speed;         // m/s, of this step's motion
+    Column<Real> travel;            // m, sum of step times max_speed since the body was added: no node moved further
 
     void for_each_column(auto&& visit) {
         visit("slot", slot);

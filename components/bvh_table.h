@@ -16,9 +16,9 @@ struct Aabb {
 /// A leaf (count > 0) holds the triangles first .. first + count - 1 of Bvhs::triangle.
 struct BvhNode {
     Index skip;
-    Index right;   // row of the right child; no_index in a leaf
-    Index first;   // row of BvhTable::triangle
-    Index count;   // 0 in an inner node
+    Index right;  // row of the right child; no_index in a leaf
+    Index first;  // row of BvhTable::triangle
+    Index count;  // 0 in an inner node
 };
 
 struct BvhTable {

@@ -29,9 +29,9 @@ struct RigidMotion {
 
 /// One key of a script; between keys position is linear and rotation turns about a fixed axis.
 struct Keyframe {
-    Real time;        // s
-    Vec3 position;    // m
-    Vec3 rotation;    // rad, axis times angle
+    Real time;      // s
+    Vec3 position;  // m
+    Vec3 rotation;  // rad, axis times angle
 };
 
 /// How a collider or an attachment moves.
@@ -45,14 +45,14 @@ struct MotionScript {
 struct ColliderTable {
     Column<std::uint32_t> slot;
     Column<ColliderGeometry> geometry;
-    Column<RigidMotion> motion;            // of this step, by move_colliders
-    Column<RigidMotion> initial;           // at time 0
+    Column<RigidMotion> motion;   // of this step, by move_colliders
+    Column<RigidMotion> initial;  // at time 0
     Column<MotionScript> script;
-    Column<Keyframe> keyframe;             // of all colliders, by script range
-    Column<std::uint8_t> has_surface;      // 0: the contact takes the body's surface properties
+    Column<Keyframe> keyframe;         // of all colliders, by script range
+    Column<std::uint8_t> has_surface;  // 0: the contact takes the body's surface properties
     Column<SurfaceProperties> surface;
-    Column<Index> body;                    // row of the kinematic body of a mesh collider, else no_index
-    Column<Real> travel;                   // m, how far any of its points near a body can have moved, as BodyTable::travel
+    Column<Index> body;   // row of the kinematic body of a mesh collider, else no_index
+    Column<Real> travel;  // m, how far any of its points near a body can have moved, as BodyTable::travel
 
     /// All columns that have one row per collider; `keyframe` is ragged and is visited on its own by for_each_column.
     void for_each_row_column(auto&& visit) {

@@ -64,8 +64,6 @@ public:
 
     std::span<T> span() { return {rows_.data(), rows_.size()}; }
     std::span<const T> span() const { return {rows_.data(), rows_.size()}; }
-    operator std::span<T>() { return span(); }
-    operator std::span<const T>() const { return span(); }
 
 private:
     std::vector<T, AlignedAllocator<T>> rows_;

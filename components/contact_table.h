@@ -25,7 +25,7 @@ struct ContactKey {
 
 /// A weighted stencil: relative velocity v = sum_a weight[a] u[node[a]]. Unused places repeat node[0] with weight 0.
 struct Stencil {
-    std::array<Index, 4> node;   // rows of NodeTable
+    std::array<Index, 4> node;  // rows of NodeTable
     std::array<Real, 4> weight;
 };
 
@@ -34,10 +34,10 @@ struct ContactRow {
     ContactKey key;
     ContactKind kind;
     Stencil stencil;
-    Vec3 point;        // m, on the second partner
-    Vec3 normal;       // unit, from the second partner to the first (the point, the first edge)
-    Real gap;          // m, distance minus contact distance; > 0 apart
-    Real distance;     // m, signed distance of the surfaces themselves; < 0 overlap
+    Vec3 point;             // m, on the second partner
+    Vec3 normal;            // unit, from the second partner to the first (the point, the first edge)
+    Real gap;               // m, distance minus contact distance; > 0 apart
+    Real distance;          // m, signed distance of the surfaces themselves; < 0 overlap
     Vec3 surface_velocity;  // m/s, of a collider at the point; 0 between bodies (their nodes say it)
     Real static_friction;
     Real dynamic_friction;
@@ -63,9 +63,9 @@ struct ContactTable {
     Column<Index> first_body;
     Column<Index> second_body;
     Column<Index> collider;
-    Column<Vec3> impulse;          // N s, world frame, on the first partner; before the solve: the warm start
-    Column<Index> region;          // row of RegionTable, no_index for a contact without a moving node
-    Column<Vec3> slip;             // m/s, tangential relative velocity after the solve
+    Column<Vec3> impulse;  // N s, world frame, on the first partner; before the solve: the warm start
+    Column<Index> region;  // row of RegionTable, no_index for a contact without a moving node
+    Column<Vec3> slip;     // m/s, tangential relative velocity after the solve
     Column<ContactState> state;
 
     void for_each_column(auto&& visit) {
@@ -99,7 +99,7 @@ struct WarmStartTable {
     Column<ContactKey> key;
     Column<Vec3> impulse;  // N s
     Column<Vec3> normal;
-    Column<Real> step;     // s, one row: the step the impulses belong to; empty before the first
+    Column<Real> step;  // s, one row: the step the impulses belong to; empty before the first
 
     void for_each_column(auto&& visit) {
         visit("key", key);

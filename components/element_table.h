@@ -10,32 +10,37 @@
 namespace skerry {
 
 using ElementLane = Lanes<Real, element_lanes>;
-using ElementNodes = std::array<Lanes<Index, element_lanes>, 4>;              // corner a of lane l: nodes[a][l]
-using ElementRest = std::array<ElementLane, 9>;                               // B = Dm^-1, column-major: B(i, j) = rest[3 j + i]
-using ElementRotation = std::array<ElementLane, 4>;                           // unit quaternion w, x, y, z
-using ElementForces = std::array<std::array<Vec3, 4>, element_lanes>;         // N, of lane l on its corner a: forces[l][a]
+using ElementNodes = std::array<Lanes<Index, element_lanes>, 4>;       // corner a of lane l: nodes[a][l]
+using ElementRest = std::array<ElementLane, 9>;                        // B = Dm^-1, column-major: B(i, j) = rest[3 j + i]
+using ElementRotation = std::array<ElementLane, 4>;                    // unit quaternion w, x, y, z
+using ElementForces = std::array<std::array<Vec3, 4>, element_lanes>;  // N, of lane l on its corner a: forces[l][a]
 
 /// Tetrahedra, element_lanes side by side. A block belongs to one body; lanes that are left over repeat the body's first node with
 /// volume and B zero, so that they add nothing. Element e of the table is lane e % element_lanes of block e / element_lanes.
 struct ElementBlockTable {
-    Column<ElementNodes> node;               // rows of NodeTable
-    Column<ElementRest> inverse_rest;        // 1/m
-    Column<ElementLane> volume;              // m^3, at rest; 0 in a lane that is left over
-    Column<ElementRotation> rotation;        // corotational frame, the start of the next extraction
-    Column<ElementRotation> rotation_next;   // this step's frame; swapped with rotation when the step is committed
-    Column<ElementForces> force;             // N
-    Column<Index> body;                      // row of BodyTable
-    Column<Index> material;                  // row of MaterialTable
+    Column<ElementNodes> node;              // rows of NodeTable
+    Column<ElementRest> inverse_rest;       // 1/m
+    Column<ElementLane> volume;             // m^3, at rest; 0 in a lane that is left over
+    Column<ElementRotation> rotation;       // corotational frame, the start of the next extraction
+    Column<ElementRotation> rotation_next;  // this step's frame; swapped with rotation when the step is committed
+    Column<ElementForces> force;            // N
+    Column<Index> body;                     // row of BodyTable
+    Column<Index> material;                 // row of MaterialTable
 
-    void for_each_column(auto&& visit) {
+    /// What the next step depends on: hash and snapshot walk this part.
+    void for_each_state_column(auto&& visit) {
         visit("node", node);
         visit("inverse_rest", inverse_rest);
         visit("volume", volume);
         visit("rotation", rotation);
-        visit("rotation_next", rotation_next);
-        visit("force", force);
         visit("body", body);
         visit("material", material);
+    }
+    /// The only list of columns: resize and erase walk it.
+    void for_each_column(auto&& visit) {
+        for_each_state_column(visit);
+        visit("rotation_next", rotation_next);
+        visit("force", force);
     }
 };
 

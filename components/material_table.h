@@ -12,9 +12,9 @@ namespace skerry {
 /// What a kernel needs of a material, derived once.
 struct MaterialConstants {
     MaterialModel model;
-    Real shear_modulus;   // Pa, Lame mu of small strain
-    Real lame_lambda;     // Pa, Lame lambda of small strain
-    Real density;         // kg/m^3
+    Real shear_modulus;  // Pa, Lame mu of small strain
+    Real lame_lambda;    // Pa, Lame lambda of small strain
+    Real density;        // kg/m^3
 };
 
 /// What a contact needs of a surface. A collider without its own takes the body's.
@@ -27,10 +27,10 @@ struct SurfaceProperties {
 struct MaterialTable {
     Column<MaterialConstants> constants;
     Column<SurfaceProperties> surface;
-    Column<Real> young_modulus;   // Pa
+    Column<Real> young_modulus;  // Pa
     Column<Real> poisson_ratio;
-    Column<Real> damping;         // 1/s, rate at which deformation velocities decay; rigid motion is kept
-    Column<std::uint32_t> slot;   // handle slot
+    Column<Real> damping;        // 1/s, rate at which deformation velocities decay; rigid motion is kept
+    Column<std::uint32_t> slot;  // handle slot
 
     void for_each_column(auto&& visit) {
         visit("constants", constants);

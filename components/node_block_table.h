@@ -10,11 +10,11 @@ inline constexpr Index nodes_per_block = 256;  // fixed: sums over a body are su
 
 /// What one pass over a block of nodes found; added up per body in block order.
 struct NodeBlockSums {
-    Real mass;               // kg, of the nodes that move
-    Vec3 momentum;           // kg m/s
-    Vec3 first_moment;       // kg m, sum of m (x - origin)
-    Vec3 angular_momentum;   // kg m^2/s, about the origin given
-    Mat3 second_moment;      // kg m^2, sum of m (x - origin)(x - origin)^T
+    Real mass;              // kg, of the nodes that move
+    Vec3 momentum;          // kg m/s
+    Vec3 first_moment;      // kg m, sum of m (x - origin)
+    Vec3 angular_momentum;  // kg m^2/s, about the origin given
+    Mat3 second_moment;     // kg m^2, sum of m (x - origin)(x - origin)^T
 };
 
 /// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next.

@@ -13,12 +13,13 @@ enum class RegionStatus : std::uint8_t { converged, certified, iteration_limit, 
 
 /// One row per region, numbered by its first contact.
 struct RegionTable {
-    Ragged<Index> contacts;              // rows of ContactTable, ascending
-    Column<Index> iterations;            // sweeps; 0 when the warm start already solves it
-    Column<Real> error;                  // e_nat, methods.md 2.1
+    Ragged<Index> contacts;    // rows of ContactTable, ascending
+    Column<Index> iterations;  // sweeps; 0 when the warm start already solves it
+    Column<Real> error;        // e_nat, methods.md 2.1
     Column<RegionStatus> status;
-    Column<Real> dissipated;             // J, taken out by its contacts in this step
-    Column<Index> order;                 // regions by predicted cost, largest first, ties by number
+    Column<Real> dissipated;  // J, taken out by its contacts in this step
+    Column<Index> order;      // regions by predicted cost, largest first, ties by number
+    bool independent = true;  // no two regions share a moving node; false only from paper_algorithm_1: then solved one by one
 
     std::size_t size() const { return contacts.size(); }
     void for_each_column(auto&& visit) {

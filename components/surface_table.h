@@ -12,12 +12,12 @@ namespace skerry {
 /// Boundary triangles, counter-clockwise seen from outside. Each vertex and each edge of a body is owned by exactly one of its
 /// triangles (the lowest that has it), so that a pair of close triangles yields each pair of features once.
 struct TriangleTable {
-    Column<std::array<Index, 3>> node;     // rows of NodeTable
-    Column<std::array<Index, 3>> edge;     // rows of EdgeTable; edge k joins node k and node (k + 1) % 3
-    Column<std::array<Index, 3>> vertex;   // rows of VertexTable
-    Column<std::uint8_t> owned_vertices;   // bit k: this triangle owns vertex k
-    Column<std::uint8_t> owned_edges;      // bit k: this triangle owns edge k
-    Column<Index> element;                 // the tetrahedron behind it (element index of ElementBlockTable), or no_index
+    Column<std::array<Index, 3>> node;    // rows of NodeTable
+    Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k joins node k and node (k + 1) % 3
+    Column<std::array<Index, 3>> vertex;  // rows of VertexTable
+    Column<std::uint8_t> owned_vertices;  // bit k: this triangle owns vertex k
+    Column<std::uint8_t> owned_edges;     // bit k: this triangle owns edge k
+    Column<Index> element;                // the tetrahedron behind it (element index of ElementBlockTable), or no_index
 
     void for_each_column(auto&& visit) {
         visit("node", node);
@@ -30,8 +30,8 @@ struct TriangleTable {
 };
 
 struct EdgeTable {
-    Column<std::array<Index, 2>> node;       // rows of NodeTable, the lower first
-    Column<std::array<Index, 2>> triangle;   // rows of TriangleTable; the second is no_index on an open boundary
+    Column<std::array<Index, 2>> node;      // rows of NodeTable, the lower first
+    Column<std::array<Index, 2>> triangle;  // rows of TriangleTable; the second is no_index on an open boundary
 
     void for_each_column(auto&& visit) {
         visit("node", node);
@@ -40,8 +40,8 @@ struct EdgeTable {
 };
 
 struct VertexTable {
-    Column<Index> node;             // row of NodeTable
-    Column<Index> triangle_begin;   // range in triangle_item of the triangles around the vertex
+    Column<Index> node;            // row of NodeTable
+    Column<Index> triangle_begin;  // range in triangle_item of the triangles around the vertex
     Column<Index> triangle_end;
 
     void for_each_column(auto&& visit) {
@@ -56,7 +56,7 @@ struct SurfaceTables {
     TriangleTable triangles;
     EdgeTable edges;
     VertexTable vertices;
-    Column<Index> vertex_triangle;   // rows of TriangleTable, by vertex range
+    Column<Index> vertex_triangle;  // rows of TriangleTable, by vertex range
 
     void for_each_column(auto&& visit) {
         triangles.for_each_column(visit);

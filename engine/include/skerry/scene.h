@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skerry/world.h"
 
@@ -20,6 +21,13 @@ struct SceneOverrides {
     std::optional<Real> step_size;
 };
 
+/// A part of a body whose contacts a run reports, such as the feet of a table.
+struct Probe {
+    std::string name;
+    BodyHandle body;
+    std::vector<Index> nodes;  // local
+};
+
 /// A scene as built.
 struct Scene {
     std::string name;
@@ -27,6 +35,7 @@ struct Scene {
     Real seconds = 2;            // s, length of a run unless asked otherwise
     Real frame_step = 1.0 / 60;  // s, between frames of output
     World world;
+    std::vector<Probe> probes;
 };
 
 /// Reads and builds a scene. Mesh files are looked for beside it. Throws SceneError for anything it does not understand: unknown keys name

@@ -82,8 +82,7 @@ public:
     std::string step_graph() const;
 
 private:
-    struct State;
-    std::unique_ptr<State> state_;
+    std::unique_ptr<struct WorldState> state_;
 };
 
 }  // namespace skerry

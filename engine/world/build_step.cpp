@@ -1,0 +1,130 @@
+// The step: one list of stages. Each is named folder/function; the graph takes the order from what they read and write, so the force and
+// the contact branch run side by side (docs/step_graph.dot shows the result).
+#include "engine/world/world_state.h"
+#include "systems/collision/find_candidates.h"
+#include "systems/collision/find_contacts.h"
+#include "systems/contact/match_warm_start.h"
+#include "systems/dynamics/advance_positions.h"
+#include "systems/dynamics/damp_velocity.h"
+#include "systems/dynamics/gather_node_forces.h"
+#include "systems/dynamics/move_colliders.h"
+#include "systems/dynamics/predict_velocity.h"
+
+namespace skerry {
+
+namespace {
+
+/// Scripts give colliders and held nodes their motion during this step.
+void list_scripted_motion(WorldState& w, TaskGraph& g) {
+    ColliderTable& c = w.colliders;
+    AttachmentTable& a = w.attachments;
+    NodeTable& n = w.nodes;
+    g.stage("dynamics/move_colliders", move_colliders,
+            bundle(
+                [&c] {
+                    return ColliderMotionInputs{c.script, c.keyframe, c.initial};
+                },
+                reads(c.script, c.keyframe, c.initial)),
+            value(w.step.time), value(w.step.h), write(c.motion));
+    g.stage("dynamics/move_attachments", move_colliders,
+            bundle(
+                [&a] {
+                    return ColliderMotionInputs{a.script, a.keyframe, a.initial};
+                },
+                reads(a.script, a.keyframe, a.initial)),
+            value(w.step.time), value(w.step.h), write(a.motion));
+    g.stage("dynamics/drive_nodes", drive_nodes,
+            bundle(
+                [&a] {
+                    return NodeMotionInputs{a.motion, a.nodes, a.node, a.anchor};
+                },
+                reads(a.motion, a.nodes, a.node, a.anchor)),
+            value(w.step.h), read(n.position), write(n.velocity));
+}
+
+void list_force_branch(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.nodes;
+    ElementBlockTable& e = w.elements;
+    BodyTable& b = w.bodies;
+    NodeBlockTable& k = w.node_blocks;
+    g.stage("dynamics/compute_element_forces", compute_element_forces,
+            bundle([&w] { return w.element_inputs(); }, reads(e.node, e.inverse_rest, e.volume, e.material, w.materials)), read(n.position),
+            read(e.rotation), write(e.rotation_next), write(e.force));
+    g.stage("dynamics/gather_node_forces", gather_node_forces, read(w.corners), read(e.force), read(n.mass), value(w.step.gravity),
+            read(n.load), write(n.force));
+    g.stage("dynamics/predict_velocity", predict_velocity, read(n.force), read(n.inverse_mass), read(n.velocity), value(w.step.h),
+            write(n.velocity_next));
+    g.stage("dynamics/damp_velocity", damp_velocity,
+            bundle(
+                [&w, &n, &b, &k] {
+                    return DampingInputs{k.begin,    k.end,  k.body,        b.node_blocks, b.material, b.pinned_count, w.materials.damping,
+                                         n.position, n.mass, n.inverse_mass};
+                },
+                reads(k.begin, k.end, k.body, b.node_blocks, b.material, b.pinned_count, w.materials, n.position, n.mass, n.inverse_mass)),
+            value(w.step.h), write(k.sums), write(n.velocity_next));
+}
+
+void list_contact_branch(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.nodes;
+    ContactTable& c = w.contacts;
+    const auto inputs = bundle(
+        [&w, &n] {
+            return CollisionInputs{w.bodies,   w.colliders,    w.surface,       n.inverse_mass, w.materials.surface,
+                                   w.bvh.node, w.bvh.triangle, n.position,     n.velocity};
+        },
+        reads(w.bodies, w.colliders, w.surface, n.inverse_mass, w.materials, w.bvh.node, w.bvh.triangle, n.position,
+              n.velocity));
+    g.stage("collision/find_candidates", find_candidates, inputs, value(w.step.collision), value(w.step.h), write(w.bvh.box),
+            make(w.search), make(w.pairs));
+    g.stage("collision/find_contacts", find_contacts, inputs, value(w.step.collision), value(w.step.h), make(w.pairs), make(c));
+    g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.warm_start), value(w.step.h),
+            write(c.impulse), only_if([&w] { return w.step.solver.warm_start == WarmStart::on; }, reads(w.step.solver)));
+    g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(n.inverse_mass), value(w.step.contact_regions),
+            make(w.union_find), make(w.regions), write(c.region));
+}
+
+void list_solve_and_join(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.nodes;
+    ContactTable& c = w.contacts;
+    BodyTable& b = w.bodies;
+    NodeBlockTable& k = w.node_blocks;
+    g.stage("solver/solve_regions", solve_regions,
+            bundle(
+                [&w, &n, &c] {
+                    return RegionInputs{c.stencil,          c.normal,      c.gap,          c.surface_velocity, c.static_friction,
+                                        c.dynamic_friction, c.restitution, n.inverse_mass, n.velocity,         w.step.collision.gravity};
+                },
+                reads(c.stencil, c.normal, c.gap, c.surface_velocity, c.static_friction, c.dynamic_friction, c.restitution, n.inverse_mass,
+                      n.velocity)),
+            value(w.step.solver), value(w.step.h), make(w.solver_memory), make(w.regions),
+            bundle(
+                [&n, &c] {
+                    return RegionOutputs{c.impulse, n.velocity_next, n.push_out};
+                },
+                writes(c.impulse, n.velocity_next, n.push_out)));
+    g.stage_with_result("contact/measure_contacts", w.step.measures, measure_contacts, read(c), read(n.velocity), read(n.velocity_next),
+                        write(c.slip), write(c.state));
+    g.stage_with_result(
+        "dynamics/check_state", w.step.verdict, check_state,
+        bundle([&n, &b,
+                &k] { return CheckInputs{k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out}; },
+               reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out)),
+        value(w.step.h), value(w.step.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
+    const auto trusted = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
+    g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), write(n.push_out), write(n.position),
+            write(n.velocity), trusted);
+    g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse), value(w.step.h), make(w.warm_start),
+            trusted);
+}
+
+}  // namespace
+
+void build_step(WorldState& world) {
+    list_scripted_motion(world, world.graph);
+    list_force_branch(world, world.graph);
+    list_contact_branch(world, world.graph);
+    list_solve_and_join(world, world.graph);
+    world.graph.compile();
+}
+
+}  // namespace skerry

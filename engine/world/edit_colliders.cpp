@@ -1,0 +1,153 @@
+// Colliders and attachments come and go between steps.
+#include <cmath>
+#include <limits>
+
+#include "engine/world/world_state.h"
+#include "systems/dynamics/move_colliders.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+namespace {
+
+MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
+    MotionScript script{motion.velocity, motion.angular_velocity, static_cast<Index>(keyframe.size()), 0};
+    for (const MotionKey& key : motion.keys) keyframe.push_back({key.time, key.position, key.rotation});
+    script.key_end = static_cast<Index>(keyframe.size());
+    return script;
+}
+
+/// Erases one row of a table with a ragged key list.
+void erase_scripted_row(auto& table, std::size_t row) {
+    const Index begin = table.script[row].key_begin, count = table.script[row].key_end - begin;
+    table.keyframe.erase(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+    table.for_each_row_column([row](const char*, auto& column) { column.erase(row, 1); });
+    for (MotionScript& script : table.script)
+        if (script.key_begin > begin) {
+            script.key_begin -= count;
+            script.key_end -= count;
+        }
+}
+
+struct GeometryOf {
+    ColliderGeometry operator()(const Plane&) const { return {ColliderShape::plane, Vec3::Zero()}; }
+    ColliderGeometry operator()(const Sphere& s) const { return {ColliderShape::sphere, Vec3(s.radius, 0, 0)}; }
+    ColliderGeometry operator()(const Box& s) const { return {ColliderShape::box, s.size / 2}; }
+    ColliderGeometry operator()(const Capsule& s) const { return {ColliderShape::capsule, Vec3(s.radius, s.length / 2, 0)}; }
+    ColliderGeometry operator()(const Cylinder& s) const { return {ColliderShape::cylinder, Vec3(s.radius, s.height / 2, 0)}; }
+    ColliderGeometry operator()(const Bucket& s) const { return {ColliderShape::bucket, Vec3(s.radius, s.height, s.thickness)}; }
+    ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
+};
+
+SurfaceProperties surface_of(const ColliderSettings& settings) {
+    const Real dynamic = settings.dynamic_friction.value_or(settings.friction.value_or(0));
+    return {settings.static_friction.value_or(std::max(dynamic, settings.friction.value_or(0))), dynamic, settings.restitution.value_or(0)};
+}
+
+/// A plane is given by a point and a normal in the collider's frame; inside its own frame it is z = 0.
+RigidMotion initial_pose(const Shape& shape, const ColliderSettings& settings) {
+    RigidMotion pose{settings.position, rotation_matrix(settings.rotation), Vec3::Zero(), Vec3::Zero()};
+    if (const auto* plane = std::get_if<Plane>(&shape)) {
+        pose.position += pose.rotation * plane->point;
+        pose.rotation = pose.rotation * Eigen::Quaternion<Real>::FromTwoVectors(Vec3::UnitZ(), plane->normal).toRotationMatrix();
+    }
+    return pose;
+}
+
+}  // namespace
+
+Index append_attachment(WorldState& world, std::uint32_t slot, Index body, std::span<const Index> nodes, const RigidMotion& initial,
+                        const Motion& motion) {
+    AttachmentTable& table = world.attachments;
+    const std::size_t row = table.slot.size();
+    table.for_each_row_column([row](const char*, auto& column) { column.resize(row + 1); });
+    table.slot[row] = slot;
+    table.body[row] = body;
+    table.nodes[row].begin = static_cast<Index>(table.node.size());
+    const auto b = static_cast<std::size_t>(body);
+    for (Index local : nodes) {
+        const auto n = static_cast<std::size_t>(world.bodies.nodes[b].begin + local);
+        table.node.push_back(static_cast<Index>(n));
+        table.anchor.push_back(initial.rotation.transpose() * (world.nodes.position[n] - initial.position));
+        if (world.nodes.inverse_mass[n] > 0) ++world.bodies.pinned_count[b];
+        world.nodes.inverse_mass[n] = 0;
+        world.nodes.velocity[n] = Vec3::Zero();
+    }
+    table.nodes[row].end = static_cast<Index>(table.node.size());
+    table.initial[row] = table.motion[row] = initial;
+    table.script[row] = append_script(motion, table.keyframe);
+    return static_cast<Index>(row);
+}
+
+void erase_attachment(WorldState& world, Index row) {
+    AttachmentTable& table = world.attachments;
+    const auto r = static_cast<std::size_t>(row);
+    const Range gone = table.nodes[r];
+    const auto body = static_cast<std::size_t>(table.body[r]);
+    for (Index i = gone.begin; i < gone.end; ++i) {
+        const Index node = table.node[static_cast<std::size_t>(i)];
+        bool held_elsewhere = false;
+        for (std::size_t other = 0; other < table.slot.size() && !held_elsewhere; ++other)
+            for (Index j = table.nodes[other].begin; other != r && j < table.nodes[other].end; ++j)
+                held_elsewhere |= table.node[static_cast<std::size_t>(j)] == node;
+        const auto n = static_cast<std::size_t>(node);
+        if (held_elsewhere || world.nodes.mass[n] <= 0) continue;
+        world.nodes.inverse_mass[n] = 1 / world.nodes.mass[n];
+        --world.bodies.pinned_count[body];
+    }
+    table.node.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+    table.anchor.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+    erase_scripted_row(table, r);
+    for (Range& range : table.nodes)
+        if (range.begin >= gone.end) {
+            range.begin -= gone.size();
+            range.end -= gone.size();
+        }
+}
+
+Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape, const ColliderSettings& settings) {
+    ColliderTable& table = world.colliders;
+    const std::size_t row = table.slot.size();
+    table.for_each_row_column([row](const char*, auto& column) { column.resize(row + 1); });
+    table.slot[row] = slot;
+    table.geometry[row] = std::visit(GeometryOf{}, shape);
+    table.initial[row] = table.motion[row] = initial_pose(shape, settings);
+    table.script[row] = append_script(settings.motion, table.keyframe);
+    table.has_surface[row] = settings.friction || settings.static_friction || settings.dynamic_friction || settings.restitution;
+    table.surface[row] = surface_of(settings);
+    table.body[row] = no_index;
+    table.travel[row] = 0;
+    world.collider_records.push_back({settings.name, shape});
+
+    if (const auto* surface = std::get_if<SurfaceMesh>(&shape)) {
+        const RigidMotion& pose = table.initial[row];
+        table.body[row] = append_body(world, {.slot = slot,
+                                              .kind = BodyKind::kinematic,
+                                              .self_contact = false,
+                                              .material = no_index,
+                                              .collider = static_cast<Index>(row),
+                                              .contact_distance = settings.contact_distance,
+                                              .nodes = surface->nodes,
+                                              .tetrahedra = {},
+                                              .triangles = surface->triangles,
+                                              .position = pose.position,
+                                              .rotation = pose.rotation,
+                                              .velocity = Vec3::Zero(),
+                                              .angular_velocity = Vec3::Zero()});
+        std::vector<Index> all(surface->nodes.size());
+        for (std::size_t n = 0; n < all.size(); ++n) all[n] = static_cast<Index>(n);
+        append_attachment(world, no_slot, table.body[row], all, pose, settings.motion);
+    }
+    return static_cast<Index>(row);
+}
+
+void erase_collider(WorldState& world, Index row) {
+    const auto c = static_cast<std::size_t>(row);
+    if (world.colliders.body[c] != no_index) erase_body(world, world.colliders.body[c]);
+    erase_scripted_row(world.colliders, c);
+    world.collider_records.erase(world.collider_records.begin() + row);
+    for (Index& collider : world.bodies.collider)
+        if (collider != no_index && collider > row) --collider;
+}
+
+}  // namespace skerry

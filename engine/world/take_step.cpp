@@ -1,0 +1,178 @@
+// One step, all or nothing, and the loop that fills a span of time with steps.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/world/world_state.h"
+#include "systems/dynamics/stable_step.h"
+
+namespace skerry {
+
+namespace {
+
+/// Below this many elements and contacts together a step takes less time than waking the workers costs (profiling/step measures it).
+constexpr std::size_t inline_work = 1024;
+
+/// Steps between two looks at the stable step: it changes with deformation, over many steps.
+constexpr std::uint64_t steps_per_watch = 256;
+
+/// Velocities that drive_nodes overwrites, so that a step that is not committed leaves them as they were.
+void keep_driven_velocities(WorldState& world) {
+    world.velocity_before_drive.resize(world.attachments.node.size());
+    for (std::size_t i = 0; i < world.attachments.node.size(); ++i)
+        world.velocity_before_drive[i] = world.nodes.velocity[static_cast<std::size_t>(world.attachments.node[i])];
+}
+
+void put_back_driven_velocities(WorldState& world) {
+    for (std::size_t i = 0; i < world.attachments.node.size(); ++i)
+        world.nodes.velocity[static_cast<std::size_t>(world.attachments.node[i])] = world.velocity_before_drive[i];
+}
+
+void add_travel(WorldState& world) {
+    const Real h = world.step.h;
+    for (std::size_t b = 0; b < world.bodies.slot.size(); ++b) world.bodies.travel[b] += h * world.bodies.max_speed[b];
+    for (std::size_t c = 0; c < world.colliders.slot.size(); ++c) {
+        const RigidMotion& motion = world.colliders.motion[c];
+        // A turning shape moves its far points by any amount: it is looked at in every step.
+        const bool turns = !motion.angular_velocity.isZero(0);
+        world.colliders.travel[c] += turns ? std::numeric_limits<Real>::infinity() : h * motion.velocity.norm();
+    }
+}
+
+void count(WorldState& world) {
+    RunCounters& counters = world.counters;
+    const RegionTable& regions = world.regions;
+    const auto contact_count = static_cast<Index>(world.contacts.size());
+    const auto region_count = static_cast<Index>(regions.size());
+    ++counters.steps;
+    counters.contacts += static_cast<std::uint64_t>(contact_count);
+    counters.regions += static_cast<std::uint64_t>(region_count);
+    counters.max_contacts = std::max(counters.max_contacts, contact_count);
+    counters.max_regions = std::max(counters.max_regions, region_count);
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        const Index size = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
+        counters.largest_region = std::max(counters.largest_region, size);
+        counters.iterations += static_cast<std::uint64_t>(regions.iterations[r]);
+        counters.closed_form += size == 1;
+        counters.certified += regions.status[r] == RegionStatus::certified;
+        counters.unconverged += regions.status[r] == RegionStatus::iteration_limit;
+        counters.worst_error = std::max(counters.worst_error, regions.error[r]);
+    }
+    counters.dissipated += world.step.measures.dissipated + world.step.damped;
+    counters.max_penetration = std::max(counters.max_penetration, world.step.measures.max_penetration);
+    counters.max_gap_violation = std::max(counters.max_gap_violation, world.step.measures.max_gap_violation);
+}
+
+StepStatus status_of(StepFault fault) {
+    switch (fault) {
+        case StepFault::not_finite:
+            return StepStatus::not_finite;
+        case StepFault::too_fast:
+            return StepStatus::too_fast;
+        case StepFault::none:
+            break;
+    }
+    return StepStatus::ok;
+}
+
+void blame(const WorldState& world, StepReport& report) {
+    const StepVerdict& verdict = world.step.verdict;
+    report.status = status_of(verdict.fault);
+    report.value = verdict.value;
+    if (verdict.body == no_index) return;
+    const auto b = static_cast<std::size_t>(verdict.body);
+    if (world.bodies.kind[b] == BodyKind::deformable) report.body = world.body_map.handle_of_slot(world.bodies.slot[b]);
+    report.body_name = world.body_records[b].name;
+    if (verdict.node != no_index) report.node = verdict.node - world.bodies.nodes[b].begin;
+}
+
+void add_to_report(const WorldState& world, StepReport& report) {
+    const RegionTable& regions = world.regions;
+    report.contacts = static_cast<Index>(world.contacts.size());
+    report.regions = static_cast<Index>(regions.size());
+    report.largest_region = 0;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        report.largest_region = std::max(report.largest_region, regions.contacts.offset[r + 1] - regions.contacts.offset[r]);
+        report.unconverged += regions.status[r] == RegionStatus::iteration_limit;
+        report.worst_error = std::max(report.worst_error, regions.error[r]);
+    }
+    report.max_penetration = std::max(report.max_penetration, world.step.measures.max_penetration);
+    report.max_gap_violation = std::max(report.max_gap_violation, world.step.measures.max_gap_violation);
+    ++report.steps;
+}
+
+}  // namespace
+
+Real stable_step(const WorldState& world, Index* body) {
+    Real smallest = std::numeric_limits<Real>::infinity();
+    for (std::size_t b = 0; b < world.bodies.slot.size(); ++b)
+        if (world.bodies.stable_step[b] < smallest) {
+            smallest = world.bodies.stable_step[b];
+            if (body) *body = static_cast<Index>(b);
+        }
+    return smallest;
+}
+
+void watch_stable_step(WorldState& world) {
+    for (std::size_t b = 0; b < world.bodies.slot.size(); ++b)
+        if (world.bodies.element_count[b] > 0)
+            world.bodies.stable_step[b] =
+                stable_step(world.element_inputs(), world.bodies.blocks[b], world.nodes.position, world.nodes.mass, world.stiffness_sum)
+                    .step;
+}
+
+void take_step(WorldState& world, Real h) {
+    world.step.h = h;
+    world.step.verdict = {};
+    world.step.measures = {};
+    world.step.damped = 0;
+    keep_driven_velocities(world);
+    Trace* const trace = world.tracing ? &world.trace : nullptr;
+    const bool small = world.elements.node.size() * element_lanes + world.contacts.size() < inline_work;
+    if (small)
+        world.graph.run_inline(trace);
+    else
+        world.graph.run(*world.executor, trace);
+    world.contact_view_is_current = false;
+    if (world.step.verdict.fault != StepFault::none) {
+        put_back_driven_velocities(world);
+        return;
+    }
+    world.elements.rotation.swap(world.elements.rotation_next);
+    add_travel(world);
+    count(world);
+    world.counters.inline_steps += small;
+    world.step.time += h;
+}
+
+StepReport World::advance(Real dt) {
+    if (!(dt >= 0) || !std::isfinite(dt))
+        Complaint{.file = {}, .object = "advance", .field = "dt", .found = std::to_string(dt), .expected = "a time >= 0 (s)", .hint = {}}
+            .raise();
+    WorldState& world = *state_;
+    StepReport report;
+    const Real end = world.step.time + dt;
+    Real left = dt;
+    while (left > 0) {
+        const Real longest = world.settings.step_size.value_or(skerry::stable_step(world) * world.settings.step_safety);
+        // A remainder of rounding size joins the last step.
+        const Real steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
+        const Real h = left / steps;
+        take_step(world, h);
+        if (world.step.verdict.fault != StepFault::none) {
+            blame(world, report);
+            break;
+        }
+        report.step_size = h;
+        add_to_report(world, report);
+        left = steps > 1 ? left - h : 0;
+        if (left == 0) world.step.time = end;
+        if (++world.steps_since_watch >= steps_per_watch) {
+            world.steps_since_watch = 0;
+            watch_stable_step(world);
+        }
+    }
+    return report;
+}
+
+}  // namespace skerry

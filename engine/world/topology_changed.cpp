@@ -1,0 +1,19 @@
+// What is derived from all bodies together, after some came or went.
+#include "engine/world/world_state.h"
+#include "systems/dynamics/build_elements.h"
+
+namespace skerry {
+
+void WorldState::topology_changed() {
+    build_corners(elements.node, elements.volume, nodes.position.size(), corners);
+    stiffness_sum.resize(nodes.position.size());
+    // Rows have moved: pairs and contacts are found again. Impulses stay, since their keys name bodies by slot.
+    pairs = PairTable{};
+    search.body_valid_until.clear();
+    search.collider_valid_until.clear();
+    contacts.resize(0);
+    regions = RegionTable{};
+    contact_view_is_current = false;
+}
+
+}  // namespace skerry

@@ -1,0 +1,153 @@
+// What may be asked of a world. Every complaint names the object, the field, what was found and what was expected.
+#include <cmath>
+#include <string>
+
+#include "engine/mesh/require_positive.h"
+#include "engine/world/world_state.h"
+
+namespace skerry {
+
+namespace {
+
+std::string text(Real value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%g", value);
+    return buffer;
+}
+
+std::string text(const Vec3& value) {
+    return "(" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + ")";
+}
+
+[[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found, const char* expected) {
+    Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+}
+
+void require(bool good, const std::string& object, const char* field, Real found, const char* expected) {
+    if (!good || !std::isfinite(found)) refuse(object, field, text(found), expected);
+}
+
+void require_finite(const std::string& object, const char* field, const Vec3& found) {
+    if (!found.allFinite()) refuse(object, field, text(found), "three finite numbers");
+}
+
+std::string titled(const char* kind, const std::string& name) {
+    return name.empty() ? kind : kind + (" '" + name + "'");
+}
+
+struct ShapeCheck {
+    const std::string& object;
+
+    void operator()(const Plane& plane) const {
+        require_finite(object, "point", plane.point);
+        if (!plane.normal.allFinite() || plane.normal.norm() == 0)
+            refuse(object, "normal", text(plane.normal), "a vector that is not zero");
+    }
+    void operator()(const Sphere& sphere) const { require(sphere.radius > 0, object, "radius", sphere.radius, "a length > 0 (m)"); }
+    void operator()(const Box& box) const {
+        if (!box.size.allFinite() || box.size.minCoeff() <= 0) refuse(object, "size", text(box.size), "three lengths > 0 (m)");
+    }
+    void operator()(const Capsule& capsule) const {
+        require(capsule.radius > 0, object, "radius", capsule.radius, "a length > 0 (m)");
+        require(capsule.length >= 0, object, "length", capsule.length, "a length >= 0 (m)");
+    }
+    void operator()(const Cylinder& cylinder) const {
+        require(cylinder.radius > 0, object, "radius", cylinder.radius, "a length > 0 (m)");
+        require(cylinder.height > 0, object, "height", cylinder.height, "a length > 0 (m)");
+    }
+    void operator()(const Bucket& bucket) const {
+        require(bucket.radius > 0, object, "radius", bucket.radius, "a length > 0 (m)");
+        require(bucket.height > 0, object, "height", bucket.height, "a length > 0 (m)");
+        require(bucket.thickness > 0, object, "thickness", bucket.thickness, "a length > 0 (m)");
+    }
+    void operator()(const SurfaceMesh& surface) const {
+        if (surface.triangles.empty()) refuse(object, "triangles", "none", "a closed surface of at least four triangles");
+        for (const Vec3& node : surface.nodes) require_finite(object, "nodes", node);
+        for (const auto& triangle : surface.triangles)
+            for (Index corner : triangle)
+                if (corner < 0 || corner >= static_cast<Index>(surface.nodes.size()))
+                    refuse(object, "triangles", "node " + std::to_string(corner), "a row of its nodes");
+    }
+};
+
+}  // namespace
+
+void validate(const Settings& settings) {
+    require_finite("settings", "gravity", settings.gravity);
+    if (settings.step_size) require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
+    require(settings.step_safety > 0 && settings.step_safety <= 1, "settings", "step_safety", settings.step_safety,
+            "a fraction > 0 and <= 1");
+    require(settings.threads >= 0, "settings", "threads", settings.threads, "a number of threads, or 0 for those of the caller");
+    require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance, "a number > 0 and < 1");
+    require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
+    require(settings.max_strain_step > 0, "settings", "max_strain_step", settings.max_strain_step, "a fraction > 0");
+}
+
+void validate(const MaterialSettings& material) {
+    const std::string object = "material";
+    require(material.young_modulus > 0, object, "young_modulus", material.young_modulus, "a modulus > 0 (Pa)");
+    require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio", material.poisson_ratio,
+            "a number > -1 and < 0.5");
+    require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
+    require(material.friction >= 0, object, "friction", material.friction, "a number >= 0");
+    const Real dynamic = material.dynamic_friction.value_or(material.friction);
+    const Real still = material.static_friction.value_or(std::max(material.friction, dynamic));
+    require(dynamic >= 0, object, "dynamic_friction", dynamic, "a number >= 0");
+    require(still >= dynamic, object, "static_friction", still, "a number not below dynamic_friction");
+    require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution, "a number from 0 to 1");
+    require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
+}
+
+void validate(const Mesh& mesh, const BodySettings& body) {
+    const std::string object = titled("body", body.name);
+    if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (!mesh.nodes[n].allFinite())
+            refuse(object, "mesh", "node " + std::to_string(n) + " at " + text(mesh.nodes[n]), "finite coordinates");
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
+        for (Index corner : mesh.tetrahedra[e])
+            if (corner < 0 || corner >= static_cast<Index>(mesh.nodes.size()))
+                refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner), "rows of its nodes");
+    mesh::require_positive(mesh, object);
+    require_finite(object, "position", body.position);
+    require_finite(object, "rotation", body.rotation);
+    require_finite(object, "velocity", body.velocity);
+    require_finite(object, "angular_velocity", body.angular_velocity);
+    if (body.contact_distance)
+        require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
+}
+
+void validate(const Motion& motion, const std::string& object) {
+    require_finite(object, "motion.velocity", motion.velocity);
+    require_finite(object, "motion.angular_velocity", motion.angular_velocity);
+    if (!motion.keys.empty() && (!motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0)))
+        refuse(object, "motion", "keys and a velocity", "one of them");
+    for (std::size_t k = 0; k < motion.keys.size(); ++k) {
+        const MotionKey& key = motion.keys[k];
+        require_finite(object, "motion.keys.position", key.position);
+        require_finite(object, "motion.keys.rotation", key.rotation);
+        require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time, "ascending times (s)");
+    }
+}
+
+void validate(const Shape& shape, const ColliderSettings& collider) {
+    const std::string object = titled("collider", collider.name);
+    std::visit(ShapeCheck{object}, shape);
+    require_finite(object, "position", collider.position);
+    require_finite(object, "rotation", collider.rotation);
+    validate(collider.motion, object);
+    if (collider.friction) require(*collider.friction >= 0, object, "friction", *collider.friction, "a number >= 0");
+    if (collider.dynamic_friction)
+        require(*collider.dynamic_friction >= 0, object, "dynamic_friction", *collider.dynamic_friction, "a number >= 0");
+    if (collider.static_friction) {
+        const Real dynamic = collider.dynamic_friction.value_or(collider.friction.value_or(0));
+        require(*collider.static_friction >= dynamic, object, "static_friction", *collider.static_friction,
+                "a number not below dynamic_friction");
+    }
+    if (collider.restitution)
+        require(*collider.restitution >= 0 && *collider.restitution <= 1, object, "restitution", *collider.restitution,
+                "a number from 0 to 1");
+    require(collider.contact_distance >= 0, object, "contact_distance", collider.contact_distance, "a length >= 0 (m)");
+}
+
+}  // namespace skerry

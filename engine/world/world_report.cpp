@@ -1,0 +1,139 @@
+// What a world tells about itself: sums over its tables, energies, and the hash of its state.
+#include <Eigen/Geometry>
+#include <cstring>
+#include <limits>
+
+#include "engine/world/world_state.h"
+#include "systems/dynamics/element_energy.h"
+
+namespace skerry {
+
+namespace {
+
+/// FNV-1a over 64-bit words: not cryptographic, but any change of a bit changes it.
+class Hash {
+public:
+    void add(std::uint64_t word) {
+        value_ ^= word;
+        value_ *= 0x100000001b3ull;
+        value_ ^= value_ >> 29;
+    }
+    void add(const void* data, std::size_t bytes) {
+        const auto* at = static_cast<const unsigned char*>(data);
+        for (; bytes >= 8; at += 8, bytes -= 8) {
+            std::uint64_t word;
+            std::memcpy(&word, at, 8);
+            add(word);
+        }
+        std::uint64_t rest = 0;
+        std::memcpy(&rest, at, bytes);
+        if (bytes > 0) add(rest);
+    }
+    template <class T>
+    void add(const Column<T>& column) {
+        add(column.size());
+        add(column.data(), column.size() * sizeof(T));
+    }
+    std::uint64_t value() const { return value_; }
+
+private:
+    std::uint64_t value_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace
+
+std::uint64_t hash_of(WorldState& world) {
+    Hash hash;
+    const auto add = [&hash](const char*, const auto& column) { hash.add(column); };
+    hash.add(&world.step.time, sizeof world.step.time);
+    world.nodes.for_each_state_column(add);
+    world.elements.for_each_state_column(add);
+    world.warm_start.for_each_column(add);
+    return hash.value();
+}
+
+Energy energy_of(const WorldState& world) {
+    Energy energy;
+    const NodeTable& nodes = world.nodes;
+    for (std::size_t n = 0; n < nodes.position.size(); ++n) {
+        energy.kinetic += nodes.mass[n] * nodes.velocity[n].squaredNorm() / 2;
+        energy.potential -= nodes.mass[n] * world.step.gravity.dot(nodes.position[n]);
+    }
+    energy.elastic = elastic_energy(world.element_inputs(), {0, static_cast<Index>(world.elements.node.size())}, nodes.position);
+    energy.dissipated = world.counters.dissipated;
+    return energy;
+}
+
+std::string StepReport::message() const {
+    const std::string who = body_name.empty() ? "a body" : "body '" + body_name + "'";
+    const std::string where = node < 0 ? "" : ", node " + std::to_string(node);
+    switch (status) {
+        case StepStatus::ok:
+            return {};
+        case StepStatus::not_finite:
+            return "the step was not taken: " + who + where +
+                   " would get a velocity that is not finite; check its loads, masses and initial velocities";
+        case StepStatus::too_fast:
+            return "the step was not taken: " + who + where + " would move by " + std::to_string(value) +
+                   " of its smallest element altitude in one step; use a smaller step_size, a finer look at its velocities, or a larger "
+                   "max_strain_step";
+    }
+    return {};
+}
+
+std::uint64_t World::state_hash() const {
+    return hash_of(*state_);
+}
+Energy World::energy() const {
+    return energy_of(*state_);
+}
+
+WorldReport World::report() const {
+    const WorldState& world = *state_;
+    const RunCounters& counters = world.counters;
+    WorldReport report;
+    report.time = world.step.time;
+    report.steps = counters.steps;
+    for (BodyKind kind : world.bodies.kind) report.bodies += kind == BodyKind::deformable;
+    report.colliders = world.colliders.slot.size();
+    report.nodes = world.nodes.position.size();
+    for (Index count : world.bodies.element_count) report.elements += static_cast<std::size_t>(count);
+    Index stiffest = no_index;
+    report.stable_step = skerry::stable_step(world, &stiffest);
+    if (stiffest != no_index) report.stable_step_body = world.body_records[static_cast<std::size_t>(stiffest)].name;
+    for (const StageStats& stage : world.graph.stats()) report.stages.push_back({stage.name, stage.seconds, stage.runs, stage.skipped});
+    const double steps = counters.steps > 0 ? static_cast<double>(counters.steps) : 1;
+    report.mean_contacts = static_cast<double>(counters.contacts) / steps;
+    report.mean_regions = static_cast<double>(counters.regions) / steps;
+    report.mean_iterations = counters.regions > 0 ? static_cast<double>(counters.iterations) / static_cast<double>(counters.regions) : 0;
+    report.max_contacts = counters.max_contacts;
+    report.max_regions = counters.max_regions;
+    report.largest_region = counters.largest_region;
+    report.worst_error = counters.worst_error;
+    report.unconverged = counters.unconverged;
+    report.certified = counters.certified;
+    report.closed_form = counters.closed_form;
+    report.solved = counters.regions;
+    report.broad_searches = world.search.broad_searches;
+    report.pair_searches = world.search.pair_searches;
+    report.candidates = world.search.candidate_count;
+    report.inline_steps = counters.inline_steps;
+    report.energy = energy_of(world);
+    for (std::size_t n = 0; n < world.nodes.position.size(); ++n) {
+        const Vec3 momentum = world.nodes.mass[n] * world.nodes.velocity[n];
+        report.momentum += momentum;
+        report.angular_momentum += world.nodes.position[n].cross(momentum);
+    }
+    report.max_penetration = counters.max_penetration;
+    report.max_gap_violation = counters.max_gap_violation;
+    for (std::size_t b = 0; b < world.bodies.slot.size(); ++b) {
+        if (world.bodies.element_count[b] == 0) continue;
+        const WorstElement worst = worst_volume_ratio(world.element_inputs(), world.bodies.blocks[b], world.nodes.position);
+        if (worst.volume_ratio >= report.worst_volume_ratio) continue;
+        report.worst_volume_ratio = worst.volume_ratio;
+        report.worst_volume_body = world.body_records[b].name;
+    }
+    return report;
+}
+
+}  // namespace skerry

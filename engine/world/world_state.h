@@ -1,0 +1,175 @@
+// Everything a world owns. Only engine/ sees all tables; systems get spans of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/attachment_table.h"
+#include "components/body_table.h"
+#include "components/bvh_table.h"
+#include "components/collider_table.h"
+#include "components/contact_table.h"
+#include "components/element_table.h"
+#include "components/handle.h"
+#include "components/material_table.h"
+#include "components/node_block_table.h"
+#include "components/node_table.h"
+#include "components/pair_table.h"
+#include "components/ragged.h"
+#include "components/region_table.h"
+#include "components/surface_table.h"
+#include "jobs/executor.h"
+#include "jobs/task_graph.h"
+#include "jobs/trace.h"
+#include "skerry/world.h"
+#include "systems/collision/collision_inputs.h"
+#include "systems/contact/measure_contacts.h"
+#include "systems/contact/separate_regions.h"
+#include "systems/dynamics/check_state.h"
+#include "systems/dynamics/compute_element_forces.h"
+#include "systems/solver/solve_regions.h"
+
+namespace skerry {
+
+/// Slot of an attachment that belongs to a mesh collider: no user has a handle to it.
+inline constexpr std::uint32_t no_slot = 0xffffffffu;
+
+/// What the stages of one step hand to each other beside the tables.
+struct StepState {
+    Real time = 0;                // s, start of the step
+    Real h = 0;                   // s
+    Vec3 gravity = Vec3::Zero();  // m/s^2
+    ContactRegions contact_regions = ContactRegions::separate;
+    CollisionSettings collision;
+    SolverSettings solver;
+    Real max_strain_step = 0;
+    StepVerdict verdict;
+    ContactMeasures measures;
+    Real damped = 0;  // J, taken out by damping in this step
+};
+
+/// Sums over all steps since the world was made.
+struct RunCounters {
+    std::uint64_t steps = 0, inline_steps = 0;
+    std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
+    Index max_contacts = 0, max_regions = 0, largest_region = 0;
+    Real worst_error = 0, dissipated = 0, max_penetration = 0, max_gap_violation = 0;
+};
+
+/// What only a person or a file reads of a body.
+struct BodyRecord {
+    std::string name;
+    std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
+    std::vector<std::array<Index, 3>> surface;     // local nodes
+};
+
+struct ColliderRecord {
+    std::string name;
+    Shape shape;
+};
+
+struct WorldState {
+    explicit WorldState(const Settings& settings);
+
+    Settings settings;
+
+    NodeTable nodes;
+    NodeBlockTable node_blocks;
+    ElementBlockTable elements;
+    Ragged<Index> corners;  // by node: 4 element + corner
+    SurfaceTables surface;
+    BvhTable bvh;
+    BodyTable bodies;
+    MaterialTable materials;
+    ColliderTable colliders;
+    AttachmentTable attachments;
+    HandleMap<MaterialHandle> material_map;
+    HandleMap<BodyHandle> body_map;
+    HandleMap<ColliderHandle> collider_map;
+    HandleMap<AttachmentHandle> attachment_map;
+    std::vector<BodyRecord> body_records;          // by row
+    std::vector<ColliderRecord> collider_records;  // by row
+
+    PairTable pairs;
+    SearchState search;
+    ContactTable contacts;
+    WarmStartTable warm_start;
+    RegionTable regions;
+    UnionFind union_find;
+    SolverMemory solver_memory;
+
+    StepState step;
+    RunCounters counters;
+    std::unique_ptr<Executor> executor;
+    TaskGraph graph;
+    Trace trace;
+    bool tracing = false;
+
+    Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
+    Column<Real> stiffness_sum;          // scratch of stable_step
+    std::uint64_t steps_since_watch = 0;
+    mutable std::vector<Contact> contact_view;  // what contacts() shows
+    mutable bool contact_view_is_current = false;
+
+    Index row(BodyHandle body, const char* call) const;
+    Index row(ColliderHandle collider, const char* call) const;
+    Index row(MaterialHandle material, const char* call) const;
+    Index row(AttachmentHandle attachment, const char* call) const;
+
+    ElementInputs element_inputs() const;
+    /// After bodies or colliders came or went: what is derived from all of them.
+    void topology_changed();
+};
+
+// build_step.cpp
+/// Lists the stages of the step; the graph takes its edges from what they read and write.
+void build_step(WorldState& world);
+
+// take_step.cpp
+/// Takes one step of length h, or changes nothing and says why in world.step.verdict.
+void take_step(WorldState& world, Real h);
+/// The largest step that the stiffest body stands, as last watched, and which body (row) that is.
+Real stable_step(const WorldState& world, Index* body = nullptr);
+/// Looks at the stable step of every body again.
+void watch_stable_step(WorldState& world);
+
+// edit_bodies.cpp
+/// Appends a surface with or without tetrahedra as a body; returns its row.
+struct NewBody {
+    std::uint32_t slot = 0;
+    BodyKind kind = BodyKind::deformable;
+    bool self_contact = false;
+    Index material = no_index;
+    Index collider = no_index;
+    Real contact_distance = -1;  // m, < 0: 2 % of the mean edge
+    std::span<const Vec3> nodes;
+    std::span<const std::array<Index, 4>> tetrahedra;
+    std::span<const std::array<Index, 3>> triangles;  // of a surface without tetrahedra
+    Vec3 position;
+    Mat3 rotation;
+    Vec3 velocity, angular_velocity;
+};
+Index append_body(WorldState& world, const NewBody& body);
+void erase_body(WorldState& world, Index row);
+
+// edit_colliders.cpp
+Index append_attachment(WorldState& world, std::uint32_t slot, Index body, std::span<const Index> nodes, const RigidMotion& initial,
+                        const Motion& motion);
+void erase_attachment(WorldState& world, Index row);
+Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape, const ColliderSettings& settings);
+void erase_collider(WorldState& world, Index row);
+
+// validate.cpp
+void validate(const Settings& settings);
+void validate(const MaterialSettings& material);
+void validate(const Mesh& mesh, const BodySettings& body);
+void validate(const Shape& shape, const ColliderSettings& collider);
+void validate(const Motion& motion, const std::string& object);
+
+// world_report.cpp
+Energy energy_of(const WorldState& world);
+std::uint64_t hash_of(WorldState& world);
+
+}  // namespace skerry

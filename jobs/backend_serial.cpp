@@ -1,0 +1,35 @@
+// The calling thread alone: the twin that the other backends are compared with, and what a scene too small for threads runs on.
+#include "jobs/backends.h"
+
+namespace skerry {
+
+namespace {
+
+class SerialExecutor final : public Executor {
+public:
+    Backend backend() const override { return Backend::serial; }
+    int worker_count() const override { return 1; }
+
+    void run_blocks(Index count, FunctionRef<void(Index)> body) override {
+        BlockJob job(count, body);
+        job.drain();
+        job.rethrow();
+    }
+
+    void run_graph(const GraphEdges& edges, FunctionRef<void(Index)> run_stage) override {
+        GraphJob job(edges, run_stage, left_);
+        job.run_all();
+        job.rethrow();
+    }
+
+private:
+    PredecessorCounts left_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_serial_executor() {
+    return std::make_unique<SerialExecutor>();
+}
+
+}  // namespace skerry

@@ -1,0 +1,91 @@
+// oneTBB: tasks in the arena of the caller, or in one of our own.
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "jobs/backends.h"
+
+namespace skerry {
+
+namespace {
+
+class TbbExecutor final : public Executor {
+public:
+    explicit TbbExecutor(int workers) {
+        if (workers > 0) arena_.emplace(workers);
+    }
+
+    Backend backend() const override { return Backend::tbb; }
+    int worker_count() const override { return arena_ ? arena_->max_concurrency() : tbb::this_task_arena::max_concurrency(); }
+
+    void run_blocks(Index count, FunctionRef<void(Index)> body) override {
+        BlockJob job(count, body);
+        const int workers = std::min(count, worker_count());
+        if (workers <= 1) {
+            job.drain();
+        } else {
+            // Isolated: a worker that waits for the last block must not start a long stage meanwhile, which would hold up everything
+            // that waits for these blocks, and would be counted as time of this stage.
+            in_arena([&] { tbb::this_task_arena::isolate([&] { drain_together(job, workers); }); });
+        }
+        job.rethrow();
+    }
+
+    void run_graph(const GraphEdges& edges, FunctionRef<void(Index)> run_stage) override {
+        GraphJob job(edges, run_stage, left_);
+        if (worker_count() <= 1) {
+            job.run_all();
+        } else {
+            in_arena([&] { run_together(job); });
+        }
+        job.rethrow();
+    }
+
+private:
+    void in_arena(auto&& work) {
+        if (arena_) {
+            arena_->execute(work);
+        } else {
+            work();
+        }
+    }
+
+    // The contexts are isolated: a host that cancels its own tasks must not make us leave out blocks or stages.
+    static void drain_together(BlockJob& job, int workers) {
+        tbb::task_group_context context(tbb::task_group_context::isolated);
+        tbb::parallel_for(
+            tbb::blocked_range<int>(0, workers, 1), [&](const tbb::blocked_range<int>&) { job.drain(); }, tbb::simple_partitioner(),
+            context);
+    }
+
+    static void run_together(GraphJob& job) {
+        tbb::task_group_context context(tbb::task_group_context::isolated, tbb::task_group_context::concurrent_wait);
+        tbb::task_group group(context);
+        const Spawner spawn{job, group};
+        job.run_from(job.spawn_roots(spawn), spawn);
+        group.wait();
+    }
+
+    struct Spawner {
+        GraphJob& job;
+        tbb::task_group& group;
+
+        void operator()(Index stage) const {
+            group.run([spawn = *this, stage] { spawn.job.run_from(stage, spawn); });
+        }
+    };
+
+    std::optional<tbb::task_arena> arena_;  // none: the caller's
+    PredecessorCounts left_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_tbb_executor(int workers) {
+    return std::make_unique<TbbExecutor>(workers);
+}
+
+}  // namespace skerry

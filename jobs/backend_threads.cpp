@@ -1,0 +1,228 @@
+// Threads of our own: no library whose inside the thread sanitizer cannot see.
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <thread>
+#include <vector>
+
+#include "components/check.h"
+#include "jobs/backends.h"
+
+namespace skerry {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A step has a dozen stages in 100 us: a worker that slept between two of them would wake too late for the second.
+constexpr std::chrono::microseconds spin_time{50};
+
+void pause_briefly() {
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#else
+    std::this_thread::yield();
+#endif
+}
+
+/// Waits without sleeping, not longer than spin_time, until ready() is true.
+bool spin_until(bool may_spin, auto&& ready) {
+    if (!may_spin) return ready();
+    const Clock::time_point end = Clock::now() + spin_time;
+    do {
+        for (int i = 0; i < 64; ++i) {
+            if (ready()) return true;
+            pause_briefly();
+        }
+    } while (Clock::now() < end);
+    return false;
+}
+
+/// workers - 1 threads and the caller. What is to do is listed under one mutex: the blocks of the run_blocks calls that are open, and the
+/// stages that are ready. Blocks are taken from the counter of their job, without the mutex.
+class ThreadsExecutor final : public Executor {
+public:
+    explicit ThreadsExecutor(int workers)
+        : workers_(workers > 0 ? workers : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+          may_spin_(workers_ <= static_cast<int>(std::thread::hardware_concurrency())) {
+        threads_.reserve(static_cast<std::size_t>(workers_ - 1));
+        try {
+            for (int i = 1; i < workers_; ++i) threads_.emplace_back([this] { work_until([this] { return stop_; }); });
+        } catch (...) {
+            stop();
+            throw;
+        }
+    }
+    ~ThreadsExecutor() override { stop(); }
+
+    Backend backend() const override { return Backend::threads; }
+    int worker_count() const override { return workers_; }
+
+    void run_blocks(Index count, FunctionRef<void(Index)> body) override {
+        BlockJob job(count, body);
+        if (count <= 1 || workers_ == 1) {
+            job.drain();
+        } else {
+            OpenJob open{job};
+            {
+                std::lock_guard lock(mutex_);
+                open.next = open_;
+                open_ = &open;
+                ++announced_;
+            }
+            wake(count - 1);
+            job.drain();
+            close(open);
+        }
+        job.rethrow();
+    }
+
+    void run_graph(const GraphEdges& edges, FunctionRef<void(Index)> run_stage) override {
+        GraphJob job(edges, run_stage, left_);
+        if (workers_ == 1) {
+            job.run_all();
+        } else {
+            {
+                std::lock_guard lock(mutex_);
+                SKERRY_CHECK(stages_left_ == 0);
+                stages_left_ = static_cast<Index>(edges.predecessor_count.size());
+                ready_.reserve(edges.predecessor_count.size());
+                graph_ = &job;
+            }
+            const auto spawn_stage = [this](Index stage) { spawn(stage); };
+            finish_stages(job.run_from(job.spawn_roots(spawn_stage), spawn_stage));
+            work_until([this] { return stages_left_ == 0; });
+        }
+        job.rethrow();
+    }
+
+private:
+    /// A run_blocks call that others may help with. Lives on the stack of its caller, which leaves only when all helpers have.
+    struct OpenJob {
+        BlockJob& job;
+        OpenJob* next = nullptr;
+        std::atomic<int> helpers{0};  // changed under mutex_; atomic so that the owner can wait for zero without it
+        bool owner_sleeps = false;
+    };
+
+    /// Takes what there is to do until finished() is true, which is called under the mutex.
+    void work_until(auto&& finished) {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            if (do_something(lock)) continue;
+            if (finished()) return;
+            wait_for_work(lock);
+        }
+    }
+
+    bool do_something(std::unique_lock<std::mutex>& lock) {
+        if (!ready_.empty()) {
+            const Index stage = ready_.back();
+            ready_.pop_back();
+            lock.unlock();
+            finish_stages(graph_->run_from(stage, [this](Index next) { spawn(next); }));
+            lock.lock();
+            return true;
+        }
+        for (OpenJob* open = open_; open; open = open->next) {
+            if (open->job.exhausted()) continue;
+            open->helpers.fetch_add(1, std::memory_order_relaxed);
+            lock.unlock();
+            open->job.drain();
+            lock.lock();
+            // An owner that does not sleep may leave, and its job with it, as soon as the count is zero.
+            const bool owner_sleeps = open->owner_sleeps;
+            if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
+            return true;
+        }
+        return false;
+    }
+
+    void wait_for_work(std::unique_lock<std::mutex>& lock) {
+        const std::uint64_t seen = announced_;
+        lock.unlock();
+        const bool news = spin_until(may_spin_, [&] { return announced_ != seen; });
+        lock.lock();
+        if (news) return;
+        ++sleepers_;
+        work_announced_.wait(lock, [&] { return announced_ != seen; });
+        --sleepers_;
+    }
+
+    /// After the mutex is free again, so that who wakes up does not run into it.
+    void wake(Index useful) {
+        if (sleepers_ == 0) return;
+        if (useful == 1) {
+            work_announced_.notify_one();
+        } else {
+            work_announced_.notify_all();
+        }
+    }
+
+    void close(OpenJob& open) {
+        const auto deserted = [&] { return open.helpers.load(std::memory_order_acquire) == 0; };
+        std::unique_lock lock(mutex_);
+        OpenJob** link = &open_;
+        while (*link != &open) link = &(*link)->next;
+        *link = open.next;
+        if (deserted()) return;
+        lock.unlock();
+        if (spin_until(may_spin_, deserted)) return;
+        lock.lock();
+        open.owner_sleeps = true;
+        helpers_left_.wait(lock, deserted);
+    }
+
+    void spawn(Index stage) {
+        {
+            std::lock_guard lock(mutex_);
+            ready_.push_back(stage);  // within the capacity that run_graph reserved
+            ++announced_;
+        }
+        wake(1);
+    }
+
+    void finish_stages(Index done) {
+        bool all = false;
+        {
+            std::lock_guard lock(mutex_);
+            stages_left_ -= done;
+            all = stages_left_ == 0;
+            if (all) ++announced_;
+        }
+        if (all) wake(workers_);
+    }
+
+    void stop() {
+        {
+            std::lock_guard lock(mutex_);
+            stop_ = true;
+            ++announced_;
+        }
+        work_announced_.notify_all();
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+    const int workers_;
+    const bool may_spin_;  // not when there are more workers than cores: a spinning one would hold up a working one
+    PredecessorCounts left_;
+
+    std::mutex mutex_;
+    std::condition_variable work_announced_, helpers_left_;
+    std::atomic<std::uint64_t> announced_{0};  // changed under mutex_, read without it by those who spin
+    std::atomic<int> sleepers_{0};             // likewise
+    OpenJob* open_ = nullptr;
+    GraphJob* graph_ = nullptr;
+    std::vector<Index> ready_;
+    Index stages_left_ = 0;
+    bool stop_ = false;
+    std::vector<std::thread> threads_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_threads_executor(int workers) {
+    return std::make_unique<ThreadsExecutor>(workers);
+}
+
+}  // namespace skerry

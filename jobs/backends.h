@@ -1,0 +1,156 @@
+// What the backends share: the work of one call, which any number of workers do together.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <mutex>
+
+#include "jobs/executor.h"
+
+namespace skerry {
+
+std::unique_ptr<Executor> make_tbb_executor(int workers);
+std::unique_ptr<Executor> make_openmp_executor(int workers);
+std::unique_ptr<Executor> make_threads_executor(int workers);
+std::unique_ptr<Executor> make_serial_executor();
+
+/// Keeps the exception of the lowest block or stage.
+class FirstError {
+public:
+    /// Called inside a catch block.
+    void keep(Index number) noexcept {
+        std::lock_guard lock(mutex_);
+        if (any() && number_ <= number) return;
+        number_ = number;
+        error_ = std::current_exception();
+        any_.store(true, std::memory_order_relaxed);
+    }
+    bool any() const noexcept { return any_.load(std::memory_order_relaxed); }
+    /// After all workers have returned.
+    void rethrow() {
+        if (any()) std::rethrow_exception(std::move(error_));
+    }
+
+private:
+    std::mutex mutex_;
+    std::atomic<bool> any_{false};
+    Index number_ = 0;
+    std::exception_ptr error_;
+};
+
+/// The blocks of one run_blocks call. Workers take the next number from one counter: as cheap as a task for each worker instead of one
+/// for each block, and a slow block holds nobody up. After an exception the other blocks still run, so that which one is the lowest does
+/// not depend on timing.
+class BlockJob {
+public:
+    BlockJob(Index count, FunctionRef<void(Index)> body) : body_(body), count_(count) {}
+
+    void drain() noexcept {
+        for (Index block = take(); block < count_; block = take()) {
+            try {
+                body_(block);
+            } catch (...) {
+                error_.keep(block);
+            }
+        }
+    }
+    bool exhausted() const noexcept { return next_.load(std::memory_order_relaxed) >= count_; }
+    void rethrow() { error_.rethrow(); }
+
+private:
+    Index take() noexcept { return next_.fetch_add(1, std::memory_order_relaxed); }
+
+    FunctionRef<void(Index)> body_;
+    Index count_;
+    std::atomic<Index> next_{0};
+    FirstError error_;
+};
+
+/// How many predecessors each stage still waits for. Kept by an executor, so that a graph no larger than one before allocates nothing.
+class PredecessorCounts {
+public:
+    void reset(std::span<const Index> counts) {
+        if (counts.size() > capacity_) {
+            left_ = std::make_unique<std::atomic<Index>[]>(counts.size());
+            capacity_ = counts.size();
+        }
+        for (std::size_t stage = 0; stage < counts.size(); ++stage) left_[stage].store(counts[stage], std::memory_order_relaxed);
+    }
+    /// True for the last predecessor of the stage, which then sees what all the others wrote.
+    bool arrive(Index stage) { return left_[static_cast<std::size_t>(stage)].fetch_sub(1, std::memory_order_acq_rel) == 1; }
+
+private:
+    std::unique_ptr<std::atomic<Index>[]> left_;
+    std::size_t capacity_ = 0;
+};
+
+/// One run_graph call.
+class GraphJob {
+public:
+    GraphJob(const GraphEdges& edges, FunctionRef<void(Index)> run_stage, PredecessorCounts& left)
+        : edges_(edges), run_stage_(run_stage), left_(left) {
+        left_.reset(edges.predecessor_count);
+    }
+
+    /// Calls spawn for every stage without a predecessor but the first, which it returns (no_index: the graph is empty).
+    template <class Spawn>
+    Index spawn_roots(Spawn&& spawn) {
+        Index first = no_index;
+        for (Index stage = 0; stage < static_cast<Index>(edges_.predecessor_count.size()); ++stage) {
+            if (edges_.predecessor_count[stage] != 0) continue;
+            if (first == no_index) {
+                first = stage;
+            } else {
+                spawn(stage);
+            }
+        }
+        return first;
+    }
+
+    /// Runs the stage, then a stage that became ready by it, and so on until there is none; spawn gets all others that became ready.
+    /// Returns how many stages are done. After an exception the rest of the graph is walked without running it.
+    template <class Spawn>
+    Index run_from(Index stage, Spawn&& spawn) noexcept {
+        Index done = 0;
+        while (stage != no_index) {
+            run(stage);
+            ++done;
+            Index next = no_index;
+            for (Index e = edges_.successor_offset[stage]; e < edges_.successor_offset[stage + 1]; ++e) {
+                const Index successor = edges_.successor[e];
+                if (!left_.arrive(successor)) continue;
+                if (next == no_index) {
+                    next = successor;
+                } else {
+                    spawn(successor);
+                }
+            }
+            stage = next;
+        }
+        return done;
+    }
+
+    /// Every stage on the calling thread, in order.
+    void run_all() noexcept {
+        for (Index stage = 0; stage < static_cast<Index>(edges_.predecessor_count.size()); ++stage) run(stage);
+    }
+    void rethrow() { error_.rethrow(); }
+
+private:
+    void run(Index stage) noexcept {
+        if (error_.any()) return;
+        try {
+            run_stage_(stage);
+        } catch (...) {
+            error_.keep(stage);
+        }
+    }
+
+    const GraphEdges& edges_;
+    FunctionRef<void(Index)> run_stage_;
+    PredecessorCounts& left_;
+    FirstError error_;
+};
+
+}  // namespace skerry

@@ -1,0 +1,104 @@
+#include "jobs/task_graph.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string_view>
+
+#include "components/check.h"
+
+namespace skerry {
+
+namespace {
+
+bool conflict(const AccessList& a, const AccessList& b) {
+    return std::any_of(a.begin(), a.end(), [&](const Access& access) {
+        return std::any_of(b.begin(), b.end(), [&](const Access& other) { return access.conflicts_with(other); });
+    });
+}
+
+}  // namespace
+
+TaskGraph::TaskGraph() : inline_executor_(make_executor(Backend::serial, 1)) {}
+
+void TaskGraph::add(const char* name, AccessList accesses, std::function<Outcome(Executor&)> run) {
+    if (accesses.empty()) throw CheckFailed(std::string("the stage ") + name + " declares no access: nothing would wait for it");
+    for (const StageStats& other : stats_)
+        if (std::string_view(other.name) == name) throw CheckFailed(std::string("two stages are named ") + name);
+    stages_.push_back({std::move(accesses), std::move(run)});
+    stats_.push_back({name});
+    compiled_ = false;
+}
+
+void TaskGraph::compile() {
+    const std::size_t count = stages_.size();
+    edges_.clear();
+    // before[s][p]: s waits for p, directly or through others. Nearest predecessors first: one that another already waits for needs no
+    // edge of its own, and what is left is the smallest set of edges.
+    std::vector<std::vector<bool>> before(count, std::vector<bool>(count, false));
+    for (std::size_t s = 0; s < count; ++s) {
+        for (std::size_t p = s; p-- > 0;) {
+            if (before[s][p] || !conflict(stages_[p].accesses, stages_[s].accesses)) continue;
+            edges_.push_back({static_cast<Index>(p), static_cast<Index>(s)});
+            before[s][p] = true;
+            for (std::size_t earlier = 0; earlier < p; ++earlier)
+                if (before[p][earlier]) before[s][earlier] = true;
+        }
+    }
+    std::sort(edges_.begin(), edges_.end());
+
+    successor_offset_.assign(count + 1, 0);
+    successor_.clear();
+    predecessor_count_.assign(count, 0);
+    for (const Edge& edge : edges_) {
+        ++successor_offset_[edge.from + 1];
+        successor_.push_back(edge.to);
+        ++predecessor_count_[edge.to];
+    }
+    for (std::size_t s = 0; s < count; ++s) successor_offset_[s + 1] += successor_offset_[s];
+    compiled_ = true;
+}
+
+void TaskGraph::run(Executor& executor, Trace* trace) {
+    run_all(executor, trace);
+}
+
+void TaskGraph::run_inline(Trace* trace) {
+    run_all(*inline_executor_, trace);
+}
+
+void TaskGraph::run_all(Executor& executor, Trace* trace) {
+    if (!compiled_) throw CheckFailed("a task graph runs only after compile()");
+    executor.run_graph({successor_offset_, successor_, predecessor_count_}, [&](Index number) { run_stage(number, executor, trace); });
+}
+
+void TaskGraph::run_stage(Index number, Executor& executor, Trace* trace) {
+    StageStats& stats = stats_[number];
+    const Trace::Time begin = Trace::now();
+    const Outcome outcome = stages_[number].run(executor);
+    if (outcome == Outcome::guarded) {
+        ++stats.skipped;
+        return;
+    }
+    const Trace::Time end = Trace::now();
+    stats.seconds += std::chrono::duration<double>(end - begin).count();
+    if (outcome == Outcome::ran) {
+        ++stats.runs;
+    } else {
+        ++stats.skipped;
+    }
+    if (trace) trace->add(stats.name, begin, end);
+}
+
+void TaskGraph::reset_stats() {
+    for (StageStats& stats : stats_) stats = {stats.name};
+}
+
+std::string TaskGraph::to_dot() const {
+    std::string text = "digraph step {\n    rankdir=LR;\n    node [shape=box];\n";
+    const auto quoted = [this](Index stage) { return '"' + std::string(stats_[stage].name) + '"'; };
+    for (Index stage = 0; stage < static_cast<Index>(stages_.size()); ++stage) text += "    " + quoted(stage) + ";\n";
+    for (const Edge& edge : edges_) text += "    " + quoted(edge.from) + " -> " + quoted(edge.to) + ";\n";
+    return text + "}\n";
+}
+
+}  // namespace skerry

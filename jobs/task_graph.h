@@ -1,0 +1,149 @@
+// TaskGraph: the stages of a step in one list; which waits for which follows from what they read and write.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "jobs/access.h"
+#include "jobs/executor.h"
+#include "jobs/trace.h"
+
+namespace skerry {
+
+namespace access_detail {
+
+// How a function is called with what its arguments pass, with the executor in front if it takes one.
+template <class F, class Passed>
+struct StageCall;
+
+template <class F, class... P>
+struct StageCall<F, std::tuple<P...>> {
+    static constexpr bool takes_executor = std::is_invocable_v<F&, Executor&, P...>;
+    static constexpr bool possible = takes_executor || std::is_invocable_v<F&, P...>;
+
+    static decltype(auto) call(F& function, Executor& executor, std::tuple<P...>&& passed) {
+        return std::apply(
+            [&](auto&&... p) -> decltype(auto) {
+                if constexpr (takes_executor) {
+                    return std::invoke(function, executor, std::forward<decltype(p)>(p)...);
+                } else {
+                    return std::invoke(function, std::forward<decltype(p)>(p)...);
+                }
+            },
+            std::move(passed));
+    }
+};
+
+template <class... Args>
+using Passed = decltype(std::tuple_cat(std::declval<const Args&>().pass()...));
+template <class F, class... Args>
+using CallOf = StageCall<F, Passed<Args...>>;
+template <class F, class... Args>
+using ResultOf = decltype(CallOf<F, Args...>::call(std::declval<F&>(), std::declval<Executor&>(), std::declval<Passed<Args...>>()));
+
+}  // namespace access_detail
+
+/// The arguments fit the function; a read() does not fit a span that can be written to.
+template <class F, class... Args>
+concept StageFits = access_detail::CallOf<F, Args...>::possible;
+
+/// What a stage did since the graph was made, or since reset_stats().
+struct StageStats {
+    const char* name;
+    double seconds = 0;  // of the stage's own thread, from start to end
+    std::uint64_t runs = 0;
+    std::uint64_t skipped = 0;  // its guard was false, or it returned false
+};
+
+/// Stages and the order between them. Building may allocate; running does not, after the first run on an executor.
+///
+///     g.stage("dynamics/predict_velocity", predict_velocity, read(n.force), read(n.inverse_mass), read(n.velocity), value(s.h),
+///             write(n.velocity_next));
+///
+/// Arguments are made by the functions of access.h, in the order of the function's parameters; a leading Executor& is passed by the graph.
+/// Spans are taken when the stage starts. Two stages that touch the same object, one of them writing, run in the order of the list.
+class TaskGraph {
+public:
+    struct Edge {
+        Index from;
+        Index to;
+        auto operator<=>(const Edge&) const = default;
+    };
+
+    TaskGraph();
+
+    /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A function that returns bool says
+    /// false when there was nothing to do.
+    template <class F, class... Args>
+    requires StageFits<F, Args...>
+    void stage(const char* name, F function, Args... args) {
+        using Call = access_detail::CallOf<F, Args...>;
+        using Result = access_detail::ResultOf<F, Args...>;
+        static_assert(std::is_void_v<Result> || std::is_same_v<Result, bool>, "a stage with another result needs stage_with_result");
+        add(name, access_detail::joined(args...), [function, args...](Executor& executor) mutable {
+            if (!(args.allows() && ...)) return Outcome::guarded;
+            if constexpr (std::is_void_v<Result>) {
+                Call::call(function, executor, std::tuple_cat(args.pass()...));
+                return Outcome::ran;
+            } else {
+                return Call::call(function, executor, std::tuple_cat(args.pass()...)) ? Outcome::ran : Outcome::idle;
+            }
+        });
+    }
+
+    /// Adds a stage whose return value is written to `result`, which counts as written by it.
+    template <class Result, class F, class... Args>
+    requires StageFits<F, Args...>
+    void stage_with_result(const char* name, Result& result, F function, Args... args) {
+        using Call = access_detail::CallOf<F, Args...>;
+        add(name, access_detail::joined(args..., writes(result)), [function, &result, args...](Executor& executor) mutable {
+            if (!(args.allows() && ...)) return Outcome::guarded;
+            result = Call::call(function, executor, std::tuple_cat(args.pass()...));
+            return Outcome::ran;
+        });
+    }
+
+    /// Finds the edges. Once, after the last stage was added.
+    void compile();
+
+    /// Runs every stage once. An exception of a stage comes out here; stages that had not started are left out.
+    void run(Executor& executor, Trace* trace = nullptr);
+    /// The same on the calling thread alone, in the order of the list: for scenes too small to pay for threads.
+    void run_inline(Trace* trace = nullptr);
+
+    std::span<const StageStats> stats() const { return stats_; }
+    void reset_stats();
+
+    /// The edges without those that follow from others, ordered by their first, then their second stage. Stages are numbered as listed.
+    std::span<const Edge> edges() const { return edges_; }
+    /// The graph as Graphviz dot text.
+    std::string to_dot() const;
+
+private:
+    enum class Outcome { ran, idle, guarded };
+    struct Stage {
+        AccessList accesses;
+        std::function<Outcome(Executor&)> run;
+    };
+
+    void add(const char* name, AccessList accesses, std::function<Outcome(Executor&)> run);
+    void run_stage(Index number, Executor& executor, Trace* trace);
+    void run_all(Executor& executor, Trace* trace);
+
+    std::vector<Stage> stages_;
+    std::vector<StageStats> stats_;  // by stage
+    std::vector<Edge> edges_;
+    std::vector<Index> successor_offset_, successor_, predecessor_count_;  // edges_, as an executor wants them
+    std::unique_ptr<Executor> inline_executor_;
+    bool compiled_ = false;
+};
+
+}  // namespace skerry

@@ -1,0 +1,145 @@
+// A ball dropped on each kind of collider.
+#include <catch2/catch.hpp>
+
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+struct Dropped {
+    World world;
+    BodyHandle ball;
+    Real lowest = 1e9;  // m, over the run
+
+    Dropped(const Shape& shape, const ColliderSettings& collider, const Vec3& from, Real seconds, const Vec3& velocity = Vec3::Zero()) {
+        const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = 10});
+        world.add_collider(shape, collider);
+        ball = world.add_body(mesh::ball(0.05, 6), {.material = material, .position = from, .velocity = velocity, .name = "ball"});
+        for (Real t = 0; t < seconds; t += 0.01) {
+            const StepReport report = world.advance(0.01);
+            REQUIRE(report.ok());
+            for (const Vec3& x : world.positions(ball)) lowest = std::min(lowest, x.z());
+        }
+    }
+};
+
+SurfaceMesh slab() {
+    return mesh::boundary(mesh::box({0.5, 0.5, 0.1}, {2, 2, 1}));
+}
+
+}  // namespace
+
+TEST_CASE("a ball comes to rest on every kind of collider whose top is at z = 0", "[scene]") {
+    struct Case {
+        const char* name;
+        Shape shape;
+        ColliderSettings collider;
+    };
+    ColliderSettings lowered;
+    lowered.position = {0, 0, -0.05};
+    const std::vector<Case> cases = {
+        {"plane", Plane{}, {}},
+        {"box", Box{{0.5, 0.5, 0.1}}, lowered},
+        {"cylinder", Cylinder{0.3, 0.1}, lowered},
+        {"bucket", Bucket{0.3, 0.2, 0.05}, {}},
+        {"mesh", slab(), lowered},
+    };
+    for (const Case& c : cases) {
+        INFO(c.name);
+        const Dropped dropped(c.shape, c.collider, {0.01, 0.02, 0.1}, 1.0);
+        CHECK(dropped.lowest > -1e-4);  // surfaces do not overlap by more than a hundredth of a millimetre in ten
+        CHECK(dropped.world.center_of_mass(dropped.ball).z() > 0.03);
+        CHECK(dropped.world.center_of_mass(dropped.ball).z() < 0.06);
+        CHECK(dropped.world.energy().kinetic < 1e-3 * dropped.world.mass(dropped.ball));
+    }
+}
+
+TEST_CASE("a ball rolls off a sphere and off a capsule without sinking in", "[scene]") {
+    const bool capsule = GENERATE(false, true);
+    const Shape shape = capsule ? Shape(Capsule{0.1, 0.0}) : Shape(Sphere{0.1});
+    World world;
+    const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4});
+    world.add_collider(shape);
+    const auto ball = world.add_body(mesh::ball(0.05, 6), {.material = material, .position = {0.02, 0.01, 0.17}});
+    Real nearest = 1e9;
+    for (int frame = 0; frame < 100; ++frame) {
+        REQUIRE(world.advance(0.01).ok());
+        for (const Vec3& x : world.positions(ball)) nearest = std::min(nearest, x.norm());
+    }
+    CHECK(nearest > 0.1 - 1e-4);
+    CHECK(world.center_of_mass(ball).z() < -0.5);  // it has left
+    CHECK(world.report().max_contacts > 0);
+}
+
+TEST_CASE("a moving collider pushes a ball along and a moving plane carries it", "[scene]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    const auto material = world.add_material({.young_modulus = 5e4, .damping = 20});
+    ColliderSettings piston;
+    piston.motion.velocity = {0.5, 0, 0};
+    piston.position = {-0.2, 0, 0};
+    world.add_collider(Box{{0.1, 0.4, 0.4}}, piston);
+    const auto ball = world.add_body(mesh::ball(0.05, 6), {.material = material, .position = {-0.08, 0, 0}});
+    REQUIRE(world.advance(1.0).ok());
+    CHECK(world.center_of_mass(ball).x() > 0.35 + 0.04);  // face of the box is at -0.15 + 0.5
+    CHECK(world.pose(world.colliders()[0]).position.x() == Approx(0.3));
+}
+
+TEST_CASE("a scene in which nothing is close skips the contact branch", "[scene]") {
+    World world;
+    const auto material = world.add_material({.young_modulus = 5e4});
+    world.add_collider(Plane{.normal = {0, 0, 1}, .point = {0, 0, -100}});
+    world.add_body(mesh::ball(0.05, 5), {.material = material});
+    world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {1, 0, 0}});
+    REQUIRE(world.advance(0.2).ok());
+    const WorldReport report = world.report();
+    CHECK(report.max_contacts == 0);
+    for (const StageReport& stage : report.stages) {
+        INFO(stage.name);
+        if (stage.name == "collision/find_contacts" || stage.name == "contact/separate_regions" || stage.name == "solver/solve_regions" ||
+            stage.name == "contact/match_warm_start")
+            CHECK(stage.skipped == report.steps);
+        if (stage.name == "collision/find_candidates") CHECK(stage.skipped >= report.steps - 50);
+    }
+}
+
+TEST_CASE("bodies can be removed and added in mid-run while other handles stay valid", "[scene]") {
+    World world;
+    const auto material = world.add_material({.young_modulus = 5e4, .damping = 10});
+    world.add_collider(Plane{});
+    std::vector<BodyHandle> balls;
+    for (int i = 0; i < 4; ++i)
+        balls.push_back(world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {0.2 * i, 0, 0.06}, .name = "ball"}));
+    REQUIRE(world.advance(0.3).ok());
+    const std::vector<Vec3> kept(world.positions(balls[3]).begin(), world.positions(balls[3]).end());
+    world.remove(balls[1]);
+    CHECK_FALSE(world.alive(balls[1]));
+    CHECK_THROWS_AS(world.positions(balls[1]), SceneError);
+    CHECK(std::equal(kept.begin(), kept.end(), world.positions(balls[3]).begin()));
+    const auto late = world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {0.2, 0, 0.3}});
+    CHECK_FALSE(world.alive(balls[1]));  // the slot lives again, the handle does not
+    REQUIRE(world.advance(1.0).ok());
+    for (BodyHandle ball : {balls[0], balls[2], balls[3], late}) {
+        CHECK(world.center_of_mass(ball).z() > 0.03);
+        CHECK(world.center_of_mass(ball).z() < 0.06);
+    }
+}
+
+TEST_CASE("a step with a load that is not finite is refused where it is set, and an overflow changes nothing", "[scene]") {
+    World world;
+    const auto material = world.add_material({.young_modulus = 5e4});
+    const auto ball = world.add_body(mesh::ball(0.05, 5), {.material = material, .name = "ball"});
+    std::vector<Vec3> load(world.positions(ball).size(), Vec3(std::nan(""), 0, 0));
+    CHECK_THROWS_AS(world.set_loads(ball, load), SceneError);
+    load.assign(load.size(), Vec3(1e308, 0, 0));
+    world.set_loads(ball, load);
+    const std::uint64_t before = world.state_hash();
+    const StepReport report = world.advance(0.1);
+    CHECK_FALSE(report.ok());
+    CHECK(report.steps == 0);
+    CHECK(report.message().find("ball") != std::string::npos);
+    CHECK(world.state_hash() == before);
+}

@@ -1,0 +1,69 @@
+// One-line worlds for whole-step tests.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "skerry/world.h"
+
+namespace skerry::test {
+
+inline constexpr Real standard_gravity = 9.81;  // m/s^2
+
+/// Gravity on a plane tilted by `degrees` about y, seen from the plane: downhill is +x.
+inline Vec3 tilted_gravity(Real degrees) {
+    const Real a = degrees * std::numbers::pi / 180;
+    return standard_gravity * Vec3(std::sin(a), 0, -std::cos(a));
+}
+
+/// Momentum of one body, kg m/s. A world knows masses only as sums, so a test weighs nodes by the tetrahedra around them.
+inline std::vector<Real> node_masses(const World& world, BodyHandle body, const Mesh& mesh, Real density) {
+    std::vector<Real> mass(world.positions(body).size(), 0);
+    for (const auto& t : mesh.tetrahedra) {
+        const Vec3 a = mesh.nodes[static_cast<std::size_t>(t[0])];
+        Mat3 edges;
+        for (int k = 0; k < 3; ++k) edges.col(k) = mesh.nodes[static_cast<std::size_t>(t[static_cast<std::size_t>(k + 1)])] - a;
+        for (Index corner : t) mass[static_cast<std::size_t>(corner)] += density * edges.determinant() / 24;
+    }
+    return mass;
+}
+
+inline Vec3 mean_velocity(const World& world, BodyHandle body, std::span<const Real> mass) {
+    Vec3 momentum = Vec3::Zero();
+    Real sum = 0;
+    const auto velocity = world.velocities(body);
+    for (std::size_t n = 0; n < velocity.size(); ++n) {
+        momentum += mass[n] * velocity[n];
+        sum += mass[n];
+    }
+    return momentum / sum;
+}
+
+/// A block lying on the plane z = 0, shell to shell, in a world whose gravity is tilted.
+struct BlockOnPlane {
+    World world;
+    BodyHandle block;
+    Mesh mesh;
+    std::vector<Real> mass;
+
+    BlockOnPlane(Settings settings, const MaterialSettings& material, const Vec3& size = {0.2, 0.2, 0.1},
+                 const std::array<int, 3>& cells = {4, 4, 2})
+        : world(settings), mesh(mesh::box(size, cells)) {
+        const auto rubber = world.add_material(material);
+        world.add_collider(Plane{});
+        block = world.add_body(mesh,
+                               {.material = rubber, .position = {0, 0, size.z() / 2 + 0.001}, .contact_distance = 0.002, .name = "block"});
+        mass = node_masses(world, block, mesh, material.density);
+    }
+
+    Vec3 velocity() const { return mean_velocity(world, block, mass); }
+    /// Lets the weight settle: gravity without tilt, then damping has its time.
+    void settle(Real seconds) {
+        const Vec3 tilted = world.settings().gravity;
+        world.set_gravity({0, 0, tilted.z()});
+        world.advance(seconds);
+        world.set_gravity(tilted);
+    }
+};
+
+}  // namespace skerry::test
