@@ -4,6 +4,10 @@ target_compile_features(skerry_flags INTERFACE cxx_std_20)
 # No contraction: the same source gives the same bits in a kernel and in its scalar twin.
 target_compile_options(skerry_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -fno-math-errno -fno-trapping-math -fopenmp-simd -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # gcc 12 warns of its own AVX-512 headers and of Eigen's moves; later versions do not.
+    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
+endif()
 if(SKERRY_ARCH)
     include(CheckCXXCompilerFlag)
     target_compile_options(skerry_flags INTERFACE -march=${SKERRY_ARCH})

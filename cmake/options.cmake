@@ -1,5 +1,6 @@
 # All options of the project. Defaults are those of a user who builds it on its own.
-option(SKERRY_TESTS "Build the tests and examples" ${PROJECT_IS_TOP_LEVEL})
+option(SKERRY_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(SKERRY_EXAMPLES "Build the examples, which are tests as well" ${PROJECT_IS_TOP_LEVEL})
 option(SKERRY_PROFILING "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(SKERRY_PROGRAM "Build the program skerry" ON)
 option(SKERRY_NO_CHECKS "Leave out SKERRY_CHECK" OFF)

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "components/bvh_table.h"
 #include "components/column.h"
 #include "components/contact_table.h"
 #include "components/types.h"
@@ -18,28 +20,72 @@ struct Candidate {
 
 enum class PairKind : std::uint8_t { bodies, collider, self };
 
+/// Place in the concatenated candidate lists.
+struct CandidatePlace {
+    Index pair;
+    Index candidate;
+};
+
 /// One row per pair whose bounding boxes were close at the last broad search, in the order of ContactKey::pair. The candidate lists
-/// are columns of their own, so that one pair is searched again without moving the others; erased rows keep their memory for later.
+/// are columns of their own, so that one pair is searched again without moving the others; lists beyond size() are memory for later.
 struct PairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
     Column<PairKind> kind;
-    Column<Index> first;                        // row of BodyTable
-    Column<Index> second;                       // row of BodyTable, or of ColliderTable
-    Column<Real> valid_until;                   // m: the list holds while the sum of both travels is below this
-    std::vector<Column<Candidate>> candidates;  // sorted by feature
-    std::vector<Column<Real>> asleep_until;     // m, by candidate: it cannot touch while the sum of travels is below this
-    std::vector<Column<ContactRow>> found;      // this step's contacts of the pair, in candidate order
+    Column<Index> first;       // row of BodyTable; never a kinematic body
+    Column<Index> second;      // row of BodyTable, or of ColliderTable
+    Column<Real> front;        // m: sum of both travels and of what this step may add to the closing, written in every step
+    Column<Real> valid_until;  // m: the list holds while front is below this
+    std::vector<Column<Candidate>> candidates;  // by pair, sorted by feature
+    std::vector<Column<Real>> asleep_until;     // m, by pair and candidate: it cannot touch while front is below this
+    Column<CandidatePlace> block;               // where the blocks of find_contacts start, and one past the last
+    Column<std::size_t> block_first;            // row of ContactTable where the contacts of a block start
+    std::vector<Column<ContactRow>> found;      // this step's contacts, by block, in candidate order
 
     std::size_t size() const { return key.size(); }
 };
 
-/// When the broad search has to run again, and what the searches did.
+/// What a search found of two features: the candidate and until when it may sleep.
+struct FoundCandidate {
+    Candidate candidate;
+    Real asleep_until;  // m
+};
+
+/// A pair that the broad search found.
+struct FoundPair {
+    std::uint64_t key;
+    PairKind kind;
+    Index first;
+    Index second;
+    Real valid_until;  // m
+};
+
+/// Working memory of the searches, kept between steps so that a steady state allocates nothing.
+struct SearchMemory {
+    Column<Real> body_front;       // m: travel and what this step may close, by body
+    Column<Real> collider_front;   // m, the same by collider
+    Column<Real> collider_extent;  // m: no point of it near a body is further from its origin, until the next broad search
+    Column<Real> collider_margin;  // m: how far a box may be and still make a pair with the collider
+    Column<Aabb> box;              // m, grown by what may happen until the next broad search: bodies, then colliders
+    Column<Index> order;           // rows of `box`, by their lower end
+    Column<FoundPair> pairs;
+    Column<std::uint8_t> moved;                 // by list: bit 0 it was given away, bit 1 it was received
+    std::vector<Column<Candidate>> candidates;  // on their way to the new order of pairs
+    std::vector<Column<Real>> asleep_until;
+    Column<Index> expired;                      // rows of PairTable
+    Column<std::uint8_t> needs_refit;           // by body
+    Column<Index> refit;                        // rows of BodyTable
+    std::vector<Column<FoundCandidate>> found;  // by expired pair
+};
+
+/// When the broad search has to run again, and what the searches did. Clear both columns when a body or collider comes, goes or is moved by
+/// hand: everything is then searched afresh.
 struct SearchState {
-    Column<Real> body_valid_until;      // m, by body: the list of pairs holds while no body's travel exceeds this
+    Column<Real> body_valid_until;      // m, by body: the list of pairs holds while every body's front is below this
     Column<Real> collider_valid_until;  // m, by collider
     std::uint64_t broad_searches = 0;
     std::uint64_t pair_searches = 0;
-    std::uint64_t candidate_count = 0;
+    std::uint64_t candidate_count = 0;  // in all lists, now
+    SearchMemory memory;
 };
 
 }  // namespace skerry

@@ -1,4 +1,6 @@
 // oneTBB: tasks in the arena of the caller, or in one of our own.
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
@@ -15,6 +17,7 @@ namespace {
 class TbbExecutor final : public Executor {
 public:
     explicit TbbExecutor(int workers) {
+        if (workers > tbb::info::default_concurrency()) more_threads_.emplace(tbb::global_control::max_allowed_parallelism, workers);
         if (workers > 0) arena_.emplace(workers);
     }
 
@@ -78,6 +81,9 @@ private:
         }
     };
 
+    // More workers than cores only come when the library is told to allow them. It takes the least of what is asked for, so this never
+    // raises a limit that the host has set.
+    std::optional<tbb::global_control> more_threads_;
     std::optional<tbb::task_arena> arena_;  // none: the caller's
     PredecessorCounts left_;
 };

@@ -69,11 +69,11 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     ContactTable& c = w.contacts;
     const auto inputs = bundle(
         [&w, &n] {
-            return CollisionInputs{w.bodies,   w.colliders,    w.surface,       n.inverse_mass, w.materials.surface,
-                                   w.bvh.node, w.bvh.triangle, n.position,     n.velocity};
+            return CollisionInputs{w.bodies,   w.colliders,    w.surface,  n.inverse_mass, w.materials.surface,
+                                   w.bvh.node, w.bvh.triangle, n.position, n.velocity,     n.rest_position};
         },
-        reads(w.bodies, w.colliders, w.surface, n.inverse_mass, w.materials, w.bvh.node, w.bvh.triangle, n.position,
-              n.velocity));
+        reads(w.bodies, w.colliders, w.surface, n.inverse_mass, w.materials, w.bvh.node, w.bvh.triangle, n.position, n.velocity,
+              n.rest_position));
     g.stage("collision/find_candidates", find_candidates, inputs, value(w.step.collision), value(w.step.h), write(w.bvh.box),
             make(w.search), make(w.pairs));
     g.stage("collision/find_contacts", find_contacts, inputs, value(w.step.collision), value(w.step.h), make(w.pairs), make(c));
@@ -103,7 +103,7 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
                 },
                 writes(c.impulse, n.velocity_next, n.push_out)));
     g.stage_with_result("contact/measure_contacts", w.step.measures, measure_contacts, read(c), read(n.velocity), read(n.velocity_next),
-                        write(c.slip), write(c.state));
+                        write(c.slip), write(c.state), value(w.step.solver.friction));
     g.stage_with_result(
         "dynamics/check_state", w.step.verdict, check_state,
         bundle([&n, &b,

@@ -1,6 +1,6 @@
 // Colliders and attachments come and go between steps.
 #include <cmath>
-#include <limits>
+#include <numbers>
 
 #include "engine/world/world_state.h"
 #include "systems/dynamics/move_colliders.h"
@@ -44,12 +44,20 @@ SurfaceProperties surface_of(const ColliderSettings& settings) {
     return {settings.static_friction.value_or(std::max(dynamic, settings.friction.value_or(0))), dynamic, settings.restitution.value_or(0)};
 }
 
+/// The smallest rotation that takes the z axis to a direction; half a turn about x takes it to its opposite.
+Mat3 turn_from_z(const Vec3& direction) {
+    const Vec3 axis(-direction.y(), direction.x(), 0);
+    const Real sine = axis.norm();
+    if (sine == 0) return direction.z() > 0 ? Mat3(Mat3::Identity()) : rotation_matrix(Vec3(std::numbers::pi, 0, 0));
+    return rotation_matrix(axis * (std::atan2(sine, direction.z()) / sine));
+}
+
 /// A plane is given by a point and a normal in the collider's frame; inside its own frame it is z = 0.
 RigidMotion initial_pose(const Shape& shape, const ColliderSettings& settings) {
     RigidMotion pose{settings.position, rotation_matrix(settings.rotation), Vec3::Zero(), Vec3::Zero()};
     if (const auto* plane = std::get_if<Plane>(&shape)) {
         pose.position += pose.rotation * plane->point;
-        pose.rotation = pose.rotation * Eigen::Quaternion<Real>::FromTwoVectors(Vec3::UnitZ(), plane->normal).toRotationMatrix();
+        pose.rotation = pose.rotation * turn_from_z(plane->normal);
     }
     return pose;
 }

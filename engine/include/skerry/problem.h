@@ -45,7 +45,9 @@ struct ProblemSolution {
 /// Reads the local problem of an FCLIB file (HDF5). Throws SceneError.
 ContactProblem read_problem(const std::filesystem::path& file);
 
-/// Separates the problem into regions and solves them from r = 0.
+/// Separates the problem into regions and solves them from r = 0. With Friction::pyramid the errors of the solution are those of the
+/// pyramid (the tangential components of the natural map clamped one by one), which is what `converged` asks for. Throws SceneError
+/// when the arrays of the problem disagree.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
 /// |e| of methods.md 2.1 (FCLIB and Siconos, rho = 1) for given reactions.

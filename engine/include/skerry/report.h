@@ -17,18 +17,18 @@ enum class ContactMotion { open, stick, slide };
 
 /// One contact of the last step.
 struct Contact {
-    BodyHandle first;               // the body of the point, or of the first edge
-    BodyHandle second;              // the other body, or a stale handle (collider contacts)
-    ColliderHandle collider;        // the collider, or a stale handle
-    std::array<Index, 4> node;      // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
-    std::array<Real, 4> weight;
-    Vec3 point;                     // m
-    Vec3 normal;                    // unit, towards the first body
-    Real gap;                       // m, > 0 apart, measured from the contact shell
-    Vec3 slip;                      // m/s, tangential relative velocity after the step
-    Vec3 impulse;                   // N s, on the first body
-    ContactMotion motion;
-    Index region;                   // -1: none of its nodes moves
+    BodyHandle first{};             // the body of the point, or of the first edge
+    BodyHandle second{};            // the other body, or a stale handle (collider contacts)
+    ColliderHandle collider{};      // the collider, or a stale handle
+    std::array<Index, 4> node{};    // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
+    std::array<Real, 4> weight{};
+    Vec3 point = Vec3::Zero();      // m
+    Vec3 normal = Vec3::Zero();     // unit, towards the first body
+    Real gap = 0;                   // m, > 0 apart, measured from the contact shell
+    Vec3 slip = Vec3::Zero();       // m/s, tangential relative velocity after the step
+    Vec3 impulse = Vec3::Zero();    // N s, on the first body
+    ContactMotion motion = ContactMotion::open;
+    Index region = -1;              // -1: none of its nodes moves
 };
 
 /// Seconds and runs of one stage.

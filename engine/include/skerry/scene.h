@@ -12,13 +12,13 @@ namespace skerry {
 
 /// Changes that the caller makes to the settings of a scene.
 struct SceneOverrides {
-    std::optional<int> threads;
-    std::optional<Backend> backend;
-    std::optional<ContactRegions> contact_regions;
-    std::optional<SolverMethod> method;
-    std::optional<Friction> friction;
-    std::optional<Real> tolerance;
-    std::optional<Real> step_size;
+    std::optional<int> threads{};
+    std::optional<Backend> backend{};
+    std::optional<ContactRegions> contact_regions{};
+    std::optional<SolverMethod> method{};
+    std::optional<Friction> friction{};
+    std::optional<Real> tolerance{};
+    std::optional<Real> step_size{};
 };
 
 /// A part of a body whose contacts a run reports, such as the feet of a table.
@@ -36,6 +36,7 @@ struct Scene {
     Real frame_step = 1.0 / 60;  // s, between frames of output
     World world;
     std::vector<Probe> probes;
+    Real probe_step = 1.0 / 60;  // s, between two looks at the probes
 };
 
 /// Reads and builds a scene. Mesh files are looked for beside it. Throws SceneError for anything it does not understand: unknown keys name

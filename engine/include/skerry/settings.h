@@ -1,4 +1,5 @@
-// What can be set about materials, bodies, colliders and the step. SI units everywhere.
+// What can be set about materials, bodies, colliders and the step. SI units everywhere. Every member has an initialiser, so that naming some of
+// them warns about none.
 #pragma once
 
 #include <optional>
@@ -14,32 +15,32 @@
 namespace skerry {
 
 struct MaterialSettings {
-    Real young_modulus = 1e5;                      // Pa, > 0
-    Real poisson_ratio = 0.4;                      // > -1 and < 0.5
-    Real density = 1000;                           // kg/m^3, > 0
-    Real friction = 0.5;                           // Coulomb's mu, >= 0; both of the next two unless they are given
-    std::optional<Real> static_friction;           // >= dynamic_friction
-    std::optional<Real> dynamic_friction;          // >= 0
-    Real restitution = 0;                          // of a surface point at an impact, in [0, 1]; not of the body as a whole
-    Real damping = 0;                              // 1/s, >= 0: decay rate of deformation velocities; momentum is kept
+    Real young_modulus = 1e5;                // Pa, > 0
+    Real poisson_ratio = 0.4;                // > -1 and < 0.5
+    Real density = 1000;                     // kg/m^3, > 0
+    Real friction = 0.5;                     // Coulomb's mu, >= 0; both of the next two unless they are given
+    std::optional<Real> static_friction{};   // >= dynamic_friction
+    std::optional<Real> dynamic_friction{};  // >= 0
+    Real restitution = 0;                    // of a surface point at an impact, in [0, 1]; not of the body as a whole
+    Real damping = 0;                        // 1/s, >= 0: decay rate of deformation velocities; momentum is kept
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };
 
 /// Where a body is put. The rotation is applied first.
 struct BodySettings {
-    MaterialHandle material;
-    Vec3 position = Vec3::Zero();           // m
-    Vec3 rotation = Vec3::Zero();           // rad, axis times angle
-    Vec3 velocity = Vec3::Zero();           // m/s
-    Vec3 angular_velocity = Vec3::Zero();   // rad/s, about the centre of mass
-    std::optional<Real> contact_distance;   // m, >= 0; by default 2 % of the mean surface edge
+    MaterialHandle material{};
+    Vec3 position = Vec3::Zero();            // m
+    Vec3 rotation = Vec3::Zero();            // rad, axis times angle
+    Vec3 velocity = Vec3::Zero();            // m/s
+    Vec3 angular_velocity = Vec3::Zero();    // rad/s, about the centre of mass
+    std::optional<Real> contact_distance{};  // m, >= 0; by default 2 % of the mean surface edge
     bool self_contact = false;
-    std::string name;                       // for messages and output
+    std::string name{};  // for messages and output
 };
 
 struct Plane {
-    Vec3 normal = {0, 0, 1};   // any length but zero
-    Vec3 point = Vec3::Zero(); // m
+    Vec3 normal = {0, 0, 1};    // any length but zero
+    Vec3 point = Vec3::Zero();  // m
 };
 struct Sphere {
     Real radius = 1;  // m
@@ -65,45 +66,45 @@ using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, Surfac
 
 /// One key of a scripted motion; between keys position is linear and the rotation turns about a fixed axis.
 struct MotionKey {
-    Real time = 0;                   // s, ascending
-    Vec3 position = Vec3::Zero();    // m
-    Vec3 rotation = Vec3::Zero();    // rad, axis times angle
+    Real time = 0;                 // s, ascending
+    Vec3 position = Vec3::Zero();  // m
+    Vec3 rotation = Vec3::Zero();  // rad, axis times angle
 };
 
 /// A scripted motion: constant velocities, or keys (then the velocities must be zero).
 struct Motion {
     Vec3 velocity = Vec3::Zero();          // m/s
     Vec3 angular_velocity = Vec3::Zero();  // rad/s
-    std::vector<MotionKey> keys;
+    std::vector<MotionKey> keys{};
 };
 
 struct ColliderSettings {
-    Vec3 position = Vec3::Zero();          // m
-    Vec3 rotation = Vec3::Zero();          // rad, axis times angle
-    Motion motion;
-    std::optional<Real> friction;          // by default the body's own; else the geometric mean of both counts
-    std::optional<Real> static_friction, dynamic_friction;
-    std::optional<Real> restitution;       // by default the body's own; else the larger of both counts
-    Real contact_distance = 0;             // m, shell of a mesh collider
-    std::string name;
+    Vec3 position = Vec3::Zero();  // m
+    Vec3 rotation = Vec3::Zero();  // rad, axis times angle
+    Motion motion{};
+    std::optional<Real> friction{};  // by default the body's own; else the geometric mean of both counts
+    std::optional<Real> static_friction{}, dynamic_friction{};
+    std::optional<Real> restitution{};  // by default the body's own; else the larger of both counts
+    Real contact_distance = 0;          // m, shell of a mesh collider
+    std::string name{};
 };
 
 /// Settings of the world and its step. Defaults work.
 struct Settings {
-    Vec3 gravity = {0, 0, -9.81};                              // m/s^2
-    std::optional<Real> step_size;                             // s; by default the stable step of the stiffest body
-    Real step_safety = 1.0;                                    // fraction of the stable step that is used, in (0, 1]
+    Vec3 gravity = {0, 0, -9.81};     // m/s^2
+    std::optional<Real> step_size{};  // s; by default the stable step of the stiffest body
+    Real step_safety = 1.0;           // fraction of the stable step that is used, in (0, 1]
     Backend backend = Backend::tbb;
-    int threads = 0;                                           // 0: those of the caller's task arena
+    int threads = 0;  // 0: those of the caller's task arena
     ContactRegions contact_regions = ContactRegions::separate;
     SolverMethod method = SolverMethod::pgs;
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
-    Real tolerance = 1e-3;                                     // relative error of a region, docs/architecture.md
-    int max_iterations = 200;                                  // sweeps of a region
-    bool fixed_iterations = false;                             // do exactly max_iterations sweeps
-    Real max_strain_step = 0.2;                                // a step that moves nodes by more than this fraction of an element is refused
-    bool contact_budgets = true;                               // skip what cannot have come close; off searches everything
+    Real tolerance = 1e-3;          // relative error of a region, docs/architecture.md
+    int max_iterations = 200;       // sweeps of a region
+    bool fixed_iterations = false;  // do exactly max_iterations sweeps
+    Real max_strain_step = 0.2;     // a step that moves nodes by more than this fraction of an element is refused
+    bool contact_budgets = true;    // skip what cannot have come close; off searches everything
 };
 
 }  // namespace skerry

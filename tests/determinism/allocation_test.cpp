@@ -1,0 +1,83 @@
+// A step in a steady state allocates nothing. This program replaces malloc and counts.
+#include <catch2/catch.hpp>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "jobs/executor.h"
+#include "tests/support/worlds.h"
+
+extern "C" void* __libc_malloc(std::size_t);
+extern "C" void* __libc_memalign(std::size_t, std::size_t);
+
+namespace {
+std::atomic<bool> counting{false};
+std::atomic<long> allocations{0};
+}  // namespace
+
+// operator new, Eigen and the backends all end in one of these three.
+extern "C" void* malloc(std::size_t size) {
+    if (counting.load(std::memory_order_relaxed)) ++allocations;
+    return __libc_malloc(size);
+}
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) {
+    if (counting.load(std::memory_order_relaxed)) ++allocations;
+    return __libc_memalign(alignment, size);
+}
+extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+    if (counting.load(std::memory_order_relaxed)) ++allocations;
+    *memory = __libc_memalign(alignment, size);
+    return *memory ? 0 : 12;
+}
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+World resting_balls(Backend backend, int threads) {
+    Settings settings;
+    settings.backend = backend;
+    settings.threads = threads;
+    World world(settings);
+    const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
+    world.add_collider(Plane{});
+    const Mesh ball = mesh::ball(0.05, 6);
+    for (int i = 0; i < 6; ++i) world.add_body(ball, {.material = rubber, .position = {0.07 * (i % 3), 0.0, 0.06 + 0.1 * (i / 3)}});
+    return world;
+}
+
+long allocations_of_a_fifth_second(World& world) {
+    allocations = 0;
+    counting = true;
+    const StepReport report = world.advance(0.2);
+    counting = false;
+    REQUIRE(report.ok());
+    REQUIRE(report.contacts > 10);
+    return allocations;
+}
+
+}  // namespace
+
+TEST_CASE("the counter sees an allocation", "[determinism]") {
+    allocations = 0;
+    counting = true;
+    Column<double> column;
+    column.resize(100);
+    counting = false;
+    CHECK(allocations > 0);
+    CHECK(column.size() == 100);
+}
+
+TEST_CASE("a resting pile allocates nothing in a fifth of a second of steps", "[determinism]") {
+    for (Backend backend : available_backends()) {
+        if (backend == Backend::openmp) continue;  // libgomp allocates each of its tasks; what we allocate is the same code
+        for (int threads : {1, 2}) {
+            INFO(name_of(backend) << " with " << threads);
+            World world = resting_balls(backend, threads);
+            REQUIRE(world.advance(1.5).ok());
+            CHECK(allocations_of_a_fifth_second(world) == 0);
+            if (backend == Backend::serial) break;
+        }
+    }
+}
