@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -30,11 +31,12 @@ std::string json_string(std::string_view text) {
     return quoted + '"';
 }
 
-// Nanoseconds as microseconds with three places: exact, and independent of the stream's settings and locale.
+// Nanoseconds as microseconds with three places: exact, and independent of the stream's settings and locale. Negative for a zone that was
+// open when the trace was cleared.
 std::string microseconds(std::int64_t nanoseconds) {
+    const long long size = std::abs(static_cast<long long>(nanoseconds));
     std::array<char, 40> text{};
-    std::snprintf(text.data(), text.size(), "%lld.%03lld", static_cast<long long>(nanoseconds / 1000),
-                  static_cast<long long>(nanoseconds % 1000));
+    std::snprintf(text.data(), text.size(), "%s%lld.%03lld", nanoseconds < 0 ? "-" : "", size / 1000, size % 1000);
     return text.data();
 }
 

@@ -2,21 +2,23 @@
 #pragma once
 
 #include "components/contact_table.h"
+#include "components/options.h"
 #include "jobs/executor.h"
 
 namespace skerry {
 
 struct ContactMeasures {
-    Real max_penetration = 0;   // m, largest -distance: overlap of the surfaces themselves
-    Real max_gap_violation = 0; // m, largest -gap: pressed into the contact shell
-    Real dissipated = 0;        // J, -sum of impulse . (velocity before + velocity after) / 2
+    Real max_penetration = 0;    // m, largest -distance: overlap of the surfaces themselves
+    Real max_gap_violation = 0;  // m, largest -gap: pressed into the contact shell
+    Real dissipated = 0;         // J, -sum of impulse . (velocity before + velocity after) / 2
     Index stick_count = 0;
     Index slide_count = 0;
 };
 
-/// Writes slip (tangential relative velocity after the solve) and state (open: no impulse; slide: impulse on the cone). Parallel over
-/// blocks of contacts; sums in block order.
+/// Writes slip (tangential relative velocity after the solve) and state (open: no impulse; slide: impulse on the limit of `friction`).
+/// Parallel over blocks of contacts; sums in block order.
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Vec3> velocity,
-                                 std::span<const Vec3> velocity_next, std::span<Vec3> slip, std::span<ContactState> state);
+                                 std::span<const Vec3> velocity_next, std::span<Vec3> slip, std::span<ContactState> state,
+                                 Friction friction = Friction::cone);
 
 }  // namespace skerry

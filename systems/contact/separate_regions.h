@@ -11,10 +11,10 @@ namespace skerry {
 
 /// Memory of the union-find, kept between steps.
 struct UnionFind {
-    Column<Index> parent;           // by node
-    Column<std::uint32_t> stamp;    // by node: parent is of this step
+    Column<Index> parent;         // by node
+    Column<std::uint32_t> stamp;  // by node: parent is of this step
     std::uint32_t now = 0;
-    Column<Index> label;            // by node: region of a root
+    Column<Index> label;  // by node: region of a root
 };
 
 /// Fills `regions.contacts` and `contact_region`. Two contacts are in one region if a chain of shared moving nodes (inverse mass > 0) joins

@@ -12,7 +12,8 @@
 namespace skerry {
 
 /// Appends the blocks of a new body's tetrahedra. `tetrahedra` index the body's own nodes; `first_node` is the row of its first node.
-/// Rest positions must give positive volumes (the scene builder has checked). Rotations start at the identity turned by `rotation`.
+/// Rest positions must give positive volumes (the scene builder has checked). The rest shape is that of `rest_position` turned by `rotation`, as
+/// the body is put into the world: F = I there for every model, the linear one included, and corotational frames start at the identity.
 Range append_elements(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position, Index first_node, Index body,
                       Index material, const Mat3& rotation, ElementBlockTable& elements);
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "components/body_table.h"
+#include "components/element_table.h"
 #include "components/node_block_table.h"
 #include "jobs/executor.h"
 
@@ -26,12 +27,15 @@ struct CheckInputs {
     std::span<const Vec3> velocity;           // m/s, at the start of the step
     std::span<const Vec3> velocity_next;
     std::span<const Vec3> push_out;
+    std::span<const ElementNodes> element_node = {};  // ElementBlockTable
+    std::span<const Range> body_blocks = {};          // BodyTable; empty: bodies are judged as one element each
 };
 
-/// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is not finite, or nodes
-/// of one body that move apart by more than `max_strain_step` (fraction of its smallest altitude) in this step: `too_fast` compares the
-/// speed relative to the body's mean velocity, since common motion does not harm. Parallel over node blocks.
-StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
-                        std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
+/// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is not finite, or two
+/// corners of one element that move apart by more than `max_strain_step` (fraction of the smallest altitude of the body) in this step.
+/// Common motion and slow turns of a large body do no harm and are not counted. Without `body_blocks` a node is compared with the mean velocity of
+/// its body instead, which refuses a quick turn of a large body, too. Parallel over node blocks.
+StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step, std::span<Real> block_max_speed_squared,
+                        std::span<Real> body_max_speed);
 
 }  // namespace skerry

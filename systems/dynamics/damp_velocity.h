@@ -11,11 +11,11 @@
 namespace skerry {
 
 struct DampingInputs {
-    std::span<const Index> block_begin, block_end, block_body;   // NodeBlockTable
-    std::span<const Range> body_node_blocks;                     // BodyTable
-    std::span<const Index> body_material;                        // BodyTable
-    std::span<const Index> body_pinned_count;                    // BodyTable
-    std::span<const Real> material_damping;                      // 1/s
+    std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
+    std::span<const Range> body_node_blocks;                    // BodyTable
+    std::span<const Index> body_material;                       // BodyTable
+    std::span<const Index> body_pinned_count;                   // BodyTable
+    std::span<const Real> material_damping;                     // 1/s
     std::span<const Vec3> position;
     std::span<const Real> mass, inverse_mass;
 };
@@ -23,7 +23,6 @@ struct DampingInputs {
 /// v <- v_rigid + (v - v_rigid) exp(-damping h) for every body with damping > 0; v_rigid is the rigid motion with the momentum and the
 /// angular momentum of the body. A body with pinned nodes is damped towards rest. Returns false when no body has damping (skipped).
 /// Parallel over node blocks; sums in block order.
-bool damp_velocity(Executor& executor, const DampingInputs& bodies, Real h, std::span<NodeBlockSums> sums,
-                   std::span<Vec3> velocity_next);
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, Real h, std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next);
 
 }  // namespace skerry

@@ -9,7 +9,7 @@
 namespace skerry {
 
 /// velocity_next = velocity + h force inverse_mass. Nodes without freedom (inverse mass 0) keep their velocity. Parallel over nodes.
-void predict_velocity(Executor& executor, std::span<const Vec3> force, std::span<const Real> inverse_mass,
-                      std::span<const Vec3> velocity, Real h, std::span<Vec3> velocity_next);
+void predict_velocity(Executor& executor, std::span<const Vec3> force, std::span<const Real> inverse_mass, std::span<const Vec3> velocity,
+                      Real h, std::span<Vec3> velocity_next);
 
 }  // namespace skerry

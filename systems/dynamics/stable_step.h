@@ -22,7 +22,7 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
 
 /// omega_max^2 of the rest stiffness by power iteration on the assembled linear operator (an estimate from below, methods.md 4.2): for
 /// tests and reports.
-Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> inverse_mass,
-                                    int iterations);
+Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                                    std::span<const Real> inverse_mass, int iterations);
 
 }  // namespace skerry

@@ -15,13 +15,13 @@ struct SolverSettings {
     SolverMethod method = SolverMethod::pgs;
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
-    Real tolerance = 1e-3;        // e_nat, methods.md 2.1
-    Index max_iterations = 200;   // sweeps of a region
+    Real tolerance = 1e-3;          // e_nat, methods.md 2.1
+    Index max_iterations = 200;     // sweeps of a region
     bool fixed_iterations = false;  // do exactly max_iterations sweeps: separate and global are then bitwise the same
-    Real relaxation = 1.0;        // over-relaxation of the sweep
+    Real relaxation = 1.0;          // over-relaxation of the sweep
     Real restitution_speed = 0.05;  // m/s: slower impacts do not bounce (methods.md 1.3 b)
-    Real recovery = 0.15;         // beta: share of a negative gap taken back per step by the split impulse (methods.md 1.3 c)
-    Real recovery_speed = 0.5;    // m/s, cap of the recovery
+    Real recovery = 0.15;           // beta: share of a negative gap taken back per step by the split impulse (methods.md 1.3 c)
+    Real recovery_speed = 0.5;      // m/s, cap of the recovery
 };
 
 /// What the stage reads beside the contacts.
@@ -37,9 +37,9 @@ struct RegionInputs {
 };
 
 struct RegionOutputs {
-    std::span<Vec3> impulse;         // by contact: warm start in, solution out
-    std::span<Vec3> velocity_next;   // by node: predicted in, solved out
-    std::span<Vec3> push_out;        // by node
+    std::span<Vec3> impulse;        // by contact: warm start in, solution out
+    std::span<Vec3> velocity_next;  // by node: predicted in, solved out
+    std::span<Vec3> push_out;       // by node
 };
 
 /// Working memory of the stage, kept between steps so that it allocates only when the step is larger than any before.

@@ -1,0 +1,172 @@
+#include "engine/mesh/formats/file_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "skerry/error.h"
+
+namespace skerry::mesh {
+namespace {
+
+bool is_space(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+}  // namespace
+
+std::string quoted(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    std::string shown = "\"";
+    for (const char c : text.substr(0, longest)) shown += (c >= ' ' && c <= '~') ? c : '?';
+    return shown + (text.size() > longest ? "...\"" : "\"");
+}
+
+FileReader::FileReader(const std::string& path) : path_(path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) Complaint{path, {}, {}, "no such file", "a mesh", {}}.raise();
+    if (!std::filesystem::is_regular_file(path, error))
+        Complaint{path, {}, {}, "something that is not a regular file", "a mesh", {}}.raise();
+    std::ifstream file(path, std::ios::binary);
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (file && !error) {
+        data_.resize(static_cast<std::size_t>(size));
+        file.read(data_.data(), static_cast<std::streamsize>(data_.size()));
+    }
+    if (!file || error) Complaint{path, {}, {}, "a file that cannot be read", "a mesh", {}}.raise();
+}
+
+void FileReader::set_row(const char* kind, std::size_t number, std::size_t count) {
+    row_kind_ = kind;
+    row_number_ = number;
+    row_count_ = count;
+}
+
+bool FileReader::at_end() const {
+    return peek_word().empty();
+}
+
+std::string_view FileReader::line() {
+    last_was_binary_ = false;
+    start_ = position_;
+    const std::size_t end = std::min(data_.find('\n', position_), data_.size());
+    position_ = std::min(end + 1, data_.size());
+    return trimmed(std::string_view(data_).substr(start_, end - start_));
+}
+
+std::string_view FileReader::filled_line(const char* expected) {
+    while (position_ < data_.size()) {
+        const std::string_view text = line();
+        if (!text.empty()) return text;
+    }
+    start_ = data_.size();
+    last_was_binary_ = false;
+    complain({}, "the end of the file", expected);
+}
+
+const std::vector<std::string_view>& FileReader::words_of(std::string_view text) {
+    words_.clear();
+    for (std::size_t i = 0; i < text.size();) {
+        while (i < text.size() && is_space(text[i])) ++i;
+        const std::size_t begin = i;
+        while (i < text.size() && !is_space(text[i])) ++i;
+        if (i > begin) words_.push_back(text.substr(begin, i - begin));
+    }
+    return words_;
+}
+
+std::string_view FileReader::peek_word() const {
+    std::size_t begin = position_;
+    while (begin < data_.size() && is_space(data_[begin])) ++begin;
+    std::size_t end = begin;
+    while (end < data_.size() && !is_space(data_[end])) ++end;
+    return std::string_view(data_).substr(begin, end - begin);
+}
+
+std::string_view FileReader::word(const char* expected) {
+    const std::string_view text = peek_word();
+    last_was_binary_ = false;
+    start_ = static_cast<std::size_t>(text.data() - data_.data());
+    if (text.empty()) complain({}, "the end of the file", expected);
+    position_ = start_ + text.size();
+    return text;
+}
+
+Real FileReader::parse_real(std::string_view text, const char* field) const {
+    std::string_view digits = text;
+    if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);  // from_chars knows no plus sign
+    Real value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) complain(field, quoted(text), "a number");
+    // Out of range: too small is as good as zero, too large is not finite. strtod tells them apart.
+    if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
+    return value;
+}
+
+std::int64_t FileReader::parse_integer(std::string_view text, const char* field) const {
+    std::string_view digits = text;
+    if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc{} || end != digits.data() + digits.size()) complain(field, quoted(text), "an integer");
+    return value;
+}
+
+void FileReader::begin_binary(std::size_t size, const char* field) {
+    last_was_binary_ = true;
+    start_ = position_;
+    if (size > remaining()) complain(field, "the end of the file", std::to_string(size) + " more bytes");
+}
+
+void FileReader::skip_bytes(std::size_t count, const char* field) {
+    begin_binary(count, field);
+    position_ += count;
+}
+
+bool FileReader::skip_behind(std::string_view mark) {
+    for (std::size_t at = data_.find(mark, position_); at != std::string::npos; at = data_.find(mark, at + 1)) {
+        const std::size_t end = at + mark.size();
+        if (end < data_.size() && !is_space(data_[end])) continue;
+        position_ = end;
+        return true;
+    }
+    return false;
+}
+
+std::size_t FileReader::checked_count(std::int64_t count, std::size_t bytes, const char* field) const {
+    if (count < 0) complain(field, std::to_string(count), "a count that is not negative");
+    const std::size_t fits = remaining() / bytes + 1;  // one more: the last row may lack its line end
+    if (static_cast<std::uint64_t>(count) > fits)
+        complain(field, std::to_string(count), "at most " + std::to_string(fits),
+                 std::to_string(remaining()) + " bytes are left of the file");
+    if (count > 0x7fffffff / 4) complain(field, std::to_string(count), "at most " + std::to_string(0x7fffffff / 4), "indices have 32 bits");
+    return static_cast<std::size_t>(count);
+}
+
+Real FileReader::finite(Real value, const char* field) const {
+    if (!std::isfinite(value)) complain(field, std::isnan(value) ? "nan" : "a number that is not finite", "a finite number");
+    return value;
+}
+
+std::string FileReader::place() const {
+    if (last_was_binary_) return "byte " + std::to_string(start_);
+    const auto lines = std::count(data_.begin(), data_.begin() + static_cast<std::ptrdiff_t>(std::min(start_, data_.size())), '\n');
+    return "line " + std::to_string(lines + 1);
+}
+
+void FileReader::complain(std::string field, std::string found, std::string expected, std::string hint) const {
+    std::string object = section_.empty() ? std::string() : section_ + ", ";
+    if (row_kind_ != nullptr) object += row_kind_ + (" " + std::to_string(row_number_)) + " of " + std::to_string(row_count_) + ", ";
+    Complaint{path_, object + place(), std::move(field), std::move(found), std::move(expected), std::move(hint)}.raise();
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,94 @@
+// A file in memory, read front to back: lines, words, numbers and binary numbers, and complaints that say where.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry::mesh {
+
+class FileReader {
+public:
+    /// Reads the whole file. Throws SceneError when there is no such regular file or it cannot be read.
+    explicit FileReader(const std::string& path);
+
+    const std::string& path() const { return path_; }
+    std::size_t remaining() const { return data_.size() - position_; }
+    std::string_view rest() const { return std::string_view(data_).substr(position_); }
+
+    /// What the next complaints are about, for example "$Nodes".
+    void set_section(std::string section) {
+        section_ = std::move(section);
+        row_kind_ = nullptr;
+    }
+    /// A row of the section, for example "node 3 of 14"; forgotten by set_section.
+    void set_row(const char* kind, std::size_t number, std::size_t count);
+
+    // Lines. -----------------------------------------------------------------------------------------------------------------------
+    /// True when nothing but white space is left.
+    bool at_end() const;
+    /// The next line, without its end and white space at both sides.
+    std::string_view line();
+    /// The next line that is not empty. At the end of the file: complains that `expected` is missing.
+    std::string_view filled_line(const char* expected);
+    /// Words of a line. Valid until the next call.
+    const std::vector<std::string_view>& words_of(std::string_view line);
+
+    // Words and numbers of text. ---------------------------------------------------------------------------------------------------
+    /// The next word after white space, which may be on a later line. At the end of the file: complains that `expected` is missing.
+    std::string_view word(const char* expected);
+    /// The word that word() would give, empty at the end.
+    std::string_view peek_word() const;
+    Real parse_real(std::string_view text, const char* field) const;
+    std::int64_t parse_integer(std::string_view text, const char* field) const;
+
+    // Binary numbers. --------------------------------------------------------------------------------------------------------------
+    void set_foreign_bytes(bool foreign) { foreign_bytes_ = foreign; }
+    template <class T>
+    T binary(const char* field) {
+        T value;
+        begin_binary(sizeof(T), field);
+        char bytes[sizeof(T)];
+        for (std::size_t i = 0; i < sizeof(T); ++i) bytes[i] = data_[position_ + (foreign_bytes_ ? sizeof(T) - 1 - i : i)];
+        std::memcpy(&value, bytes, sizeof(T));
+        position_ += sizeof(T);
+        return value;
+    }
+    void skip_bytes(std::size_t count, const char* field);
+    /// Goes behind the next occurrence of `mark` that ends a word; it may follow binary numbers without a line end. False, and nothing
+    /// moves, when there is none.
+    bool skip_behind(std::string_view mark);
+
+    // Checks. ----------------------------------------------------------------------------------------------------------------------
+    /// A count as read: not negative, and so many rows of at least `bytes` bytes must fit into what is left of the file, so that a
+    /// false count cannot ask for more memory than a small multiple of the file.
+    std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
+    /// Complains unless the number is finite.
+    Real finite(Real value, const char* field) const;
+
+    /// Throws SceneError: file, section, row and line (or byte), field, found, expected.
+    [[noreturn]] void complain(std::string field, std::string found, std::string expected, std::string hint = {}) const;
+
+private:
+    void begin_binary(std::size_t size, const char* field);
+    std::string place() const;
+
+    std::string path_, data_, section_;
+    const char* row_kind_ = nullptr;
+    std::size_t row_number_ = 0, row_count_ = 0;
+    std::size_t position_ = 0;
+    std::size_t start_ = 0;  // of what was read last, for complaints
+    bool last_was_binary_ = false;
+    bool foreign_bytes_ = false;
+    std::vector<std::string_view> words_;
+};
+
+/// A word of the file, fit for a message: quoted, short, printable.
+std::string quoted(std::string_view text);
+
+}  // namespace skerry::mesh

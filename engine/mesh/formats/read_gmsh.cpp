@@ -1,0 +1,153 @@
+#include "engine/mesh/formats/read_gmsh.h"
+
+#include <utility>
+
+namespace skerry::mesh {
+namespace {
+
+// Nodes of an element by Gmsh type, 0: unknown here (type 0, and gaps). Lines, triangles, quadrangles, tetrahedra, hexahedra, prisms, pyramids, points.
+constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
+                                                    8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
+constexpr std::int64_t triangle_type = 2, tetrahedron_type = 4;
+
+bool is_curved_tetrahedron(std::int64_t type) {
+    return type == 11 || (type >= 29 && type <= 31) || (type >= 71 && type <= 75);
+}
+bool is_curved_triangle(std::int64_t type) {
+    return type == 9 || (type >= 20 && type <= 25);
+}
+
+}  // namespace
+
+std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
+    if (is_curved_tetrahedron(type))
+        reader.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order", "linear tetrahedra (type 4)",
+                        "in Gmsh: Mesh.ElementOrder = 1");
+    if (type == 92 || type == 93) return type == 92 ? 64 : 125;
+    const std::size_t count =
+        type > 0 && type < static_cast<std::int64_t>(nodes_of_type.size()) ? nodes_of_type[static_cast<std::size_t>(type)] : 0;
+    if (count == 0) reader.complain("type", std::to_string(type), "an element type of Gmsh: 1 to 31, 92 or 93");
+    return count;
+}
+
+void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const NodeNumbers& numbers,
+                       const FileReader& reader, RawMesh& mesh) {
+    std::array<Index, 4> rows{};
+    for (std::size_t a = 0; a < node_numbers.size(); ++a) {
+        const Index row = numbers.row(node_numbers[a], reader);
+        if (a < 4) rows[a] = row;
+    }
+    if (type == tetrahedron_type) {
+        require_different(rows, reader);
+        mesh.tetrahedra.push_back(rows);
+    } else if (type == triangle_type) {
+        const std::array<Index, 3> nodes{rows[0], rows[1], rows[2]};
+        require_different(nodes, reader);
+        mesh.triangles.push_back(nodes);
+    } else {
+        mesh.curved_triangles += is_curved_triangle(type);
+        mesh.others += 1;
+    }
+}
+
+std::vector<std::int64_t> integer_line(FileReader& reader, std::size_t count, const char* field, const char* meaning) {
+    const std::string_view text = reader.filled_line(meaning);
+    const std::vector<std::string_view>& words = reader.words_of(text);
+    if (words.size() != count) reader.complain(field, quoted(text), meaning);
+    std::vector<std::int64_t> numbers;
+    for (const std::string_view word : words) numbers.push_back(reader.parse_integer(word, field));
+    return numbers;
+}
+
+namespace {
+
+struct Header {
+    int version = 1;
+    bool binary = false;
+};
+
+/// The lines of $MeshFormat. Leaves the reader behind $EndMeshFormat.
+Header read_header(FileReader& reader) {
+    reader.set_section("$MeshFormat");
+    const std::string_view text = reader.filled_line("version, file type and data size");
+    const std::vector<std::string_view>& words = reader.words_of(text);
+    if (words.size() != 3) reader.complain({}, quoted(text), "version, file type and data size");
+    const std::string version(words[0]);
+    Header header;
+    if (version == "4.1")
+        header.version = 4;
+    else if (version == "2" || version == "2.0" || version == "2.1" || version == "2.2")
+        header.version = 2;
+    else
+        reader.complain("version", quoted(version), "1, 2.0 to 2.2, or 4.1", "gmsh OLD.msh -3 -format msh41 -o NEW.msh writes it anew");
+    const std::int64_t type = reader.parse_integer(words[1], "file type"), size = reader.parse_integer(words[2], "data size");
+    if (type != 0 && type != 1) reader.complain("file type", std::to_string(type), "0 (ASCII) or 1 (binary)");
+    header.binary = type == 1;
+    if (header.binary && size != 8) reader.complain("data size", std::to_string(size), "8 bytes");
+    if (header.binary) {
+        const auto one = reader.binary<std::uint32_t>("byte order");
+        if (one != 1 && one != 0x01000000)
+            reader.complain("byte order", std::to_string(one), "the integer 1 in one of the two byte orders");
+        reader.set_foreign_bytes(one != 1);
+    }
+    if (const std::string_view end = reader.filled_line("$EndMeshFormat"); end != "$EndMeshFormat")
+        reader.complain({}, quoted(end), "$EndMeshFormat");
+    return header;
+}
+
+void require_end(FileReader& reader, const std::string& mark) {
+    if (const std::string_view end = reader.filled_line(mark.c_str()); end != mark)
+        reader.complain({}, quoted(end), mark, "more rows than the section announces?");
+}
+
+}  // namespace
+
+RawMesh read_gmsh(FileReader& reader) {
+    RawMesh mesh;
+    NodeNumbers numbers;
+    Header header;
+    bool has_nodes = false, has_elements = false;
+    std::string_view name = reader.filled_line("$MeshFormat or $NOD");
+    if (name != "$MeshFormat" && name != "$NOD") reader.complain({}, quoted(name), "$MeshFormat or $NOD", "is this a Gmsh file?");
+    if (name == "$MeshFormat")
+        header = read_header(reader);
+    else
+        reader.set_section("$NOD");
+    bool first = name == "$NOD";  // its name has been read already
+    while (first || !reader.at_end()) {
+        if (!first) {
+            reader.set_section({});
+            name = reader.filled_line("a section");
+        }
+        first = false;
+        if (name.empty() || name.front() != '$') continue;  // Gmsh, too, passes over text between sections
+        const std::string section(name);
+        reader.set_section(section);
+        const bool version_1 = header.version == 1;
+        if (section == (version_1 ? "$NOD" : "$Nodes")) {
+            if (std::exchange(has_nodes, true)) reader.complain({}, "a second section of nodes", "one");
+            header.version == 4 ? read_gmsh4_nodes(reader, header.binary, numbers, mesh)
+                                : read_gmsh2_nodes(reader, header.binary, numbers, mesh);
+            require_end(reader, version_1 ? "$ENDNOD" : "$EndNodes");
+        } else if (section == (version_1 ? "$ELM" : "$Elements")) {
+            if (!has_nodes) reader.complain({}, "elements before nodes", "the nodes first");
+            if (std::exchange(has_elements, true)) reader.complain({}, "a second section of elements", "one");
+            if (header.version == 4)
+                read_gmsh4_elements(reader, header.binary, numbers, mesh);
+            else if (header.version == 2)
+                read_gmsh2_elements(reader, header.binary, numbers, mesh);
+            else
+                read_gmsh1_elements(reader, numbers, mesh);
+            require_end(reader, version_1 ? "$ENDELM" : "$EndElements");
+        } else {
+            const std::string end = (version_1 ? "$END" : "$End") + section.substr(1);
+            if (!reader.skip_behind(end)) reader.complain({}, "no " + end, "the end of each section");
+        }
+    }
+    reader.set_section({});
+    if (!has_nodes) reader.complain({}, "no nodes", header.version == 1 ? "a section $NOD" : "a section $Nodes");
+    if (!has_elements) reader.complain({}, "no elements", header.version == 1 ? "a section $ELM" : "a section $Elements");
+    return mesh;
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,118 @@
+#include "engine/mesh/formats/read_gmsh.h"
+
+namespace skerry::mesh {
+namespace {
+
+constexpr std::size_t shortest_row = 8;         // "1 0 0 0" and a line end: bytes of a node in text
+constexpr std::size_t binary_node = 4 + 3 * 8;  // bytes
+
+/// Words of the next line. A new section here means that rows are missing.
+const std::vector<std::string_view>& row_words(FileReader& reader, const char* expected) {
+    const std::string_view text = reader.filled_line(expected);
+    if (text.front() == '$') reader.complain({}, quoted(text), expected, "fewer rows than the section announces");
+    return reader.words_of(text);
+}
+
+std::vector<std::int64_t> parse_nodes(const FileReader& reader, const std::vector<std::string_view>& words, std::size_t begin) {
+    std::vector<std::int64_t> nodes;
+    for (std::size_t i = begin; i < words.size(); ++i) nodes.push_back(reader.parse_integer(words[i], "node"));
+    return nodes;
+}
+
+void require_words(const FileReader& reader, std::size_t found, std::size_t expected, const char* what) {
+    if (found != expected) reader.complain({}, std::to_string(found) + " numbers", std::to_string(expected), what);
+}
+
+}  // namespace
+
+void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, RawMesh& mesh) {
+    const std::int64_t announced = integer_line(reader, 1, "count", "the number of nodes")[0];
+    const std::size_t count = reader.checked_count(announced, binary ? binary_node : shortest_row, "count");
+    numbers.reserve(count);
+    mesh.nodes.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        reader.set_row("node", i + 1, count);
+        Vec3 x;
+        if (binary) {
+            numbers.add(reader.binary<std::int32_t>("number"), reader);
+            for (Real& value : x) value = reader.finite(reader.binary<double>("position"), "position");
+        } else {
+            const std::vector<std::string_view>& words = row_words(reader, "number x y z");
+            require_words(reader, words.size(), 4, "number x y z");
+            numbers.add(reader.parse_integer(words[0], "number"), reader);
+            for (std::size_t a = 0; a < 3; ++a)
+                x[static_cast<Eigen::Index>(a)] = reader.finite(reader.parse_real(words[a + 1], "position"), "position");
+        }
+        mesh.nodes.push_back(x);
+    }
+    reader.set_section("$Nodes");
+}
+
+void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
+    const std::size_t count =
+        reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0], 2 * shortest_row - 4, "count");
+    for (std::size_t i = 0; i < count; ++i) {
+        reader.set_row("element", i + 1, count);
+        const std::vector<std::string_view>& words = row_words(reader, "number type physical elementary node-count nodes");
+        if (words.size() < 5) require_words(reader, words.size(), 6, "number type physical elementary node-count nodes");
+        const std::int64_t type = reader.parse_integer(words[1], "type");
+        const std::size_t nodes = gmsh_node_count(type, reader);
+        if (const std::int64_t given = reader.parse_integer(words[4], "node count"); given != static_cast<std::int64_t>(nodes))
+            reader.complain("node count", std::to_string(given), std::to_string(nodes) + " for type " + std::to_string(type));
+        require_words(reader, words.size(), 5 + nodes, "number type physical elementary node-count nodes");
+        take_gmsh_element(type, parse_nodes(reader, words, 5), numbers, reader, mesh);
+    }
+    reader.set_section("$ELM");
+}
+
+namespace {
+
+void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
+    const std::vector<std::string_view>& words = row_words(reader, "number type tag-count tags nodes");
+    if (words.size() < 4) require_words(reader, words.size(), 4, "at least number, type, tag-count and a node");
+    const std::int64_t type = reader.parse_integer(words[1], "type");
+    const std::size_t nodes = gmsh_node_count(type, reader);
+    const std::int64_t tags = reader.parse_integer(words[2], "tag count");
+    if (tags < 0 || tags > static_cast<std::int64_t>(words.size()))
+        reader.complain("tag count", std::to_string(tags), "as many tags as the line has");
+    require_words(reader, words.size(), 3 + static_cast<std::size_t>(tags) + nodes, "number type tag-count tags nodes");
+    take_gmsh_element(type, parse_nodes(reader, words, 3 + static_cast<std::size_t>(tags)), numbers, reader, mesh);
+}
+
+/// Elements of one type with equally many tags behind one header. Returns how many.
+std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers, RawMesh& mesh) {
+    const auto type = reader.binary<std::int32_t>("type");
+    const std::size_t nodes = gmsh_node_count(type, reader);
+    const auto announced = reader.binary<std::int32_t>("elements of a block");
+    const auto tags = reader.binary<std::int32_t>("tag count");
+    const std::size_t tag_count = reader.checked_count(tags, 4, "tag count");
+    const std::size_t rows = reader.checked_count(announced, 4 * (1 + tag_count + nodes), "elements of a block");
+    if (rows == 0 || rows > count - done)
+        reader.complain("elements of a block", std::to_string(rows), "1 to " + std::to_string(count - done), "the rest of the section");
+    std::vector<std::int64_t> node_numbers(nodes);
+    for (std::size_t i = 0; i < rows; ++i) {
+        reader.set_row("element", done + i + 1, count);
+        reader.skip_bytes(4 * (1 + tag_count), "number and tags");
+        for (std::int64_t& number : node_numbers) number = reader.binary<std::int32_t>("node");
+        take_gmsh_element(type, node_numbers, numbers, reader, mesh);
+    }
+    return rows;
+}
+
+}  // namespace
+
+void read_gmsh2_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, RawMesh& mesh) {
+    const std::size_t count = reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0], 8, "count");
+    for (std::size_t done = 0; done < count;) {
+        reader.set_row("element", done + 1, count);
+        if (binary) {
+            done += read_binary_block(reader, done, count, numbers, mesh);
+        } else {
+            read_ascii_element(reader, numbers, mesh);
+            ++done;
+        }
+    }
+    reader.set_section("$Elements");
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,102 @@
+#include <map>
+
+#include "engine/mesh/formats/raw_mesh.h"
+
+// STL repeats the corners of each triangle: equal positions become one node, and triangles of which that leaves no three are dropped.
+namespace skerry::mesh {
+namespace {
+
+class Welder {
+public:
+    explicit Welder(RawMesh& mesh) : mesh_(mesh) {}
+
+    void add(const std::array<Vec3, 3>& corners) {
+        std::array<Index, 3> nodes;
+        for (std::size_t a = 0; a < 3; ++a) nodes[a] = node(corners[a]);
+        if (nodes[0] != nodes[1] && nodes[1] != nodes[2] && nodes[2] != nodes[0])
+            mesh_.triangles.push_back(nodes);
+        else
+            mesh_.others += 1;
+    }
+
+private:
+    Index node(const Vec3& x) {
+        const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));  // -0 equals 0
+        if (added) mesh_.nodes.push_back(x);
+        return place->second;
+    }
+
+    RawMesh& mesh_;
+    std::map<std::array<Real, 3>, Index> row_;
+};
+
+constexpr std::size_t header_bytes = 80, triangle_bytes = 50;
+
+void read_binary(FileReader& reader, Welder& welder) {
+    reader.set_foreign_bytes(std::endian::native == std::endian::big);  // STL is little-endian
+    reader.skip_bytes(header_bytes, "header");
+    const std::size_t count = reader.checked_count(reader.binary<std::uint32_t>("count"), triangle_bytes, "count");
+    for (std::size_t i = 0; i < count; ++i) {
+        reader.set_row("triangle", i + 1, count);
+        reader.skip_bytes(12, "normal");
+        std::array<Vec3, 3> corners;
+        for (Vec3& x : corners)
+            for (Real& value : x) value = reader.finite(static_cast<Real>(reader.binary<float>("position")), "position");
+        reader.skip_bytes(2, "attributes");
+        welder.add(corners);
+    }
+}
+
+void require_word(FileReader& reader, const char* expected) {
+    if (const std::string_view found = reader.word(expected); found != expected) reader.complain({}, quoted(found), expected);
+}
+
+void read_ascii(FileReader& reader, Welder& welder) {
+    while (!reader.at_end()) {
+        reader.set_section("solid");
+        const std::vector<std::string_view>& words = reader.words_of(reader.filled_line("solid"));
+        if (words[0] != "solid") reader.complain({}, quoted(words[0]), "solid");
+        for (std::size_t i = 1;; ++i) {
+            const std::string_view key = reader.word("facet or endsolid");
+            if (key == "endsolid") break;
+            reader.set_section("facet " + std::to_string(i));
+            if (key != "facet") reader.complain({}, quoted(key), "facet or endsolid");
+            require_word(reader, "normal");
+            for (int a = 0; a < 3; ++a) reader.word("a normal");  // not needed, and often zero or wrong
+            require_word(reader, "outer");
+            require_word(reader, "loop");
+            std::array<Vec3, 3> corners;
+            for (Vec3& x : corners) {
+                require_word(reader, "vertex");
+                for (Real& value : x) value = reader.finite(reader.parse_real(reader.word("a coordinate"), "position"), "position");
+            }
+            require_word(reader, "endloop");
+            require_word(reader, "endfacet");
+            welder.add(corners);
+        }
+        reader.line();  // the name again
+    }
+}
+
+}  // namespace
+
+RawMesh read_stl(FileReader& reader) {
+    RawMesh mesh;
+    Welder welder(mesh);
+    // A binary header may begin with "solid", too. The size tells: it is exact in a binary file.
+    const std::string_view bytes = reader.rest();
+    bool binary = false;
+    if (bytes.size() >= header_bytes + 4) {
+        std::uint64_t count = 0;
+        for (std::size_t i = 4; i-- > 0;) count = 256 * count + static_cast<unsigned char>(bytes[header_bytes + i]);
+        binary = bytes.size() == header_bytes + 4 + triangle_bytes * count;
+    }
+    if (binary || reader.peek_word() != "solid")
+        read_binary(reader, welder);
+    else
+        read_ascii(reader, welder);
+    reader.set_section({});
+    return mesh;
+}
+
+}  // namespace skerry::mesh

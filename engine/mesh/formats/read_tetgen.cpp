@@ -1,0 +1,102 @@
+#include <filesystem>
+
+#include "engine/mesh/formats/raw_mesh.h"
+
+// TetGen's .node and .ele. Format: TetGen manual, section 5.2.
+namespace skerry::mesh {
+namespace {
+
+/// Words of the next line that holds something besides a comment; empty at the end of the file.
+const std::vector<std::string_view>& row_words(FileReader& reader, const char* expected) {
+    while (!reader.at_end()) {
+        const std::string_view text = reader.line();
+        const std::vector<std::string_view>& words = reader.words_of(text.substr(0, text.find('#')));
+        if (!words.empty()) return words;
+    }
+    reader.complain({}, "the end of the file", expected);
+}
+
+/// The header: as many integers as the line has, at least one, `most` at most; those that lack are 0.
+std::array<std::int64_t, 4> read_header(FileReader& reader, std::size_t most, const char* meaning) {
+    reader.set_section("header");
+    const std::vector<std::string_view>& words = row_words(reader, meaning);
+    if (words.size() > most) reader.complain({}, std::to_string(words.size()) + " numbers", meaning);
+    std::array<std::int64_t, 4> numbers{};
+    for (std::size_t i = 0; i < words.size(); ++i) numbers[i] = reader.parse_integer(words[i], meaning);
+    return numbers;
+}
+
+void require_end(FileReader& reader, const char* rows) {
+    while (!reader.at_end()) {
+        const std::string_view text = reader.line();
+        if (const std::string_view content = text.substr(0, text.find('#')); !reader.words_of(content).empty())
+            reader.complain({}, quoted(text), "the end of the file", std::string("more ") + rows + " than the header announces");
+    }
+}
+
+void require_words(const FileReader& reader, std::size_t found, std::size_t least, std::size_t most, const char* meaning) {
+    if (found < least || found > most)
+        reader.complain({}, std::to_string(found) + " numbers",
+                        least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most), meaning);
+}
+
+void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
+    const auto [announced, dimension, attributes, markers] = read_header(reader, 4, "nodes, dimension, attributes, markers");
+    const std::size_t count = reader.checked_count(announced, 8, "nodes");
+    if (dimension != 3 && dimension != 0) reader.complain("dimension", std::to_string(dimension), "3");
+    if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
+    if (markers != 0 && markers != 1) reader.complain("markers", std::to_string(markers), "0 or 1");
+    const std::size_t most = 4 + static_cast<std::size_t>(attributes + markers);
+    reader.set_section("nodes");
+    numbers.reserve(count);
+    mesh.nodes.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        reader.set_row("node", i + 1, count);
+        const std::vector<std::string_view>& words = row_words(reader, "number x y z");
+        require_words(reader, words.size(), 4, most, "number x y z attributes marker");
+        const std::int64_t number = reader.parse_integer(words[0], "number");
+        // TetGen counts from 0 or from 1, in order; any other numbers of the file's own are as good.
+        numbers.add(number, reader);
+        Vec3 x;
+        for (std::size_t a = 0; a < 3; ++a)
+            x[static_cast<Eigen::Index>(a)] = reader.finite(reader.parse_real(words[a + 1], "position"), "position");
+        mesh.nodes.push_back(x);
+    }
+    require_end(reader, "nodes");
+}
+
+void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
+    const auto [announced, corners, attributes, unused] = read_header(reader, 3, "tetrahedra, nodes of each, attributes");
+    (void)unused;
+    const std::size_t count = reader.checked_count(announced, 10, "tetrahedra");
+    if (corners == 10) reader.complain("nodes of each", "10, tetrahedra of second order", "4", "run tetgen without -o2");
+    if (corners != 4 && corners != 0) reader.complain("nodes of each", std::to_string(corners), "4");
+    if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
+    reader.set_section("tetrahedra");
+    mesh.tetrahedra.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        reader.set_row("tetrahedron", i + 1, count);
+        const std::vector<std::string_view>& words = row_words(reader, "number and four nodes");
+        require_words(reader, words.size(), 5, 5 + static_cast<std::size_t>(attributes), "number, four nodes, attributes");
+        std::array<Index, 4> nodes;
+        for (std::size_t a = 0; a < 4; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
+        require_different(nodes, reader);
+        mesh.tetrahedra.push_back(nodes);
+    }
+    require_end(reader, "tetrahedra");
+}
+
+}  // namespace
+
+RawMesh read_tetgen(const std::string& path) {
+    std::filesystem::path base(path);
+    RawMesh mesh;
+    NodeNumbers numbers;
+    FileReader nodes(base.replace_extension(".node").string());
+    read_nodes(nodes, numbers, mesh);
+    FileReader elements(base.replace_extension(".ele").string());
+    read_tetrahedra(elements, numbers, mesh);
+    return mesh;
+}
+
+}  // namespace skerry::mesh

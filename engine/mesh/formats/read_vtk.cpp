@@ -1,0 +1,328 @@
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <utility>
+
+#include "engine/mesh/formats/raw_mesh.h"
+
+// Legacy VTK. Format: "VTK File Formats", VTK user's guide; version 5.1 of the files brought OFFSETS and CONNECTIVITY.
+namespace skerry::mesh {
+namespace {
+
+enum class Kind { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+struct NumberType {
+    Kind kind;
+    std::size_t size;  // bytes
+};
+
+class VtkReader {
+public:
+    explicit VtkReader(FileReader& reader) : reader_(reader) {}
+
+    RawMesh read() {
+        read_header();
+        bool more = true;
+        while (more && !reader_.at_end()) more = read_section(std::string(reader_.word("a section")));
+        reader_.set_section({});
+        if (!has_points_) reader_.complain({}, "no points", "a section POINTS");
+        if (dataset_ == "UNSTRUCTURED_GRID") {
+            if (!has_cells_) reader_.complain({}, "no cells", "a section CELLS");
+            if (!has_types_) reader_.complain({}, "no cell types", "a section CELL_TYPES");
+            take_cells();
+        }
+        return std::move(mesh_);
+    }
+
+private:
+    void read_header() {
+        reader_.set_section("header");
+        const std::string_view magic = reader_.filled_line("# vtk DataFile Version");
+        if (!magic.starts_with("# vtk DataFile Version"))
+            reader_.complain({}, quoted(magic), "# vtk DataFile Version", "only legacy VTK files are read");
+        reader_.line();  // title
+        const std::string_view format = reader_.filled_line("ASCII or BINARY");
+        if (format != "ASCII" && format != "BINARY") reader_.complain("format", quoted(format), "ASCII or BINARY");
+        binary_ = format == "BINARY";
+        reader_.set_foreign_bytes(std::endian::native == std::endian::little);  // VTK writes big-endian
+        const std::string_view key = reader_.word("DATASET");
+        if (key != "DATASET") reader_.complain({}, quoted(key), "DATASET");
+        dataset_ = reader_.word("the kind of data set");
+        if (dataset_ != "UNSTRUCTURED_GRID" && dataset_ != "POLYDATA")
+            reader_.complain("DATASET", quoted(dataset_), "UNSTRUCTURED_GRID or POLYDATA");
+    }
+
+    /// One section behind its name. False when the data of points and cells begin: nothing of the mesh follows them.
+    bool read_section(const std::string& name) {
+        reader_.set_section(name);
+        if (name == "POINT_DATA" || name == "CELL_DATA") return false;
+        if (name == "POINTS")
+            read_points();
+        else if (name == "CELLS" && dataset_ == "UNSTRUCTURED_GRID")
+            read_cells(has_cells_);
+        else if (name == "CELL_TYPES" && dataset_ == "UNSTRUCTURED_GRID")
+            read_types();
+        else if (name == "POLYGONS" && dataset_ == "POLYDATA")
+            read_polygons();
+        else if ((name == "VERTICES" || name == "LINES" || name == "TRIANGLE_STRIPS") && dataset_ == "POLYDATA")
+            skip_polydata();
+        else if (name == "FIELD")
+            skip_field();
+        else if (name == "METADATA")
+            skip_metadata();
+        else
+            reader_.complain({}, quoted(name), "POINTS, CELLS, CELL_TYPES, POLYGONS, FIELD, METADATA, CELL_DATA or POINT_DATA");
+        return true;
+    }
+
+    /// Lines up to an empty one or the end.
+    void skip_metadata() {
+        reader_.line();  // the rest of the word's own
+        while (reader_.remaining() > 0 && !reader_.line().empty()) {
+        }
+    }
+
+    std::size_t read_count(const char* field, std::size_t bytes) {
+        return reader_.checked_count(reader_.parse_integer(reader_.word(field), field), bytes, field);
+    }
+
+    NumberType read_type(const char* field) {
+        std::string name(reader_.word(field));
+        std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        struct Name {
+            const char* name;
+            NumberType type;
+        };
+        static constexpr std::array<Name, 13> names{{{"float", {Kind::float32, 4}},
+                                                     {"double", {Kind::float64, 8}},
+                                                     {"int", {Kind::int32, 4}},
+                                                     {"unsigned_int", {Kind::uint32, 4}},
+                                                     {"long", {Kind::int64, 8}},
+                                                     {"unsigned_long", {Kind::uint64, 8}},
+                                                     {"vtktypeint64", {Kind::int64, 8}},
+                                                     {"vtkidtype", {Kind::int32, 4}},
+                                                     {"char", {Kind::int8, 1}},
+                                                     {"unsigned_char", {Kind::uint8, 1}},
+                                                     {"short", {Kind::int16, 2}},
+                                                     {"unsigned_short", {Kind::uint16, 2}},
+                                                     {"vtktypeint32", {Kind::int32, 4}}}};
+        const auto found = std::find_if(names.begin(), names.end(), [&](const Name& n) { return name == n.name; });
+        if (found == names.end()) reader_.complain(field, quoted(name), "a number type of VTK, for example float or double");
+        return found->type;
+    }
+
+    /// The line end behind the counts, before binary rows.
+    void begin_rows() {
+        if (binary_) reader_.line();
+    }
+
+    Real read_real(const NumberType& type, const char* field) {
+        if (!binary_) return reader_.parse_real(reader_.word(field), field);
+        if (type.kind == Kind::float32) return static_cast<Real>(reader_.binary<float>(field));
+        if (type.kind == Kind::float64) return reader_.binary<double>(field);
+        return static_cast<Real>(read_integer(type, field));
+    }
+
+    std::int64_t read_integer(const NumberType& type, const char* field) {
+        if (!binary_) return reader_.parse_integer(reader_.word(field), field);
+        switch (type.kind) {
+            case Kind::int8:
+                return reader_.binary<std::int8_t>(field);
+            case Kind::uint8:
+                return reader_.binary<std::uint8_t>(field);
+            case Kind::int16:
+                return reader_.binary<std::int16_t>(field);
+            case Kind::uint16:
+                return reader_.binary<std::uint16_t>(field);
+            case Kind::int32:
+                return reader_.binary<std::int32_t>(field);
+            case Kind::uint32:
+                return reader_.binary<std::uint32_t>(field);
+            case Kind::int64:
+                return reader_.binary<std::int64_t>(field);
+            case Kind::uint64:
+                return static_cast<std::int64_t>(reader_.binary<std::uint64_t>(field));
+            default:
+                reader_.complain(field, "a type with fractions", "an integer type");
+        }
+    }
+
+    void read_points() {
+        if (has_points_) reader_.complain({}, "a second section POINTS", "one");
+        has_points_ = true;
+        const std::size_t count = read_count("count", binary_ ? 3 : 6);
+        const NumberType type = read_type("type");
+        begin_rows();
+        mesh_.nodes.reserve(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            reader_.set_row("point", i + 1, count);
+            Vec3 x;
+            for (Real& value : x) value = reader_.finite(read_real(type, "position"), "position");
+            mesh_.nodes.push_back(x);
+        }
+    }
+
+    Index read_node(const NumberType& type) {
+        const std::int64_t node = read_integer(type, "node");
+        if (node < 0 || node >= static_cast<std::int64_t>(mesh_.nodes.size()))
+            reader_.complain("node", std::to_string(node),
+                             "a point, 0 to " + std::to_string(static_cast<std::int64_t>(mesh_.nodes.size()) - 1));
+        return static_cast<Index>(node);
+    }
+
+    /// Rows of nodes of CELLS or POLYGONS, old (count and nodes of each cell) or new (offsets, then all nodes).
+    void read_cells(bool& has_rows) {
+        if (!has_points_) reader_.complain({}, "cells before points", "the points first");
+        if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of its name", "one");
+        const std::size_t first = read_count("count", 1), second = read_count("size", 1);
+        reader_.peek_word() == "OFFSETS" ? read_new_cells(first, second) : read_old_cells(first, second);
+    }
+
+    void read_old_cells(std::size_t cells, std::size_t size) {
+        constexpr NumberType type{Kind::int32, 4};
+        reader_.checked_count(static_cast<std::int64_t>(size), binary_ ? 4 : 2, "size");
+        begin_rows();
+        offsets_.assign(1, 0);
+        for (std::size_t c = 0; c < cells; ++c) {
+            reader_.set_row("cell", c + 1, cells);
+            const std::int64_t nodes = read_integer(type, "node count");
+            const std::size_t left = size - std::min(size, offsets_.back() + c + 1);  // without the counts so far
+            if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
+                reader_.complain("node count", std::to_string(nodes), "at most " + std::to_string(left),
+                                 "what the size in the header leaves");
+            for (std::int64_t a = 0; a < nodes; ++a) cell_nodes_.push_back(read_node(type));
+            offsets_.push_back(offsets_.back() + static_cast<std::size_t>(nodes));
+        }
+        if (offsets_.back() + cells != size)
+            reader_.complain("size", std::to_string(size) + " in the header", std::to_string(offsets_.back() + cells),
+                             "cells and their nodes");
+    }
+
+    void read_new_cells(std::size_t offsets, std::size_t size) {
+        reader_.word("OFFSETS");
+        const NumberType offset_type = read_type("type of OFFSETS");
+        begin_rows();
+        reader_.checked_count(static_cast<std::int64_t>(offsets), binary_ ? offset_type.size : 2, "count");
+        offsets_.clear();
+        for (std::size_t i = 0; i < offsets; ++i) {
+            reader_.set_row("offset", i + 1, offsets);
+            const std::int64_t offset = read_integer(offset_type, "offset");
+            const std::int64_t least = offsets_.empty() ? 0 : static_cast<std::int64_t>(offsets_.back());
+            if (offset < least || offset > static_cast<std::int64_t>(size) || (offsets_.empty() && offset != 0))
+                reader_.complain("offset", std::to_string(offset),
+                                 offsets_.empty() ? "0" : std::to_string(least) + " to " + std::to_string(size));
+            offsets_.push_back(static_cast<std::size_t>(offset));
+        }
+        if (offsets_.empty()) offsets_.push_back(0);
+        reader_.set_section("CONNECTIVITY");
+        if (offsets_.back() != size)
+            reader_.complain("last offset", std::to_string(offsets_.back()), std::to_string(size) + ", the size of CONNECTIVITY");
+        if (const std::string_view key = reader_.word("CONNECTIVITY"); key != "CONNECTIVITY")
+            reader_.complain({}, quoted(key), "CONNECTIVITY");
+        const NumberType node_type = read_type("type");
+        begin_rows();
+        for (std::size_t i = 0; i < size; ++i) {
+            reader_.set_row("entry", i + 1, size);
+            cell_nodes_.push_back(read_node(node_type));
+        }
+    }
+
+    void read_types() {
+        if (!has_cells_) reader_.complain({}, "types before cells", "the cells first");
+        if (std::exchange(has_types_, true)) reader_.complain({}, "a second section CELL_TYPES", "one");
+        const std::size_t count = read_count("count", binary_ ? 4 : 2);
+        if (count + 1 != offsets_.size())
+            reader_.complain("count", std::to_string(count), std::to_string(offsets_.size() - 1) + ", the cells");
+        begin_rows();
+        for (std::size_t i = 0; i < count; ++i) {
+            reader_.set_row("cell", i + 1, count);
+            types_.push_back(read_integer({Kind::int32, 4}, "type"));
+        }
+    }
+
+    void read_polygons() {
+        read_cells(has_cells_);
+        for (std::size_t c = 0; c + 1 < offsets_.size(); ++c) {
+            reader_.set_row("polygon", c + 1, offsets_.size() - 1);
+            take_polygon(offsets_[c], offsets_[c + 1]);
+        }
+        cell_nodes_.clear();
+        offsets_.assign(1, 0);
+    }
+
+    void skip_polydata() {
+        bool ignored = false;
+        read_cells(ignored);
+        mesh_.others += offsets_.size() - 1;
+        cell_nodes_.clear();
+        offsets_.assign(1, 0);
+    }
+
+    /// Triangles that fan out from the first corner.
+    void take_polygon(std::size_t begin, std::size_t end) {
+        if (end - begin < 3) reader_.complain("node count", std::to_string(end - begin), "at least 3");
+        for (std::size_t a = begin + 1; a + 1 < end; ++a) {
+            const std::array<Index, 3> nodes{cell_nodes_[begin], cell_nodes_[a], cell_nodes_[a + 1]};
+            require_different(nodes, reader_);
+            mesh_.triangles.push_back(nodes);
+        }
+    }
+
+    void take_cells() {
+        reader_.set_section("CELLS");
+        for (std::size_t c = 0; c < types_.size(); ++c) {
+            reader_.set_row("cell", c + 1, types_.size());
+            const std::size_t begin = offsets_[c], nodes = offsets_[c + 1] - begin;
+            const std::int64_t type = types_[c];
+            if (type == 24 || type == 71 || type == 78)
+                reader_.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order", "linear tetrahedra (type 10)");
+            if (type == 10) {
+                if (nodes != 4) reader_.complain("node count", std::to_string(nodes), "4 for a tetrahedron");
+                const std::array<Index, 4> t{cell_nodes_[begin], cell_nodes_[begin + 1], cell_nodes_[begin + 2], cell_nodes_[begin + 3]};
+                require_different(t, reader_);
+                mesh_.tetrahedra.push_back(t);
+            } else if (type == 5) {
+                if (nodes != 3) reader_.complain("node count", std::to_string(nodes), "3 for a triangle");
+                take_polygon(begin, begin + 3);
+            } else {
+                mesh_.curved_triangles += type == 22 || type == 34 || type == 69 || type == 76;
+                mesh_.others += 1;
+            }
+        }
+    }
+
+    /// "FIELD name arrays", then arrays "name components rows type" and their numbers.
+    void skip_field() {
+        reader_.word("the name of the field");
+        const std::size_t arrays = read_count("arrays", 4);
+        for (std::size_t i = 0; i < arrays; ++i) {
+            reader_.set_row("array", i + 1, arrays);
+            reader_.word("the name of the array");
+            const std::size_t components = read_count("components", 1), rows = read_count("rows", 1);
+            const NumberType type = read_type("type");
+            begin_rows();
+            const std::size_t numbers =
+                reader_.checked_count(static_cast<std::int64_t>(components * rows), binary_ ? type.size : 2, "numbers");
+            if (binary_)
+                reader_.skip_bytes(numbers * type.size, "numbers");
+            else
+                for (std::size_t n = 0; n < numbers; ++n) reader_.word("a number");
+        }
+    }
+
+    FileReader& reader_;
+    std::string dataset_;
+    bool binary_ = false, has_points_ = false, has_cells_ = false, has_types_ = false;
+    std::vector<std::size_t> offsets_{0};
+    std::vector<Index> cell_nodes_;
+    std::vector<std::int64_t> types_;
+    RawMesh mesh_;
+};
+
+}  // namespace
+
+RawMesh read_vtk(FileReader& reader) {
+    return VtkReader(reader).read();
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "engine/mesh/tetrahedron.h"
+#include "skerry/mesh.h"
+#include "systems/collision/build_surface.h"
+
+namespace skerry {
+namespace {
+
+using Edge = std::pair<Index, Index>;  // the lower node first
+
+std::vector<Edge> unique_edges(const Mesh& mesh) {
+    std::vector<Edge> edges;
+    edges.reserve(6 * mesh.tetrahedra.size());
+    for (const std::array<Index, 4>& t : mesh.tetrahedra)
+        for (std::size_t a = 0; a < 4; ++a)
+            for (std::size_t b = a + 1; b < 4; ++b) edges.emplace_back(std::minmax(t[a], t[b]));
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+}
+
+/// Pieces that hang together by nodes; a node that nothing uses is not a piece.
+std::size_t count_components(const Mesh& mesh) {
+    std::vector<Index> parent(mesh.nodes.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](Index n) {
+        while (parent[static_cast<std::size_t>(n)] != n) {
+            Index& up = parent[static_cast<std::size_t>(n)];
+            up = parent[static_cast<std::size_t>(up)];
+            n = up;
+        }
+        return n;
+    };
+    std::vector<bool> used(mesh.nodes.size(), false);
+    for (const std::array<Index, 4>& t : mesh.tetrahedra)
+        for (const Index n : t) {
+            used[static_cast<std::size_t>(n)] = true;
+            const Index first = root(t[0]), other = root(n);
+            parent[static_cast<std::size_t>(std::max(first, other))] = std::min(first, other);
+        }
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < parent.size(); ++n) count += used[n] && parent[n] == static_cast<Index>(n);
+    return count;
+}
+
+bool is_closed_manifold(const std::vector<BoundaryTriangle>& triangles) {
+    std::vector<Edge> edges;
+    edges.reserve(3 * triangles.size());
+    for (const BoundaryTriangle& t : triangles)
+        for (std::size_t a = 0; a < 3; ++a) edges.emplace_back(std::minmax(t.node[a], t.node[(a + 1) % 3]));
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t first = 0; first < edges.size();) {
+        const auto last = static_cast<std::size_t>(
+            std::upper_bound(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end(), edges[first]) - edges.begin());
+        if (last - first != 2) return false;
+        first = last;
+    }
+    return !edges.empty();
+}
+
+void measure_edges(const Mesh& mesh, MeshReport& report) {
+    const std::vector<Edge> edges = unique_edges(mesh);
+    if (edges.empty()) return;
+    report.min_edge = std::numeric_limits<Real>::infinity();
+    Real sum = 0;
+    for (const auto& [a, b] : edges) {
+        const Real length = (mesh.nodes[static_cast<std::size_t>(b)] - mesh.nodes[static_cast<std::size_t>(a)]).norm();
+        report.min_edge = std::min(report.min_edge, length);
+        report.max_edge = std::max(report.max_edge, length);
+        sum += length;
+    }
+    report.mean_edge = sum / static_cast<Real>(edges.size());
+}
+
+/// 12 (3 V)^(2/3) / sum of squared edges, with the sign of the volume: 1 is regular, 0 flat.
+Real quality(Real six_volumes, const std::array<Real, 6>& edges) {
+    Real squares = 0;
+    for (const Real length : edges) squares += length * length;
+    if (!(squares > 0)) return 0;
+    const Real root = std::cbrt(std::abs(six_volumes) / 2);
+    return std::copysign(12 * root * root / squares, six_volumes);
+}
+
+void measure_tetrahedra(const Mesh& mesh, MeshReport& report) {
+    if (mesh.tetrahedra.empty()) return;
+    report.min_altitude = report.min_quality = std::numeric_limits<Real>::infinity();
+    for (const std::array<Index, 4>& t : mesh.tetrahedra) {
+        const Real volume = mesh::six_volumes(mesh, t);
+        const Real face = std::sqrt(mesh::largest_face_squared(mesh, t));  // twice the area
+        const Real shape = quality(volume, mesh::edge_lengths(mesh, t));
+        report.volume += volume / 6;
+        report.min_altitude = std::min(report.min_altitude, face > 0 ? std::abs(volume) / face : 0);
+        report.min_quality = std::min(report.min_quality, shape);
+        report.mean_quality += shape / static_cast<Real>(mesh.tetrahedra.size());
+        const mesh::Orientation side = mesh::orientation(mesh, t);
+        report.inverted += side == mesh::Orientation::inverted;
+        report.flat += side == mesh::Orientation::flat;
+    }
+}
+
+}  // namespace
+
+MeshReport inspect(const Mesh& mesh) {
+    mesh::require_valid(mesh, "mesh");
+    MeshReport report;
+    report.nodes = mesh.nodes.size();
+    report.tetrahedra = mesh.tetrahedra.size();
+    if (!mesh.nodes.empty()) report.lower = report.upper = mesh.nodes.front();
+    for (const Vec3& node : mesh.nodes) {
+        report.lower = report.lower.cwiseMin(node);
+        report.upper = report.upper.cwiseMax(node);
+    }
+    const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
+    report.boundary_triangles = triangles.size();
+    report.closed_manifold = is_closed_manifold(triangles);
+    report.components = count_components(mesh);
+    measure_edges(mesh, report);
+    measure_tetrahedra(mesh, report);
+    return report;
+}
+
+}  // namespace skerry

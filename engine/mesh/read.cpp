@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include "engine/mesh/formats/raw_mesh.h"
+#include "engine/mesh/tetrahedron.h"
+#include "skerry/error.h"
+#include "skerry/mesh.h"
+
+namespace skerry::mesh {
+namespace {
+
+std::string lower_extension(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+RawMesh read_raw(const std::string& path, bool surface) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".node" || extension == ".ele") return read_tetgen(path);
+    const bool known = extension == ".msh" || extension == ".vtk" || (surface && (extension == ".obj" || extension == ".stl"));
+    if (!known)
+        Complaint{path,
+                  {},
+                  "file name",
+                  extension.empty() ? "no ending" : extension,
+                  surface ? ".msh, .vtk, .node, .ele, .obj or .stl" : ".msh, .vtk, .node or .ele",
+                  {}}
+            .raise();
+    FileReader reader(path);
+    if (extension == ".msh") return read_gmsh(reader);
+    if (extension == ".vtk") return read_vtk(reader);
+    return extension == ".obj" ? read_obj(reader) : read_stl(reader);
+}
+
+/// The nodes that the rows use, in their order, and the rows renumbered for them.
+template <std::size_t N>
+std::vector<Vec3> drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
+    std::vector<Index> place(nodes.size(), no_index);
+    for (const std::array<Index, N>& row : rows)
+        for (const Index n : row) place[static_cast<std::size_t>(n)] = 0;
+    std::vector<Vec3> used;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (place[n] == no_index) continue;
+        place[n] = static_cast<Index>(used.size());
+        used.push_back(nodes[n]);
+    }
+    for (std::array<Index, N>& row : rows)
+        for (Index& n : row) n = place[static_cast<std::size_t>(n)];
+    return used;
+}
+
+Mesh take_tetrahedra(RawMesh& raw) {
+    Mesh mesh;
+    mesh.nodes = drop_unused(raw.nodes, raw.tetrahedra);
+    mesh.tetrahedra = std::move(raw.tetrahedra);
+    // Some programs count the other way round. A file in which nothing is positive and something negative is one of theirs; where both occur, something
+    // is wrong with the mesh, and turning tetrahedra over would hide it.
+    bool any_positive = false, any_inverted = false;
+    for (const std::array<Index, 4>& t : mesh.tetrahedra) {
+        const Orientation side = orientation(mesh, t);
+        any_positive = any_positive || side == Orientation::positive;
+        any_inverted = any_inverted || side == Orientation::inverted;
+    }
+    if (any_inverted && !any_positive)
+        for (std::array<Index, 4>& t : mesh.tetrahedra) std::swap(t[2], t[3]);
+    return mesh;
+}
+
+}  // namespace
+
+Mesh read(const std::string& path) {
+    RawMesh raw = read_raw(path, false);
+    if (raw.tetrahedra.empty())
+        Complaint{path,
+                  {},
+                  {},
+                  "no tetrahedra",
+                  "at least one",
+                  "it has " + std::to_string(raw.triangles.size()) + " triangles and " + std::to_string(raw.others) + " other elements"}
+            .raise();
+    return take_tetrahedra(raw);
+}
+
+SurfaceMesh read_surface(const std::string& path) {
+    RawMesh raw = read_raw(path, true);
+    if (!raw.tetrahedra.empty()) return boundary(take_tetrahedra(raw));
+    if (raw.curved_triangles > 0)
+        Complaint{path, {}, {}, std::to_string(raw.curved_triangles) + " triangles of second or higher order", "linear triangles", {}}
+            .raise();
+    if (raw.triangles.empty())
+        Complaint{path, {}, {}, "no triangles", "at least one", "it has " + std::to_string(raw.others) + " other elements"}.raise();
+    SurfaceMesh surface;
+    surface.nodes = drop_unused(raw.nodes, raw.triangles);
+    surface.triangles = std::move(raw.triangles);
+    return surface;
+}
+
+}  // namespace skerry::mesh

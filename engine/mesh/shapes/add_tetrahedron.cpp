@@ -1,0 +1,32 @@
+#include "engine/mesh/shapes/add_tetrahedron.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "engine/mesh/tetrahedron.h"
+
+namespace skerry::mesh {
+
+void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes) {
+    if (six_volumes(mesh, nodes) < 0) std::swap(nodes[2], nodes[3]);
+    mesh.tetrahedra.push_back(nodes);
+}
+
+void require_size(const char* name, Real value) {
+    if (!(std::isfinite(value) && value > 0))
+        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) + ", expected metres above 0");
+}
+
+void require_count(const char* name, int value) {
+    if (value < 1) throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) + ", expected at least 1");
+}
+
+void require_fits(const char* name, double tetrahedra) {
+    if (!(tetrahedra <= 0x7fffffff / 4))
+        throw std::invalid_argument(std::string(name) + ": too fine, about " + std::to_string(tetrahedra) +
+                                    " tetrahedra do not fit a 32-bit index");
+}
+
+}  // namespace skerry::mesh

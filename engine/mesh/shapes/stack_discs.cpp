@@ -1,0 +1,132 @@
+#include "engine/mesh/shapes/stack_discs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "components/check.h"
+#include "engine/mesh/shapes/add_tetrahedron.h"
+
+namespace skerry::mesh {
+namespace {
+
+// Numbers of a disc's nodes: the centre, then ring after ring, counter-clockwise from the x axis. They do not depend on how many rings follow,
+// so node n of a disc stands above node n of the one below.
+int ring_begin(int ring) {
+    return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
+}
+int on_ring(int ring, int place) {
+    return ring == 0 ? 0 : ring_begin(ring) + place % (6 * ring);
+}
+int disc_size(int rings) {
+    return ring_begin(rings + 1);
+}
+
+/// The nodes of a disc are those of a hexagon of the triangular lattice, which three colours paint so that neighbours differ. The colours say
+/// which way the walls between prisms are cut: the same way at each corner of a sixth, so nothing turns the body to one side.
+std::vector<int> paint_nodes(int rings) {
+    constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
+    std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
+    for (int ring = 1; ring <= rings; ++ring)
+        for (int place = 0; place < 6 * ring; ++place) {
+            const auto sector = static_cast<std::size_t>(place / ring);
+            const std::array<int, 2>&out = direction[sector], &along = direction[(sector + 2) % 6];
+            const int p = ring * out[0] + place % ring * along[0], q = ring * out[1] + place % ring * along[1];
+            colour[static_cast<std::size_t>(on_ring(ring, place))] = ((p - q) % 3 + 3) % 3;
+        }
+    return colour;
+}
+
+/// Visits the triangles between ring - 1 and ring: `wide` ones with an edge on the outer ring (outer, outer, inner), and `narrow` ones
+/// with an edge on the inner ring (inner, inner, outer).
+template <class Wide, class Narrow>
+void for_each_triangle(int ring, Wide&& wide, Narrow&& narrow) {
+    for (int sector = 0; sector < 6; ++sector)
+        for (int j = 0; j < ring; ++j) {
+            const int outer = on_ring(ring, sector * ring + j), outer_next = on_ring(ring, sector * ring + j + 1);
+            const int inner = on_ring(ring - 1, sector * (ring - 1) + j);
+            wide(outer, outer_next, inner);
+            if (j + 1 < ring) narrow(inner, on_ring(ring - 1, sector * (ring - 1) + j + 1), outer_next);
+        }
+}
+
+class DiscStacker {
+public:
+    explicit DiscStacker(const std::vector<Disc>& discs) : discs_(discs) {
+        int most = 0;
+        for (const Disc& disc : discs_) most = std::max(most, disc.rings);
+        colour_ = paint_nodes(most);
+    }
+
+    Mesh build() {
+        for (const Disc& disc : discs_) add_nodes(disc);
+        for (std::size_t layer = 0; layer + 1 < discs_.size(); ++layer) fill_layer(layer);
+        return std::move(mesh_);
+    }
+
+private:
+    void add_nodes(const Disc& disc) {
+        first_.push_back(static_cast<Index>(mesh_.nodes.size()));
+        mesh_.nodes.emplace_back(0, 0, disc.z);
+        for (int ring = 1; ring <= disc.rings; ++ring)
+            for (int place = 0; place < 6 * ring; ++place) {
+                const Real angle = 2 * std::acos(Real{-1}) * place / (6 * ring), radius = disc.radius * ring / disc.rings;
+                mesh_.nodes.emplace_back(radius * std::cos(angle), radius * std::sin(angle), disc.z);
+            }
+    }
+
+    void fill_layer(std::size_t layer) {
+        const int below = discs_[layer].rings, above = discs_[layer + 1].rings, shared = std::min(below, above);
+        SKERRY_CHECK(std::abs(below - above) <= 1 && std::max(below, above) > 0);
+        for (int ring = 1; ring <= shared; ++ring) {
+            const auto prism = [&](int a, int b, int c) { add_prism(layer, {a, b, c}); };
+            for_each_triangle(ring, prism, prism);
+        }
+        if (below == above) return;
+        // The wider disc's last ring closes onto the shared ring of the narrower one.
+        const std::size_t wide = below > above ? layer : layer + 1, narrow = below > above ? layer + 1 : layer;
+        for_each_triangle(
+            shared + 1,
+            [&](int a, int b, int inner) {
+                add_tetrahedron(mesh_, {node(wide, a), node(wide, b), node(wide, inner), node(narrow, inner)});
+            },
+            [&](int a, int b, int outer) { add_pyramid(layer, a, b, node(wide, outer)); });
+    }
+
+    /// A wall of the layer is cut from its lower to its higher colour when one goes up, the other way round in the next layer.
+    bool cut_rises(std::size_t layer, int from, int to) const {
+        return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
+    }
+
+    void add_prism(std::size_t layer, std::array<int, 3> n) {
+        std::sort(n.begin(), n.end(), [&](int a, int b) { return cut_rises(layer, a, b); });
+        for (std::size_t step = 0; step < 3; ++step) {
+            std::array<Index, 4> nodes;
+            for (std::size_t a = 0; a <= step; ++a) nodes[a] = node(layer, n[a]);
+            for (std::size_t a = step; a < 3; ++a) nodes[a + 1] = node(layer + 1, n[a]);
+            add_tetrahedron(mesh_, nodes);
+        }
+    }
+
+    /// The wall over nodes a and b, and a tip outside of it.
+    void add_pyramid(std::size_t layer, int a, int b, Index tip) {
+        if (!cut_rises(layer, a, b)) std::swap(a, b);
+        add_tetrahedron(mesh_, {node(layer, a), node(layer, b), node(layer + 1, b), tip});
+        add_tetrahedron(mesh_, {node(layer, a), node(layer + 1, a), node(layer + 1, b), tip});
+    }
+
+    Index node(std::size_t disc, int number) const { return first_[disc] + number; }
+
+    const std::vector<Disc>& discs_;
+    std::vector<int> colour_;
+    std::vector<Index> first_;  // node 0 of each disc
+    Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh stack_discs(const std::vector<Disc>& discs) {
+    return DiscStacker(discs).build();
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,32 @@
+#include "collect_frame.h"
+
+namespace skerry {
+
+Frame FrameCollector::collect(const World& world) {
+    const WorldReport report = world.report();
+    if (report.steps > steps_prev_) step_size_ = (report.time - time_prev_) / static_cast<Real>(report.steps - steps_prev_);
+    time_prev_ = report.time;
+    steps_prev_ = report.steps;
+
+    Frame frame{.time = report.time,
+                .step_size = step_size_,
+                .gravity = world.settings().gravity,
+                .energy = report.energy,
+                .bodies = {},
+                .colliders = {},
+                .contacts = world.contacts()};
+    for (const BodyHandle body : world.bodies())
+        frame.bodies.push_back({.handle = body,
+                                .name = world.name(body),
+                                .position = world.positions(body),
+                                .velocity = world.velocities(body),
+                                .surface = world.surface(body),
+                                .tetrahedra = world.tetrahedra(body),
+                                .von_mises = world.von_mises_stress(body)});
+    for (const ColliderHandle collider : world.colliders())
+        frame.colliders.push_back(
+            {.handle = collider, .name = world.name(collider), .shape = &world.shape(collider), .pose = world.pose(collider)});
+    return frame;
+}
+
+}  // namespace skerry

@@ -1,0 +1,52 @@
+// One frame of output as plain data: what the writers format. Collected from a World in collect_frame.cpp and nowhere else.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skerry/report.h"
+#include "skerry/settings.h"
+
+namespace skerry {
+
+/// A body as the output shows it. The spans borrow from the world: valid until it changes.
+struct BodyFrame {
+    BodyHandle handle;
+    std::string name;
+    std::span<const Vec3> position;                    // m, by node
+    std::span<const Vec3> velocity;                    // m/s, by node
+    std::span<const std::array<Index, 3>> surface;     // boundary triangles, rows of position
+    std::span<const std::array<Index, 4>> tetrahedra;  // rows of position
+    std::vector<Real> von_mises;                       // Pa, by tetrahedron
+};
+
+struct ColliderFrame {
+    ColliderHandle handle;
+    std::string name;
+    const Shape* shape = nullptr;  // in its own frame
+    MotionKey pose;                // shape frame to world; a plane is z = 0 of its frame, facing up
+};
+
+struct Frame {
+    Real time = 0;                // s
+    Real step_size = 0;           // s, mean of the steps since the frame before; 0 without steps
+    Vec3 gravity = Vec3::Zero();  // m/s^2
+    Energy energy;
+    std::vector<BodyFrame> bodies;
+    std::vector<ColliderFrame> colliders;
+    std::span<const Contact> contacts;
+
+    /// N, on the first body. Zero when no step was made, because then there is no time that the impulse acted for.
+    Vec3 force(const Contact& contact) const { return step_size > 0 ? Vec3(contact.impulse / step_size) : Vec3(Vec3::Zero()); }
+};
+
+/// Regions are numbered by row, so the last number counts them; -1 marks contacts without a moving node.
+inline Index count_regions(std::span<const Contact> contacts) {
+    Index count = 0;
+    for (const Contact& contact : contacts) count = contact.region >= count ? contact.region + 1 : count;
+    return count;
+}
+
+}  // namespace skerry

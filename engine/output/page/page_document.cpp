@@ -1,0 +1,186 @@
+#include "page_document.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "../write_file.h"
+#include "pack.h"
+#include "page_assets.h"
+#include "skerry/error.h"
+
+namespace skerry {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+/// 32-bit words in base64; the page reads them as an array.
+template <class T, class Rows>
+std::string packed(const Rows& rows) {
+    std::string bytes;
+    for (const auto& row : rows)
+        for (const auto value : row) put(bytes, static_cast<T>(value));
+    return base64(bytes);
+}
+
+Json json_of_bodies(const PageData& data) {
+    Json list = Json::array();
+    for (const PageBody& body : data.bodies())
+        list.push_back({{"name", body.name}, {"vertices", body.node.size()}, {"triangles", packed<std::uint32_t>(body.triangles)}});
+    return list;
+}
+
+Json json_of_colliders(const PageData& data) {
+    Json list = Json::array();
+    for (const PageCollider& collider : data.colliders())
+        list.push_back({{"name", collider.name},
+                        {"kind", collider.kind},
+                        {"points", packed<float>(collider.picture.nodes)},
+                        {"triangles", packed<std::uint32_t>(collider.picture.triangles)}});
+    return list;
+}
+
+/// One array by quantity, each with a value by frame.
+Json json_of_rows(const PageData& data) {
+    Json rows;
+    const auto column = [&](const char* name, auto&& value) {
+        Json& list = rows[name] = Json::array();
+        for (const PageRow& row : data.rows()) list.push_back(value(row));
+    };
+    column("time", [](const PageRow& row) { return row.time; });
+    column("kinetic", [](const PageRow& row) { return row.energy.kinetic; });
+    column("elastic", [](const PageRow& row) { return row.energy.elastic; });
+    column("potential", [](const PageRow& row) { return row.energy.potential; });
+    column("dissipated", [](const PageRow& row) { return row.energy.dissipated; });
+    column("contacts", [](const PageRow& row) { return row.contacts; });
+    column("stick", [](const PageRow& row) { return row.stick; });
+    column("slide", [](const PageRow& row) { return row.slide; });
+    column("regions", [](const PageRow& row) { return row.regions; });
+    return rows;
+}
+
+Json json_of_report(const PageSummary& summary) {
+    const WorldReport& report = summary.report;
+    Json stages = Json::array();
+    for (const StageReport& stage : report.stages)
+        stages.push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}});
+    char hash[17];
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(summary.state_hash));
+    return {{"time", report.time},
+            {"steps", report.steps},
+            {"bodies", report.bodies},
+            {"colliders", report.colliders},
+            {"nodes", report.nodes},
+            {"elements", report.elements},
+            {"stable_step", report.stable_step},
+            {"mean_contacts", report.mean_contacts},
+            {"max_contacts", report.max_contacts},
+            {"mean_regions", report.mean_regions},
+            {"max_regions", report.max_regions},
+            {"largest_region", report.largest_region},
+            {"mean_iterations", report.mean_iterations},
+            {"solved", report.solved},
+            {"closed_form", report.closed_form},
+            {"certified", report.certified},
+            {"unconverged", report.unconverged},
+            {"worst_error", report.worst_error},
+            {"max_penetration", report.max_penetration},
+            {"state_hash", hash},
+            {"stages", stages}};
+}
+
+/// Where a legend ends: the largest value, and the one below which 99 % lie.
+Json json_of(const Quantile& quantile) {
+    return {{"max", quantile.max()}, {"usual", quantile.at(0.99)}};
+}
+
+std::string describe(const PageData& data, const PageSummary& summary) {
+    const Json json = {{"schema", 1},
+                       {"title", summary.title},
+                       {"gravity", json_of(data.gravity())},
+                       {"bodies", json_of_bodies(data)},
+                       {"colliders", json_of_colliders(data)},
+                       {"rows", json_of_rows(data)},
+                       {"speed", json_of(data.speed())},
+                       {"stress", json_of(data.stress())},
+                       {"force", json_of(data.force())},
+                       {"report", json_of_report(summary)}};
+    // Names are the users' own: bytes that are no UTF-8 become U+FFFD, and no '<' is left that could end the script element.
+    std::string text;
+    for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+        if (c == '<')
+            text += "\\u003c";
+        else
+            text += c;
+    }
+    return text;
+}
+
+std::string escape_html(const std::string& text) {
+    // Through JSON for its treatment of bytes that are no UTF-8; its quotes come off again.
+    std::string clean = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    clean = Json::parse(clean).get<std::string>();
+    std::string escaped;
+    for (const char c : clean) switch (c) {
+            case '&':
+                escaped += "&amp;";
+                break;
+            case '<':
+                escaped += "&lt;";
+                break;
+            case '>':
+                escaped += "&gt;";
+                break;
+            case '"':
+                escaped += "&quot;";
+                break;
+            default:
+                escaped += c;
+        }
+    return escaped;
+}
+
+}  // namespace
+
+void require_page_library(const std::filesystem::path& file) {
+    if (!three_js.empty()) return;
+    Complaint{.file = file.string(),
+              .object = "page",
+              .field = {},
+              .found = "a build without three.js",
+              .expected = "one made with it",
+              .hint = "install libjs-three or set SKERRY_THREE_JS, then configure and build again"}
+        .raise();
+}
+
+void write_page(const std::filesystem::path& file, const PageData& data, const PageSummary& summary) {
+    require_page_library(file);
+    write_file(file, [&](std::ostream& out) {
+        // The template with its @marks@ replaced, in one pass: what is put in is not searched again.
+        std::string_view rest = page_html;
+        const auto upto = [&](std::string_view mark) {
+            const std::size_t place = rest.find(mark);
+            out << rest.substr(0, place);
+            rest.remove_prefix(place + mark.size());
+        };
+        upto("@title@");
+        out << escape_html(summary.title);
+        upto("@style@");
+        out << page_style;
+        upto("@run@");
+        out << describe(data, summary);
+        upto("@frames@");
+        for (const std::string& frame : data.frames())
+            out << "<script type=\"text/plain\" class=\"frame\">" << base64(frame) << "</script>\n";
+        upto("@three@");
+        out << three_js;
+        upto("@script@");
+        out << page_script << rest;
+    });
+}
+
+}  // namespace skerry

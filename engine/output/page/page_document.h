@@ -1,0 +1,24 @@
+// The page as one file: the player, three.js, what the run was, and its frames.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "page_data.h"
+
+namespace skerry {
+
+/// What the page says about the run as a whole.
+struct PageSummary {
+    std::string title;
+    WorldReport report;
+    std::uint64_t state_hash = 0;
+};
+
+/// Throws SceneError, which names `file`, when this build has no three.js.
+void require_page_library(const std::filesystem::path& file);
+
+void write_page(const std::filesystem::path& file, const PageData& data, const PageSummary& summary);
+
+}  // namespace skerry

@@ -1,0 +1,32 @@
+#include "../collect_frame.h"
+#include "../write_file.h"
+#include "page_document.h"
+#include "skerry/output.h"
+
+namespace skerry {
+
+struct PageWriter::Impl {
+    std::filesystem::path file;
+    std::string title;
+    PageData data;
+    FrameCollector collector;
+};
+
+PageWriter::PageWriter(const std::filesystem::path& file, const std::string& title)
+    : impl_(new Impl{.file = file, .title = title, .data = {}, .collector = {}}) {
+    // What would fail after a long run is better said before it.
+    require_page_library(file);
+    if (file.has_parent_path()) make_folder(file.parent_path());
+}
+
+PageWriter::~PageWriter() = default;
+
+void PageWriter::add_frame(const World& world) {
+    impl_->data.add(impl_->collector.collect(world));
+}
+
+void PageWriter::close(const World& world) {
+    write_page(impl_->file, impl_->data, {.title = impl_->title, .report = world.report(), .state_hash = world.state_hash()});
+}
+
+}  // namespace skerry

@@ -1,0 +1,83 @@
+// The colliders: planes as a grid that fades out, containers transparent, the rest solid.
+"use strict";
+
+function make_colliders(scene, list, box) {
+  const cell = text.tick(2 * box.radius, 8);
+  const colliders = list.map((collider) => {
+    const object = collider.kind === "plane" ? plane_object(box.radius, cell) : solid_object(collider);
+    scene.add(object);
+    return object;
+  });
+
+  function show(frame, on) {
+    colliders.forEach((object, number) => {
+      const pose = frame.colliders.get(number);
+      object.visible = on && pose !== undefined;
+      if (!pose) return;
+      object.position.fromArray(pose.position);
+      turn_from(object.quaternion, pose.rotation);
+      if (object.userData.follow) {
+        // The part of an infinite plane around what is shown.
+        object.userData.follow(box.center.clone().sub(object.position).applyQuaternion(object.quaternion.clone().inverse()));
+      }
+    });
+  }
+  return { show, cell: list.some((collider) => collider.kind === "plane") ? cell : 0 };
+}
+
+function plane_object(radius, cell) {
+  const size = 7 * radius;
+  const grid = new THREE.ShaderMaterial({
+    uniforms: { cell: { value: cell }, reach: { value: size / 2 }, offset: { value: new THREE.Vector2() } },
+    transparent: true, depthWrite: false, extensions: { derivatives: true },
+    vertexShader: "varying vec2 at; void main() { at = position.xy; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
+    // Lines one pixel wide, in two widths of cell; where a pixel covers many cells they melt into their mean.
+    fragmentShader: `
+      varying vec2 at; uniform float cell, reach; uniform vec2 offset;
+      float lines(vec2 p) {
+        vec2 width = fwidth(p);
+        vec2 line = 1.0 - min(abs(fract(p - 0.5) - 0.5) / width, 1.0);
+        return max(line.x, line.y) * (1.0 - smoothstep(0.2, 0.6, max(width.x, width.y)));
+      }
+      void main() {
+        vec2 p = (at + offset) / cell;
+        float fade = 1.0 - smoothstep(0.15, 1.0, length(at) / reach);
+        float ink = 0.20 * lines(p) + 0.22 * lines(p / 5.0);
+        gl_FragColor = vec4(mix(vec3(0.20, 0.235, 0.27), vec3(0.78, 0.85, 0.92), ink), fade);
+      }`,
+  });
+  // Seen from above only: from below a plane would hide what lies on it.
+  const surface = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size), grid);
+  surface.renderOrder = -2;
+  const shadow = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size), new THREE.ShadowMaterial({ opacity: 0.42, depthWrite: false }));
+  shadow.receiveShadow = true;
+  shadow.renderOrder = -1;
+  const object = new THREE.Group();
+  object.add(surface, shadow);
+  object.userData.follow = (foot) => {
+    surface.position.set(foot.x, foot.y, 0);
+    shadow.position.copy(surface.position);
+    grid.uniforms.offset.value.set(foot.x, foot.y);
+  };
+  return object;
+}
+
+function solid_object(collider) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(decode.floats(collider.points), 3));
+  geometry.setIndex(new THREE.BufferAttribute(decode.words(collider.triangles), 1));
+  geometry.computeVertexNormals();
+  const clear = { bucket: 0.16, mesh: 0.4 }[collider.kind];
+  const material = new THREE.MeshStandardMaterial({
+    color: new THREE.Color(clear ? 0xb9c9da : 0x66717d).convertGammaToLinear(2.2), roughness: 0.85, metalness: 0,
+    flatShading: collider.kind === "mesh", side: clear ? THREE.DoubleSide : THREE.FrontSide,
+    transparent: Boolean(clear), opacity: clear || 1, depthWrite: !clear, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+  });
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.receiveShadow = !clear;
+  mesh.castShadow = !clear;
+  const ink = new THREE.LineBasicMaterial({ color: clear ? 0xc3d2e2 : 0x9fb0c0, transparent: true, opacity: clear ? 0.55 : 0.35 });
+  const object = new THREE.Group();
+  object.add(mesh, new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 30), ink));
+  return object;
+}

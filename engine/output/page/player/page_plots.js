@@ -1,0 +1,143 @@
+// Curves over time with a cursor, and the bars of the stages.
+"use strict";
+
+// series: [{name, color, values}], one value by time. format(value) is text. pick(frame) is called when somebody points at a time.
+function make_plot(host, times, series, format, pick) {
+  const keys = document.createElement("div");
+  keys.className = "keys";
+  const labels = series.map(({ name, color }) => {
+    const key = document.createElement("span"), swatch = document.createElement("i"), value = document.createElement("b");
+    swatch.className = "swatch";
+    swatch.style.background = color;
+    key.append(swatch, name + " ", value);
+    keys.append(key);
+    return value;
+  });
+  const canvas = document.createElement("canvas");
+  host.append(keys, canvas);
+  const pen = canvas.getContext("2d");
+  const ends = range_of(series);
+  const margin = { left: 52, right: 6, top: 6, bottom: 20 };
+  let frame = 0;
+
+  const first = times[0] || 0, span = Math.max((times[times.length - 1] || 0) - first, 1e-12);
+  const width = () => canvas.clientWidth - margin.left - margin.right;
+  const x_of = (time) => margin.left + (time - first) / span * width();
+  const y_of = (value) => canvas.clientHeight - margin.bottom
+      - (value - ends.low) / (ends.high - ends.low) * (canvas.clientHeight - margin.top - margin.bottom);
+
+  function draw() {
+    const ratio = window.devicePixelRatio || 1;
+    canvas.width = Math.round(canvas.clientWidth * ratio);
+    canvas.height = Math.round(canvas.clientHeight * ratio);
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
+    draw_axes();
+    pen.lineJoin = "round";
+    pen.lineWidth = 1.6;
+    for (const { color, values } of series) {
+      pen.strokeStyle = color;
+      pen.beginPath();
+      let down = false;
+      values.forEach((value, i) => {
+        if (value === null) { down = false; return; }
+        if (down) pen.lineTo(x_of(times[i]), y_of(value));
+        else pen.moveTo(x_of(times[i]), y_of(value));
+        down = true;
+      });
+      pen.stroke();
+    }
+    if (times.length === 0) return;
+    pen.strokeStyle = "#e8ebef";
+    pen.lineWidth = 1;
+    pen.beginPath();
+    pen.moveTo(x_of(times[frame]), margin.top);
+    pen.lineTo(x_of(times[frame]), canvas.clientHeight - margin.bottom);
+    pen.stroke();
+    for (const { color, values } of series) {
+      if (values[frame] === null) continue;
+      pen.fillStyle = color;
+      pen.beginPath();
+      pen.arc(x_of(times[frame]), y_of(values[frame]), 3, 0, 2 * Math.PI);
+      pen.fill();
+    }
+  }
+  function draw_axes() {
+    pen.strokeStyle = "#2a323c";
+    pen.fillStyle = "#93a0af";
+    pen.lineWidth = 1;
+    pen.beginPath();
+    pen.textAlign = "right";
+    pen.textBaseline = "middle";
+    for (let value = ends.low; value <= ends.high + 1e-9 * ends.step; value += ends.step) {
+      const y = Math.round(y_of(value)) + 0.5, shown = Math.abs(value) < 1e-9 * ends.step ? 0 : value;
+      pen.moveTo(margin.left, y);
+      pen.lineTo(canvas.clientWidth - margin.right, y);
+      pen.fillText(format(shown), margin.left - 7, y);
+    }
+    pen.stroke();
+    const step = text.tick(span, 4);
+    pen.textBaseline = "top";
+    for (let i = Math.ceil(first / step); i * step <= first + span * 1.000001; ++i) {
+      const x = x_of(i * step);
+      pen.textAlign = x > canvas.clientWidth - 24 ? "right" : "center";
+      pen.fillText(text.si(i * step, "s"), Math.min(x, canvas.clientWidth - 1), canvas.clientHeight - margin.bottom + 6);
+    }
+  }
+  function show(number) {
+    frame = number;
+    labels.forEach((label, i) => { label.textContent = times.length ? format(series[i].values[frame]) : ""; });
+    draw();
+  }
+  const point_at = (event) => {
+    const time = first + (event.offsetX - margin.left) / width() * span;
+    let best = 0;
+    times.forEach((t, i) => { if (Math.abs(t - time) < Math.abs(times[best] - time)) best = i; });
+    pick(best);
+  };
+  canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); point_at(event); });
+  canvas.addEventListener("pointermove", (event) => { if (event.buttons) point_at(event); });
+  new ResizeObserver(draw).observe(canvas);
+  return { show };
+}
+
+// Ends at ticks around all finite values and zero.
+function range_of(series) {
+  let low = 0, high = 0;
+  for (const { values } of series)
+    for (const value of values)
+      if (value !== null) {
+        low = Math.min(low, value);
+        high = Math.max(high, value);
+      }
+  if (high === low) high = low + 1;
+  const step = text.tick(high - low, 4);
+  return { low: Math.floor(low / step + 1e-9) * step, high: Math.ceil(high / step - 1e-9) * step, step };
+}
+
+// Mean milliseconds of each stage by step, with its share of all stages. Stages side by side count both.
+function show_stages(host, report) {
+  const element = (name, content) => {
+    const made = document.createElement("div");
+    made.className = name;
+    if (content !== undefined) made.textContent = content;
+    return made;
+  };
+  const steps = Math.max(report.steps, 1);
+  const total = report.stages.reduce((sum, stage) => sum + stage.seconds, 0);
+  const longest = Math.max(...report.stages.map((stage) => stage.seconds), 1e-300);
+  for (const stage of report.stages) {
+    const row = element("stage"), value = element("value"), time = document.createElement("b"), bar = element("bar");
+    const fill = document.createElement("i");
+    row.title = text.count(stage.runs) + " runs, skipped " + text.count(stage.skipped) + " times";
+    time.textContent = text.si(stage.seconds / steps, "s");
+    value.append(time, "  " + (total > 0 ? (100 * stage.seconds / total).toFixed(1) : "0") + "\u202f%");
+    fill.style.width = 100 * stage.seconds / longest + "%";
+    bar.append(fill);
+    row.append(element("name", stage.name), value, bar);
+    host.append(row);
+  }
+  host.append(element("note", report.stages.length
+    ? "Mean of " + text.count(report.steps) + " steps, " + text.si(total / steps, "s") + " over all stages; stages may run side by side."
+    : "No step was made."));
+}

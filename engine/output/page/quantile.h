@@ -1,0 +1,40 @@
+// Quantiles of many positive numbers without keeping them.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// Counts values in bins 2 % wide, so that a legend can end where nearly all values do instead of at one extreme.
+class Quantile {
+public:
+    void add(Real value) {
+        if (!(value > 0) || !std::isfinite(value)) return;  // a legend starts at zero anyway
+        ++bins_[static_cast<int>(std::floor(std::log(value) / log_width))];
+        ++count_;
+        if (value > max_) max_ = value;
+    }
+    /// The value below which the fraction `share` of the positive ones lies, to 2 %; 0 when there are none.
+    Real at(Real share) const {
+        std::uint64_t below = 0;
+        for (const auto& [bin, count] : bins_) {
+            below += count;
+            if (static_cast<Real>(below) >= share * static_cast<Real>(count_)) return std::fmin(std::exp((bin + 1) * log_width), max_);
+        }
+        return max_;
+    }
+    Real max() const { return max_; }
+
+private:
+    static constexpr Real log_width = 0.02;
+
+    std::map<int, std::uint64_t> bins_;
+    std::uint64_t count_ = 0;
+    Real max_ = 0;
+};
+
+}  // namespace skerry

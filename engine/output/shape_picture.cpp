@@ -1,0 +1,138 @@
+#include "shape_picture.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace skerry {
+namespace {
+
+constexpr int sectors = 48;      // around the axis: 7.5 degrees each, no visible corners at the size of a screen
+constexpr int arc_steps = 12;    // per quarter circle of a profile, the same angle
+constexpr int plane_cells = 10;  // along an edge of a patch, so that its edges show as a grid
+
+using Profile = std::vector<std::array<Real, 2>>;  // (radius, z), the outside to the right of its direction
+
+Mat3 rotation_of(const Vec3& axis_angle) {
+    const Real angle = axis_angle.norm();
+    if (angle == 0) return Mat3::Identity();
+    return Eigen::AngleAxis<Real>(angle, axis_angle / angle).toRotationMatrix();
+}
+
+/// A circular part of a profile about (0, z), from the angle `from` to `to` above the horizontal.
+void add_arc(Profile& profile, Real radius, Real z, Real from, Real to) {
+    const int steps = static_cast<int>(std::lround(std::abs(to - from) / (std::numbers::pi / 2) * arc_steps));
+    for (int i = 0; i <= steps; ++i) {
+        const Real angle = from + (to - from) * i / steps;
+        const bool pole = i == 0 ? from == -std::numbers::pi / 2 : i == steps && to == std::numbers::pi / 2;
+        profile.push_back({pole ? 0 : radius * std::cos(angle), z + radius * std::sin(angle)});
+    }
+}
+
+/// Turns a profile about z. Profiles run upwards on the outside, so triangles come out counter-clockwise seen from there.
+void revolve(const Profile& profile, SurfaceMesh& mesh) {
+    const Index first = static_cast<Index>(mesh.nodes.size());
+    for (const auto& [radius, z] : profile)
+        for (int s = 0; s < sectors; ++s) {
+            const Real angle = 2 * std::numbers::pi * s / sectors;
+            mesh.nodes.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+        }
+    for (std::size_t ring = 0; ring + 1 < profile.size(); ++ring)
+        for (int s = 0; s < sectors; ++s) {
+            const Index a = first + static_cast<Index>(ring) * sectors + s,
+                        b = first + static_cast<Index>(ring) * sectors + (s + 1) % sectors;
+            // A ring at a pole has no width, and one of the two triangles there would be flat.
+            if (profile[ring][0] > 0) mesh.triangles.push_back({a, b, b + sectors});
+            if (profile[ring + 1][0] > 0) mesh.triangles.push_back({a, b + sectors, a + sectors});
+        }
+}
+
+/// A parallelogram corner + [0, 1] u + [0, 1] v, cut into cells, facing u x v.
+void add_patch(const Vec3& corner, const Vec3& u, const Vec3& v, int cells, SurfaceMesh& mesh) {
+    const Index first = static_cast<Index>(mesh.nodes.size());
+    for (int j = 0; j <= cells; ++j)
+        for (int i = 0; i <= cells; ++i) mesh.nodes.push_back(corner + u * (Real(i) / cells) + v * (Real(j) / cells));
+    for (int j = 0; j < cells; ++j)
+        for (int i = 0; i < cells; ++i) {
+            const Index a = first + j * (cells + 1) + i, b = a + cells + 1;
+            mesh.triangles.push_back({a, a + 1, b + 1});
+            mesh.triangles.push_back({a, b + 1, b});
+        }
+}
+
+struct Picture {
+    const PlanePatch& patch;
+
+    /// Its normal and point are in the pose already: in its own frame every plane is z = 0.
+    SurfaceMesh operator()(const Plane&) const {
+        SurfaceMesh mesh;
+        const Real half = patch.half_size;
+        const Vec3 corner(patch.center.x() - half, patch.center.y() - half, 0);
+        add_patch(corner, 2 * half * Vec3::UnitX(), 2 * half * Vec3::UnitY(), plane_cells, mesh);
+        return mesh;
+    }
+    SurfaceMesh operator()(const Sphere& sphere) const {
+        SurfaceMesh mesh;
+        Profile outside;
+        add_arc(outside, sphere.radius, 0, -std::numbers::pi / 2, std::numbers::pi / 2);
+        revolve(outside, mesh);
+        return mesh;
+    }
+    SurfaceMesh operator()(const Box& box) const {
+        SurfaceMesh mesh;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const Real side : {-0.5, 0.5}) {
+                Vec3 u = Vec3::Zero(), v = Vec3::Zero();
+                u[(axis + 1) % 3] = box.size[(axis + 1) % 3];
+                v[(axis + 2) % 3] = box.size[(axis + 2) % 3];
+                Vec3 corner = -box.size / 2;
+                corner[axis] = side * box.size[axis];
+                add_patch(corner, side > 0 ? u : v, side > 0 ? v : u, 1, mesh);
+            }
+        return mesh;
+    }
+    SurfaceMesh operator()(const Capsule& capsule) const {
+        SurfaceMesh mesh;
+        Profile outside;
+        add_arc(outside, capsule.radius, -capsule.length / 2, -std::numbers::pi / 2, 0);
+        add_arc(outside, capsule.radius, capsule.length / 2, 0, std::numbers::pi / 2);
+        revolve(outside, mesh);
+        return mesh;
+    }
+    SurfaceMesh operator()(const Cylinder& cylinder) const {
+        SurfaceMesh mesh;
+        const Real r = cylinder.radius, top = cylinder.height / 2;
+        revolve({{0, -top}, {r, -top}}, mesh);
+        revolve({{r, -top}, {r, top}}, mesh);
+        revolve({{r, top}, {0, top}}, mesh);
+        return mesh;
+    }
+    SurfaceMesh operator()(const Bucket& bucket) const {
+        SurfaceMesh mesh;
+        const Real inner = bucket.radius, outer = bucket.radius + bucket.thickness, top = bucket.height, bottom = -bucket.thickness;
+        revolve({{0, bottom}, {outer, bottom}}, mesh);
+        revolve({{outer, bottom}, {outer, top}}, mesh);
+        revolve({{outer, top}, {inner, top}}, mesh);
+        revolve({{inner, top}, {inner, 0}}, mesh);
+        revolve({{inner, 0}, {0, 0}}, mesh);
+        return mesh;
+    }
+    SurfaceMesh operator()(const SurfaceMesh& mesh) const { return mesh; }
+};
+
+}  // namespace
+
+SurfaceMesh shape_picture(const Shape& shape, const PlanePatch& patch) {
+    return std::visit(Picture{patch}, shape);
+}
+
+Vec3 to_world(const MotionKey& pose, const Vec3& point) {
+    return pose.position + rotation_of(pose.rotation) * point;
+}
+
+Vec3 to_shape(const MotionKey& pose, const Vec3& point) {
+    return rotation_of(pose.rotation).transpose() * (point - pose.position);
+}
+
+}  // namespace skerry

@@ -1,0 +1,52 @@
+#include "vtk_file.h"
+
+#include <array>
+#include <charconv>
+#include <ostream>
+
+#include "../write_file.h"
+#include "components/check.h"
+
+namespace skerry {
+
+std::string number_text(double value) {
+    std::array<char, 32> text;
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    return {text.data(), end};
+}
+
+VtkFile::VtkFile(std::string_view kind, Real time) : kind_(kind) {
+    tags_ = "<?xml version=\"1.0\"?>\n";
+    open("VTKFile", "type=\"" + kind_ + "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"");
+    open(kind_);
+    tags_ += "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" + number_text(time) +
+             "</DataArray></FieldData>\n";
+}
+
+void VtkFile::open(std::string_view tag, std::string_view attributes) {
+    tags_.append("<").append(tag);
+    if (!attributes.empty()) tags_.append(" ").append(attributes);
+    tags_.append(">\n");
+}
+
+void VtkFile::close(std::string_view tag) {
+    tags_.append("</").append(tag).append(">\n");
+}
+
+void VtkFile::begin_array(std::string_view type, std::string_view name, int components) {
+    tags_.append("<DataArray type=\"").append(type).append("\" Name=\"").append(name);
+    tags_.append("\" NumberOfComponents=\"").append(std::to_string(components));
+    tags_.append("\" format=\"appended\" offset=\"").append(std::to_string(data_.size())).append("\"/>\n");
+}
+
+void VtkFile::check_size(std::size_t expected) const {
+    SKERRY_CHECK(data_.size() == expected);
+}
+
+void VtkFile::write(const std::filesystem::path& file) {
+    close(kind_);
+    tags_ += "<AppendedData encoding=\"raw\">_";
+    write_file(file, [&](std::ostream& out) { out << tags_ << data_ << "</AppendedData>\n</VTKFile>\n"; });
+}
+
+}  // namespace skerry

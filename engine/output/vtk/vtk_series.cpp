@@ -1,0 +1,267 @@
+#include "vtk_series.h"
+
+#include <algorithm>
+#include <ostream>
+
+#include "../shape_picture.h"
+#include "../write_file.h"
+#include "components/check.h"
+#include "skerry/error.h"
+#include "vtk_file.h"
+
+namespace skerry {
+namespace {
+
+constexpr std::uint8_t vtk_tetra = 10;
+
+void put_vector(auto& put, const Vec3& v) {
+    put(v.x());
+    put(v.y());
+    put(v.z());
+}
+
+/// One value of T per row.
+template <class T>
+void scalars(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
+    file.array<T>(name, 1, std::size(rows), [&](auto put) {
+        for (const auto& row : rows) put(value(row));
+    });
+}
+
+void vectors(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
+    file.array<float>(name, 3, std::size(rows), [&](auto put) {
+        for (const auto& row : rows) put_vector(put, value(row));
+    });
+}
+
+/// Where each of `count` cells of `nodes` nodes ends.
+void offsets(VtkFile& file, std::size_t count, Index nodes) {
+    file.array<std::int32_t>("offsets", 1, count, [&](auto put) {
+        for (std::size_t cell = 1; cell <= count; ++cell) put(static_cast<Index>(cell) * nodes);
+    });
+}
+
+template <class Handle>
+Index number_of(const std::map<Handle, Index>& numbers, Handle handle) {
+    const auto found = numbers.find(handle);
+    return found == numbers.end() ? -1 : found->second;
+}
+
+std::string count_attribute(std::string_view name, std::size_t count) {
+    return "NumberOf" + std::string(name) + "=\"" + std::to_string(count) + "\" ";
+}
+
+std::string escape_attribute(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) switch (c) {
+            case '&':
+                escaped += "&amp;";
+                break;
+            case '<':
+                escaped += "&lt;";
+                break;
+            case '"':
+                escaped += "&quot;";
+                break;
+            default:
+                escaped += c;
+        }
+    return escaped;
+}
+
+}  // namespace
+
+VtkSeries::VtkSeries(std::filesystem::path folder, std::string name) : folder_(std::move(folder)), name_(std::move(name)) {
+    if (name_.empty() || name_.find_first_of("/\\") != std::string::npos)
+        Complaint{.file = folder_.string(),
+                  .object = "output",
+                  .field = "name",
+                  .found = "\"" + name_ + "\"",
+                  .expected = "a file name without a folder",
+                  .hint = {}}
+            .raise();
+    make_folder(folder_);
+}
+
+std::string VtkSeries::frame_file(const char* what, const char* extension) const {
+    std::string digits = std::to_string(frame_count_);
+    if (digits.size() < 4) digits.insert(0, 4 - digits.size(), '0');
+    return name_ + "_" + what + "_" + digits + extension;
+}
+
+void VtkSeries::number(const Frame& frame) {
+    for (const BodyFrame& body : frame.bodies) body_number_.try_emplace(body.handle, static_cast<Index>(body_number_.size()));
+    for (const ColliderFrame& collider : frame.colliders)
+        collider_number_.try_emplace(collider.handle, static_cast<Index>(collider_number_.size()));
+}
+
+void VtkSeries::write_frame(const Frame& frame) {
+    number(frame);
+    const std::string bodies = frame_file("bodies", ".vtu"), contacts = frame_file("contacts", ".vtp");
+    write_bodies(frame, bodies);
+    write_contacts(frame, contacts);
+    if (colliders_changed(frame)) {
+        measure_patch(frame);
+        const std::string colliders = frame_file("colliders", ".vtp");
+        write_colliders(frame, colliders);
+        colliders_file_ = colliders;
+    }
+    entries_.push_back({frame.time, 0, bodies});
+    entries_.push_back({frame.time, 1, contacts});
+    if (!colliders_file_.empty()) entries_.push_back({frame.time, 2, colliders_file_});
+    ++frame_count_;
+}
+
+void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const {
+    std::size_t points = 0, cells = 0;
+    for (const BodyFrame& body : frame.bodies) {
+        SKERRY_CHECK(body.velocity.size() == body.position.size() && body.von_mises.size() == body.tetrahedra.size());
+        points += body.position.size();
+        cells += body.tetrahedra.size();
+    }
+    const auto of_nodes = [&](auto per_node) {
+        return [&frame, per_node](auto put) {
+            for (const BodyFrame& body : frame.bodies)
+                for (std::size_t node = 0; node < body.position.size(); ++node) per_node(put, body, node);
+        };
+    };
+    const auto of_cells = [&](auto per_cell) {
+        return [&frame, per_cell](auto put) {
+            for (const BodyFrame& body : frame.bodies)
+                for (std::size_t cell = 0; cell < body.tetrahedra.size(); ++cell) per_cell(put, body, cell);
+        };
+    };
+
+    VtkFile file("UnstructuredGrid", frame.time);
+    file.open("Piece", count_attribute("Points", points) + count_attribute("Cells", cells));
+    // Places in double: what people measure from them are differences (gaps, travel, strain), where float leaves few digits. The rest in
+    // float, which is more than the simulation knows.
+    file.open("Points");
+    file.array<double>("Points", 3, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.position[n]); }));
+    file.close("Points");
+    file.open("Cells");
+    file.array<std::int32_t>("connectivity", 1, 4 * cells, [&](auto put) {
+        Index first = 0;
+        for (const BodyFrame& body : frame.bodies) {
+            for (const auto& tetrahedron : body.tetrahedra)
+                for (const Index node : tetrahedron) put(first + node);
+            first += static_cast<Index>(body.position.size());
+        }
+    });
+    offsets(file, cells, 4);
+    file.array<std::uint8_t>("types", 1, cells, of_cells([](auto& put, const BodyFrame&, std::size_t) { put(vtk_tetra); }));
+    file.close("Cells");
+    file.open("PointData");
+    file.array<float>("velocity", 3, points,
+                      of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.velocity[n]); }));
+    file.array<float>("speed", 1, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.velocity[n].norm()); }));
+    file.close("PointData");
+    file.open("CellData");
+    file.array<float>("von_mises", 1, cells, of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put(b.von_mises[c]); }));
+    file.array<std::int32_t>("body", 1, cells,
+                             of_cells([this](auto& put, const BodyFrame& b, std::size_t) { put(number_of(body_number_, b.handle)); }));
+    file.close("CellData");
+    file.close("Piece");
+    file.write(folder_ / name);
+}
+
+void VtkSeries::write_contacts(const Frame& frame, const std::string& name) const {
+    const std::span<const Contact> rows = frame.contacts;
+    VtkFile file("PolyData", frame.time);
+    file.open("Piece", count_attribute("Points", rows.size()) + count_attribute("Verts", rows.size()) + count_attribute("Polys", 0));
+    file.open("Points");
+    file.array<double>("Points", 3, rows.size(), [&](auto put) {
+        for (const Contact& contact : rows) put_vector(put, contact.point);
+    });
+    file.close("Points");
+    file.open("Verts");
+    file.array<std::int32_t>("connectivity", 1, rows.size(), [&](auto put) {
+        for (std::size_t row = 0; row < rows.size(); ++row) put(row);
+    });
+    offsets(file, rows.size(), 1);
+    file.close("Verts");
+    file.open("PointData");
+    vectors(file, "impulse", rows, [](const Contact& c) { return c.impulse; });
+    vectors(file, "force", rows, [&](const Contact& c) { return frame.force(c); });
+    vectors(file, "normal", rows, [](const Contact& c) { return c.normal; });
+    vectors(file, "slip", rows, [](const Contact& c) { return c.slip; });
+    scalars<float>(file, "gap", rows, [](const Contact& c) { return c.gap; });
+    scalars<std::uint8_t>(file, "state", rows, [](const Contact& c) { return c.motion; });
+    scalars<std::int32_t>(file, "region", rows, [](const Contact& c) { return c.region; });
+    scalars<std::int32_t>(file, "first_body", rows, [&](const Contact& c) { return number_of(body_number_, c.first); });
+    scalars<std::int32_t>(file, "second_body", rows, [&](const Contact& c) { return number_of(body_number_, c.second); });
+    scalars<std::int32_t>(file, "collider", rows, [&](const Contact& c) { return number_of(collider_number_, c.collider); });
+    file.close("PointData");
+    file.close("Piece");
+    file.write(folder_ / name);
+}
+
+bool VtkSeries::colliders_changed(const Frame& frame) {
+    const auto same = [](const auto& prev, const ColliderFrame& now) {
+        return prev.first == now.handle && prev.second.position == now.pose.position && prev.second.rotation == now.pose.rotation;
+    };
+    if (std::ranges::equal(colliders_prev_, frame.colliders, same)) return false;
+    colliders_prev_.clear();
+    for (const ColliderFrame& collider : frame.colliders) colliders_prev_.emplace_back(collider.handle, collider.pose);
+    return true;
+}
+
+/// Planes have no end: their picture is twice as wide as the bodies in the first frame that has any, around them.
+void VtkSeries::measure_patch(const Frame& frame) {
+    if (patch_half_size_ > 0) return;
+    Vec3 lower = Vec3::Constant(1e300), upper = -lower;
+    for (const BodyFrame& body : frame.bodies)
+        for (const Vec3& point : body.position) {
+            lower = lower.cwiseMin(point);
+            upper = upper.cwiseMax(point);
+        }
+    if ((lower.array() > upper.array()).any()) return;
+    patch_center_ = (lower + upper) / 2;
+    patch_half_size_ = std::max((upper - lower).norm(), 1e-6);  // a single point still shows a floor
+}
+
+void VtkSeries::write_colliders(const Frame& frame, const std::string& name) const {
+    std::vector<Vec3> nodes;
+    std::vector<std::array<Index, 3>> triangles;
+    std::vector<Index> numbers;
+    for (const ColliderFrame& collider : frame.colliders) {
+        const PlanePatch patch{to_shape(collider.pose, patch_center_), patch_half_size_ > 0 ? patch_half_size_ : 1};
+        const SurfaceMesh picture = shape_picture(*collider.shape, patch);
+        const Index first = static_cast<Index>(nodes.size());
+        for (const Vec3& node : picture.nodes) nodes.push_back(to_world(collider.pose, node));
+        for (const auto& [a, b, c] : picture.triangles) triangles.push_back({first + a, first + b, first + c});
+        numbers.resize(triangles.size(), number_of(collider_number_, collider.handle));
+    }
+    VtkFile file("PolyData", frame.time);
+    file.open("Piece", count_attribute("Points", nodes.size()) + count_attribute("Polys", triangles.size()));
+    file.open("Points");
+    file.array<double>("Points", 3, nodes.size(), [&](auto put) {
+        for (const Vec3& node : nodes) put_vector(put, node);
+    });
+    file.close("Points");
+    file.open("Polys");
+    file.array<std::int32_t>("connectivity", 1, 3 * triangles.size(), [&](auto put) {
+        for (const auto& triangle : triangles)
+            for (const Index node : triangle) put(node);
+    });
+    offsets(file, triangles.size(), 3);
+    file.close("Polys");
+    file.open("CellData");
+    scalars<std::int32_t>(file, "collider", numbers, [](Index number) { return number; });
+    file.close("CellData");
+    file.close("Piece");
+    file.write(folder_ / name);
+}
+
+void VtkSeries::write_index() const {
+    static constexpr const char* part_names[] = {"bodies", "contacts", "colliders"};
+    write_file(folder_ / (name_ + ".pvd"), [&](std::ostream& out) {
+        out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
+        for (const auto& [time, part, file] : entries_)
+            out << "<DataSet timestep=\"" << number_text(time) << "\" group=\"\" part=\"" << part << "\" name=\"" << part_names[part]
+                << "\" file=\"" << escape_attribute(file) << "\"/>\n";
+        out << "</Collection>\n</VTKFile>\n";
+    });
+}
+
+}  // namespace skerry

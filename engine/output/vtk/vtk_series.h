@@ -1,0 +1,48 @@
+// A series of VTK files from frames.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "../frame.h"
+
+namespace skerry {
+
+/// NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, whenever a collider came, went or moved, NAME_colliders_0000.vtp; NAME.pvd lists
+/// them by time. Bodies and colliders are numbered in the order in which they were first seen, and keep their number.
+class VtkSeries {
+public:
+    VtkSeries(std::filesystem::path folder, std::string name);
+    void write_frame(const Frame& frame);
+    void write_index() const;
+
+private:
+    struct Entry {
+        Real time;         // s
+        int part;          // 0 bodies, 1 contacts, 2 colliders
+        std::string file;  // beside the index
+    };
+
+    void number(const Frame& frame);
+    void write_bodies(const Frame& frame, const std::string& file) const;
+    void write_contacts(const Frame& frame, const std::string& file) const;
+    void write_colliders(const Frame& frame, const std::string& file) const;
+    bool colliders_changed(const Frame& frame);
+    void measure_patch(const Frame& frame);
+    std::string frame_file(const char* what, const char* extension) const;
+
+    std::filesystem::path folder_;
+    std::string name_;
+    std::size_t frame_count_ = 0;
+    std::map<BodyHandle, Index> body_number_;
+    std::map<ColliderHandle, Index> collider_number_;
+    std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;  // as last written
+    std::string colliders_file_;                                        // last written
+    Vec3 patch_center_ = Vec3::Zero();                                  // m, of the pictures of planes
+    Real patch_half_size_ = 0;                                          // m, 0: not measured yet
+    std::vector<Entry> entries_;
+};
+
+}  // namespace skerry

@@ -1,0 +1,25 @@
+#include "../collect_frame.h"
+#include "skerry/output.h"
+#include "vtk_series.h"
+
+namespace skerry {
+
+struct VtkWriter::Impl {
+    VtkSeries series;
+    FrameCollector collector;
+};
+
+VtkWriter::VtkWriter(const std::filesystem::path& folder, const std::string& name)
+    : impl_(new Impl{.series = VtkSeries(folder, name), .collector = {}}) {}
+
+VtkWriter::~VtkWriter() = default;
+
+void VtkWriter::write_frame(const World& world) {
+    impl_->series.write_frame(impl_->collector.collect(world));
+}
+
+void VtkWriter::close() {
+    impl_->series.write_index();
+}
+
+}  // namespace skerry

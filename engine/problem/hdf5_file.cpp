@@ -1,0 +1,84 @@
+#include "engine/problem/hdf5_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace skerry {
+namespace {
+
+hid_t open_file(const std::filesystem::path& path) {
+    const auto refuse = [&](const std::string& found) {
+        Complaint{.file = path.string(), .object = {}, .field = {}, .found = found, .expected = "an FCLIB problem (HDF5)", .hint = {}}
+            .raise();
+    };
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) refuse("no such file");
+    if (std::filesystem::is_directory(path, ignored)) refuse("a directory");
+    if (H5Fis_hdf5(path.string().c_str()) <= 0) refuse("a file that is not HDF5");
+    const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (file < 0) refuse("an HDF5 file that cannot be opened");
+    return file;
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()), file_(open_file(path), H5Fclose) {}
+
+void Hdf5File::complain(const std::string& path, const std::string& found, const std::string& expected, const std::string& hint) const {
+    const std::size_t slash = path.rfind('/');
+    const std::string object = slash == 0 ? "" : path.substr(0, slash);
+    Complaint{.file = name_, .object = object, .field = path.substr(slash + 1), .found = found, .expected = expected, .hint = hint}.raise();
+}
+
+bool Hdf5File::has(const std::string& path) const {
+    // HDF5 answers for the last link only: every step of the path has to be asked for
+    for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+        if (H5Lexists(file_.id(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+        if (end == std::string::npos) return true;
+    }
+}
+
+void Hdf5File::expect_group(const std::string& path, const std::string& hint) const {
+    if (!has(path)) complain(path, "nothing", "a group", hint);
+    const Hdf5Handle group(H5Gopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.ok()) complain(path, "something else", "a group", hint);
+}
+
+template <class T>
+std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const {
+    if (!has(path)) complain(path, "nothing", expected);
+    const Hdf5Handle data(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!data.ok()) complain(path, "something that is not a data set", expected);
+    const Hdf5Handle type(H5Dget_type(data.id()), H5Tclose);
+    const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
+    if (!type.ok() || !space.ok()) complain(path, "a data set that cannot be read", expected);
+    const H5T_class_t found = H5Tget_class(type.id());
+    // whole numbers may stand for reals
+    if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER)) complain(path, "values of another type", expected);
+    const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+    if (count < 0 || count > std::numeric_limits<Index>::max()) complain(path, std::to_string(count) + " values", expected);
+    std::vector<T> values(static_cast<std::size_t>(count));
+    if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+        complain(path, "values that cannot be read", expected);
+    return values;
+}
+
+Index Hdf5File::integer(const std::string& path) const {
+    const std::vector<Index> values = integers(path);
+    if (values.size() != 1) complain(path, std::to_string(values.size()) + " values", "one integer");
+    return values[0];
+}
+
+std::vector<Index> Hdf5File::integers(const std::string& path) const {
+    return numbers<Index>(path, H5T_INTEGER, H5T_NATIVE_INT32, "integers");
+}
+
+std::vector<Real> Hdf5File::reals(const std::string& path) const {
+    std::vector<Real> values = numbers<Real>(path, H5T_FLOAT, H5T_NATIVE_DOUBLE, "numbers");
+    const auto bad = std::find_if(values.begin(), values.end(), [](Real value) { return !std::isfinite(value); });
+    if (bad != values.end()) complain(path, std::to_string(*bad) + " at entry " + std::to_string(bad - values.begin()), "finite numbers");
+    return values;
+}
+
+}  // namespace skerry

@@ -1,0 +1,147 @@
+// The program: reads the command line, calls a command, turns what goes wrong into a message and an exit code.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "engine/program/commands.h"
+
+namespace {
+
+using namespace skerry;
+
+const char* const general_examples = R"(Examples:
+  skerry run scenes/skittles.json                          simulate, and print what it cost and how accurate it was
+  skerry run scenes/skittles.json --page skittles.html     the same, and a page that plays the run in a browser
+  skerry run scenes/bucket.json --out frames --stats s.json   frames for ParaView, figures for scripts
+  skerry inspect scenes/table.json                         how large, how long the steps, what looks wrong
+  skerry inspect bunny.msh                                 sizes, quality and faults of a mesh
+  skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
+
+Exit codes: 0 ok, 1 the simulation failed or a problem did not converge, 2 bad input, 128 + n stopped by signal n.
+`skerry COMMAND --help` says more.)";
+
+const char* const run_examples = R"(Examples:
+  skerry run scenes/skittles.json --seconds 2 --threads 2
+  skerry run scenes/bucket.json --contact-regions global --stats global.json     one region instead of many, to compare
+  skerry run scenes/table.json --page table.html --frames-per-second 30
+  skerry run drop_27.json --threads 1 --quiet --stats drop.json                  a drop file is a scene, too)";
+
+/// Numbers that make sense as a length, a time or a tolerance.
+const CLI::Validator positive_number(
+    [](std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0
+                   ? std::string()
+                   : "found " + text + ", expected a number above 0";
+    },
+    "NUMBER > 0");
+
+template <class Enum>
+std::vector<std::string> names_of_all() {
+    std::vector<std::string> names;
+    for (const auto& [value, name] : EnumNames<Enum>::table) names.emplace_back(name);
+    return names;
+}
+
+/// An option whose values are the names of an enum.
+template <class Enum, class Target>
+void add_choice(CLI::App& app, const std::string& flag, Target& target, const std::string& meaning) {
+    app.add_option_function<std::string>(
+           flag, [&target](const std::string& name) { target = *from_name<Enum>(name); }, meaning)
+        ->check(CLI::IsMember(names_of_all<Enum>()));
+}
+
+/// An option that stays unset unless given.
+CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Real>& target, const std::string& meaning) {
+    return app
+        .add_option_function<Real>(
+            flag, [&target](const Real& value) { target = value; }, meaning)
+        ->check(positive_number);
+}
+
+void add_run(CLI::App& app, RunOptions& options) {
+    CLI::App& command = *app.add_subcommand("run", "Simulate a scene");
+    command.footer(run_examples);
+    command.add_option("SCENE", options.scene, "a scene in JSON; `skerry schema` prints what it may hold")->required();
+    add_number(command, "--seconds", options.seconds, "simulated time [s]; by default what the scene says");
+    command
+        .add_option_function<int>(
+            "--threads", [&options](const int& count) { options.overrides.threads = count; }, "worker threads; 0: as many as there are")
+        ->check(CLI::Range(0, 1024));
+    command.add_option("--out", options.out, "folder for ParaView frames (SCENE.pvd)");
+    command.add_option("--page", options.page, "HTML file that plays the run in a browser, offline");
+    command.add_option("--stats", options.stats, "JSON file with the figures of the run");
+    command.add_option("--trace", options.trace, "file with what every thread did, for Perfetto or chrome://tracing");
+    add_number(command, "--frames-per-second", options.frames_per_second, "frames of output in a simulated second");
+    add_choice<Backend>(command, "--backend", options.overrides.backend, "what runs the threads");
+    add_number(command, "--step", options.overrides.step_size, "step size [s]; by default the stable step");
+    add_choice<SolverMethod>(command, "--method", options.overrides.method, "contact solver");
+    add_choice<Friction>(command, "--friction", options.overrides.friction, "friction law");
+    add_number(command, "--tolerance", options.overrides.tolerance, "relative error of a region");
+    add_choice<ContactRegions>(command, "--contact-regions", options.overrides.contact_regions, "how contacts are grouped");
+    command.add_flag("--quiet", options.quiet, "no progress, no summary");
+}
+
+void add_solve(CLI::App& app, SolveOptions& options) {
+    CLI::App& command = *app.add_subcommand("solve", "Solve a frictional contact problem on its own");
+    command.footer("Example:\n  skerry solve Box_Stacks.hdf5 --tolerance 1e-8 --json --reactions reactions.txt");
+    command.add_option("PROBLEM", options.problem, "a local problem in FCLIB's HDF5 form")->required();
+    add_choice<SolverMethod>(command, "--method", options.settings.method, "contact solver");
+    add_choice<Friction>(command, "--friction", options.settings.friction, "friction law");
+    command.add_option("--tolerance", options.settings.tolerance, "on the relative error, as FCLIB and Siconos measure it")
+        ->check(positive_number)
+        ->capture_default_str();
+    command.add_option("--max-iterations", options.settings.max_iterations, "sweeps of a region")
+        ->check(CLI::Range(1, 2147483647))
+        ->capture_default_str();
+    command.add_option("--reactions", options.reactions, "file for the reactions: one contact a line, normal and two tangents, 17 digits");
+    command.add_flag("--json", options.json, "print JSON");
+}
+
+void add_inspect(CLI::App& app, InspectOptions& options) {
+    CLI::App& command = *app.add_subcommand("inspect", "Say what is in a mesh or a scene, and what looks wrong");
+    command.footer("Examples:\n  skerry inspect bunny.msh\n  skerry inspect scenes/skittles.json --json");
+    command.add_option("FILE", options.file, "a mesh (.msh, .vtk, .node, .ele) or a scene (.json)")->required();
+    command.add_flag("--json", options.json, "print JSON");
+}
+
+int run_command_line(int argc, char** argv) {
+    CLI::App app("Deformable bodies that touch each other with friction", "skerry");
+    app.footer(general_examples);
+    app.set_version_flag("--version", std::string("skerry ") + SKERRY_VERSION);
+    app.require_subcommand(1);
+    RunOptions run_options;
+    SolveOptions solve_options;
+    InspectOptions inspect_options;
+    add_run(app, run_options);
+    add_solve(app, solve_options);
+    add_inspect(app, inspect_options);
+    app.add_subcommand("schema", "Print the JSON schema of scenes");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+    }
+    if (app.got_subcommand("run")) return run(run_options);
+    if (app.got_subcommand("solve")) return solve(solve_options);
+    if (app.got_subcommand("inspect")) return inspect(inspect_options);
+    std::cout << scene_schema();
+    return exit_ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run_command_line(argc, argv);
+    } catch (const SceneError& error) {
+        std::cerr << "skerry: " << error.what() << "\n";
+        return exit_bad_input;
+    } catch (const std::exception& error) {
+        std::cerr << "skerry: " << error.what() << "\n";
+        return exit_failed;
+    }
+}

@@ -1,0 +1,77 @@
+#include "engine/program/probe_recorder.h"
+
+#include <algorithm>
+
+namespace skerry {
+
+namespace {
+
+struct Sample {
+    int sticking = 0, sliding = 0;
+    Real slip = 0;  // m/s, sum, then mean
+};
+
+/// Whether one of the nodes that a contact presses on is inside.
+bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& inside) {
+    for (std::size_t a = 0; a < 4; ++a) {
+        const bool ours = (contact.weight[a] > 0 && contact.first == body) || (contact.weight[a] < 0 && contact.second == body);
+        if (ours && inside[static_cast<std::size_t>(contact.node[a])] != 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+ProbeRecorder::ProbeRecorder(const Scene& scene) {
+    for (const Probe& probe : scene.probes) {
+        Tracked tracked{.body = probe.body, .inside = std::vector<char>(scene.world.positions(probe.body).size(), 0)};
+        for (const Index node : probe.nodes) tracked.inside[static_cast<std::size_t>(node)] = 1;
+        tracked_.push_back(std::move(tracked));
+        records_.emplace_back().name = probe.name;
+    }
+}
+
+void ProbeRecorder::sample(const World& world, Real seconds) {
+    std::vector<State> states;
+    for (std::size_t p = 0; p < tracked_.size(); ++p) {
+        Tracked& tracked = tracked_[p];
+        ProbeRecord& record = records_[p];
+        Sample sample;
+        for (const Contact& contact : world.contacts()) {
+            if (contact.motion == ContactMotion::open || !touches(contact, tracked.body, tracked.inside)) continue;
+            ++(contact.motion == ContactMotion::slide ? sample.sliding : sample.sticking);
+            sample.slip += contact.slip.norm();
+        }
+        const int closed = sample.sticking + sample.sliding;
+        if (closed > 0) sample.slip /= closed;
+        // A part slides when at least half of what touches does.
+        const State state = closed == 0 ? State::open : (2 * sample.sliding >= closed ? State::slide : State::stick);
+        states.push_back(state);
+
+        (state == State::open ? record.open_time : state == State::slide ? record.slide_time : record.stick_time) += seconds;
+        if (state != State::open && tracked.last_closed != State::open && state != tracked.last_closed) ++record.changes;
+        if (state != State::open) tracked.last_closed = state;
+        record.max_slip = std::max(record.max_slip, sample.slip);
+        record.slip_distance += sample.slip * seconds;
+        record.time.push_back(world.time());
+        record.sticking.push_back(sample.sticking);
+        record.sliding.push_back(sample.sliding);
+        record.slip.push_back(sample.slip);
+    }
+    if (std::count(states.begin(), states.end(), State::slide) == 1)
+        records_[static_cast<std::size_t>(std::find(states.begin(), states.end(), State::slide) - states.begin())].slide_alone_time +=
+            seconds;
+}
+
+Json to_json(const ProbeRecord& record) {
+    return {{"stick_time", record.stick_time},
+            {"slide_time", record.slide_time},
+            {"open_time", record.open_time},
+            {"slide_alone_time", record.slide_alone_time},
+            {"changes", record.changes},
+            {"max_slip", record.max_slip},
+            {"slip_distance", record.slip_distance},
+            {"series", {{"time", record.time}, {"sticking", record.sticking}, {"sliding", record.sliding}, {"slip", record.slip}}}};
+}
+
+}  // namespace skerry

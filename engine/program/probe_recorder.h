@@ -1,0 +1,45 @@
+// Follows the probes of a scene: which parts of bodies stick and which slide, and when.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/place.h"
+#include "skerry/scene.h"
+
+namespace skerry {
+
+struct ProbeRecord {
+    std::string name;
+    Real stick_time = 0, slide_time = 0, open_time = 0;  // s
+    Real slide_alone_time = 0;                           // s, while no other probe slides
+    int changes = 0;                                     // between sticking and sliding
+    Real max_slip = 0;                                   // m/s, mean over the probe's closed contacts
+    Real slip_distance = 0;                              // m, integral of that mean
+    std::vector<Real> time;                              // s, of the samples
+    std::vector<int> sticking, sliding;                  // contacts
+    std::vector<Real> slip;                              // m/s
+};
+
+class ProbeRecorder {
+public:
+    explicit ProbeRecorder(const Scene& scene);
+    /// Counts the contacts of the last step; they stand for the `seconds` since the sample before.
+    void sample(const World& world, Real seconds);
+    const std::vector<ProbeRecord>& records() const { return records_; }
+
+private:
+    enum class State { open, stick, slide };
+    struct Tracked {
+        BodyHandle body;
+        std::vector<char> inside;  // by local node
+        State last_closed = State::open;
+    };
+
+    std::vector<Tracked> tracked_;
+    std::vector<ProbeRecord> records_;
+};
+
+Json to_json(const ProbeRecord& record);
+
+}  // namespace skerry

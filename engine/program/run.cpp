@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <ostream>
+
+#include "engine/output/write_file.h"
+#include "engine/program/commands.h"
+#include "engine/program/progress.h"
+#include "engine/program/require_writable.h"
+#include "engine/program/run_result.h"
+#include "jobs/executor.h"
+#include "skerry/output.h"
+
+namespace skerry {
+
+namespace {
+
+volatile std::sig_atomic_t caught_signal = 0;
+
+/// Ctrl-C and polite kills end the run between two frames; a second one ends it at once.
+class SignalGuard {
+public:
+    SignalGuard() {
+        struct sigaction action = {};
+        action.sa_handler = [](int number) { caught_signal = number; };
+        action.sa_flags = static_cast<int>(SA_RESETHAND);
+        sigaction(SIGINT, &action, &old_interrupt_);
+        sigaction(SIGTERM, &action, &old_terminate_);
+    }
+    ~SignalGuard() {
+        sigaction(SIGINT, &old_interrupt_, nullptr);
+        sigaction(SIGTERM, &old_terminate_, nullptr);
+    }
+    SignalGuard(const SignalGuard&) = delete;
+    SignalGuard& operator=(const SignalGuard&) = delete;
+
+private:
+    struct sigaction old_interrupt_, old_terminate_;
+};
+
+const char* const advice = "on the command line: a smaller --step; `skerry inspect` shows the stable step of every body and what overlaps";
+
+/// What is written while a run goes on.
+class FrameOutput {
+public:
+    FrameOutput(const RunOptions& options, const Scene& scene) {
+        if (!options.out.empty()) vtk_ = std::make_unique<VtkWriter>(options.out, scene.name);
+        if (!options.page.empty()) page_ = std::make_unique<PageWriter>(options.page, scene.name);
+    }
+    void add_frame(const World& world) {
+        const Stopwatch watch;
+        if (vtk_) vtk_->write_frame(world);
+        if (page_) page_->add_frame(world);
+        ++frames_;
+        seconds_ += watch.seconds();
+    }
+    void close(const World& world) {
+        const Stopwatch watch;
+        if (vtk_) vtk_->close();
+        if (page_) page_->close(world);
+        seconds_ += watch.seconds();
+    }
+    int frames() const { return frames_; }
+    double seconds() const { return seconds_; }
+
+private:
+    std::unique_ptr<VtkWriter> vtk_;
+    std::unique_ptr<PageWriter> page_;
+    int frames_ = 0;
+    double seconds_ = 0;
+};
+
+struct Course {
+    double seconds, frame_step;
+    int samples;  // of the probes in a frame
+};
+
+Course course_of(const RunOptions& options, const Scene& scene) {
+    Course course{options.seconds.value_or(scene.seconds), scene.frame_step, 1};
+    if (options.frames_per_second) course.frame_step = 1 / *options.frames_per_second;
+    if (!scene.probes.empty()) course.samples = std::max(1, static_cast<int>(std::lround(course.frame_step / scene.probe_step)));
+    return course;
+}
+
+/// Runs frame after frame. What went wrong is in result.status.
+void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool show_progress, RunResult& result) {
+    const SignalGuard guard;
+    Progress progress(show_progress, course.seconds);
+    ProbeRecorder probes(scene);
+    World& world = scene.world;
+    constexpr double slack = 1e-9;  // of a frame: 0.1 s are six frames of 1/60 s, not seven
+    const auto frame_count = static_cast<long>(std::ceil(course.seconds / course.frame_step - slack));
+    output.add_frame(world);
+    for (long frame = 0; frame < frame_count && result.status == "ok"; ++frame) {
+        const double begin = static_cast<double>(frame) * course.frame_step;
+        const double length = std::min(course.frame_step, course.seconds - begin);
+        for (int sample = 0; sample < course.samples; ++sample) {
+            const Stopwatch watch;
+            const double duration = length / course.samples;
+            const StepReport step = world.advance(duration);
+            result.seconds_wall += watch.seconds();
+            if (!step.ok()) {
+                result.status = step.message() + " (" + advice + ")";
+                break;
+            }
+            probes.sample(world, duration);
+        }
+        output.add_frame(world);
+        progress.show(world.time());
+        if (caught_signal != 0) result.status = "stopped by a signal at " + std::to_string(world.time()) + " s";
+    }
+    result.probes = probes.records();
+}
+
+void write_results(const RunOptions& options, const RunResult& result, const World& world) {
+    if (!options.stats.empty()) write_file(options.stats, [&](std::ostream& out) { out << statistics_of(result).dump(1) << "\n"; });
+    if (!options.trace.empty()) write_file(options.trace, [&](std::ostream& out) { world.write_trace(out); });
+    if (!options.quiet) {
+        std::cout << summary_of(result);
+        for (const auto* file : {&options.out, &options.page, &options.stats, &options.trace})
+            if (!file->empty()) std::cout << "  wrote         " << file->string() << "\n";
+        std::cout.flush();
+    }
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    const Stopwatch loading;
+    Scene scene = load_scene(options.scene, options.overrides);
+    World& world = scene.world;
+    RunResult result;
+    result.seconds_load = loading.seconds();
+    result.scene = scene.name;
+    result.scene_file = options.scene.string();
+    result.settings = world.settings();
+    result.threads = make_executor(world.settings().backend, world.settings().threads)->worker_count();
+    for (const BodyHandle body : world.bodies()) result.mean_edge += world.mean_edge(body) / static_cast<Real>(world.bodies().size());
+
+    if (!options.out.empty()) require_writable_folder(options.out);
+    for (const auto* file : {&options.stats, &options.page, &options.trace})
+        if (!file->empty()) require_writable_file(*file);
+    FrameOutput output(options, scene);
+    if (!options.trace.empty()) world.set_tracing(true);
+
+    run_frames(scene, course_of(options, scene), output, !options.quiet, result);
+
+    result.report = world.report();
+    result.state_hash = world.state_hash();
+    result.seconds_simulated = world.time();
+    output.close(world);
+    result.frames = output.frames();
+    result.seconds_output = output.seconds();
+    write_results(options, result, world);
+    if (result.status == "ok") return exit_ok;
+    std::cerr << "skerry: " << result.status << "\n";
+    return caught_signal != 0 ? exit_signal + caught_signal : exit_failed;
+}
+
+}  // namespace skerry

@@ -1,0 +1,33 @@
+// What a run was and what came of it, and its two tellings: for scripts and for people.
+#pragma once
+
+#include <string>
+
+#include "engine/program/probe_recorder.h"
+#include "skerry/scene.h"
+
+namespace skerry {
+
+struct RunResult {
+    std::string scene;
+    std::string scene_file;
+    std::string status = "ok";  // else what went wrong
+    Settings settings;
+    int threads = 0;  // as used
+    double seconds_simulated = 0;
+    double seconds_wall = 0;    // in the steps themselves
+    double seconds_load = 0;    // reading and building
+    double seconds_output = 0;  // writing frames
+    int frames = 0;
+    Real mean_edge = 0;  // m, mean over the bodies' surfaces
+    WorldReport report;
+    std::uint64_t state_hash = 0;
+    std::vector<ProbeRecord> probes;
+};
+
+/// The document of --stats; the names of its keys are part of the interface.
+Json statistics_of(const RunResult& result);
+/// The table at the end of a run.
+std::string summary_of(const RunResult& result);
+
+}  // namespace skerry

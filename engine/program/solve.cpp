@@ -1,0 +1,68 @@
+#include <cstdio>
+#include <iostream>
+#include <ostream>
+
+#include "engine/output/write_file.h"
+#include "engine/program/commands.h"
+#include "engine/program/number_text.h"
+#include "engine/program/require_writable.h"
+#include "engine/scene/place.h"
+
+namespace skerry {
+
+namespace {
+
+void write_reactions(const std::filesystem::path& file, const ProblemSolution& solution) {
+    write_file(file, [&](std::ostream& out) {
+        for (const Vec3& r : solution.reaction) {
+            char line[96];
+            std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", r.x(), r.y(), r.z());
+            out << line;
+        }
+    });
+}
+
+Json to_json(const SolveOptions& options, const ContactProblem& problem, const ProblemSolution& solution) {
+    return {{"problem", problem.name},
+            {"contacts", problem.contacts()},
+            {"regions", solution.regions},
+            {"method", name_of(options.settings.method)},
+            {"friction", name_of(options.settings.friction)},
+            {"tolerance", options.settings.tolerance},
+            {"iterations", solution.iterations},
+            {"seconds", solution.seconds},
+            {"error", solution.error},
+            {"error_absolute", solution.error_absolute},
+            {"error_over_q", solution.error_over_q},
+            {"converged", solution.converged}};
+}
+
+void print(const SolveOptions& options, const ContactProblem& problem, const ProblemSolution& solution) {
+    std::cout << problem.name << ": " << grouped(static_cast<std::uint64_t>(problem.contacts())) << " contacts in "
+              << grouped(static_cast<std::uint64_t>(solution.regions)) << " regions\n"
+              << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction) << "\n"
+              << "  iterations    " << grouped(static_cast<std::uint64_t>(solution.iterations)) << " in "
+              << with_unit(solution.seconds, "s") << "\n"
+              << "  error         " << short_number(solution.error) << " of " << short_number(options.settings.tolerance)
+              << (solution.converged ? "" : ": not converged") << "\n";
+}
+
+}  // namespace
+
+int solve(const SolveOptions& options) {
+    const ContactProblem problem = read_problem(options.problem);
+    if (!options.reactions.empty()) require_writable_file(options.reactions);
+    const ProblemSolution solution = solve_problem(problem, options.settings);
+    if (!options.reactions.empty()) write_reactions(options.reactions, solution);
+    if (options.json)
+        std::cout << to_json(options, problem, solution).dump(1) << "\n";
+    else
+        print(options, problem, solution);
+    std::cout.flush();
+    if (solution.converged) return exit_ok;
+    std::cerr << "skerry: " << options.problem.string() << ": not converged after " << solution.iterations
+              << " iterations; try a larger --max-iterations or another --method\n";
+    return exit_failed;
+}
+
+}  // namespace skerry

@@ -1,0 +1,85 @@
+#include <cinttypes>
+#include <cstdio>
+
+#include "engine/program/run_result.h"
+
+namespace skerry {
+
+namespace {
+
+Json vector_json(const Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+std::string hash_text(std::uint64_t hash) {
+    char text[24];
+    std::snprintf(text, sizeof text, "0x%016" PRIx64, hash);
+    return text;
+}
+
+}  // namespace
+
+Json statistics_of(const RunResult& result) {
+    const WorldReport& r = result.report;
+    Json stages = Json::object(), probes = Json::object();
+    for (const StageReport& stage : r.stages)
+        stages[stage.name] = {{"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}};
+    for (const ProbeRecord& probe : result.probes) probes[probe.name] = to_json(probe);
+    const double simulated = result.seconds_simulated, wall = result.seconds_wall;
+    return {
+        {"schema", "skerry.run/1"},
+        {"scene", result.scene},
+        {"scene_file", result.scene_file},
+        {"status", result.status},
+        {"seconds_simulated", simulated},
+        {"steps", r.steps},
+        {"seconds_wall", wall},
+        {"seconds_load", result.seconds_load},
+        {"seconds_output", result.seconds_output},
+        {"real_time_factor", wall > 0 ? simulated / wall : 0},
+        {"frames", result.frames},
+        {"threads", result.threads},
+        {"backend", name_of(result.settings.backend)},
+        {"bodies", r.bodies},
+        {"colliders", r.colliders},
+        {"nodes", r.nodes},
+        {"elements", r.elements},
+        {"stable_dt", r.stable_step},
+        {"stable_dt_body", r.stable_step_body},
+        {"contacts", {{"mean", r.mean_contacts}, {"max", r.max_contacts}}},
+        {"regions", {{"mean", r.mean_regions}, {"max", r.max_regions}, {"largest_contacts", r.largest_region}}},
+        {"stages", stages},
+        {"solver",
+         {{"method", name_of(result.settings.method)},
+          {"friction", name_of(result.settings.friction)},
+          {"contact_regions", name_of(result.settings.contact_regions)},
+          {"tolerance", result.settings.tolerance},
+          {"iterations_mean", r.mean_iterations},
+          {"worst_error", r.worst_error},
+          {"unconverged", r.unconverged},
+          {"solved", r.solved},
+          {"closed_form", r.closed_form},
+          {"certified", r.certified}}},
+        {"search",
+         {{"broad_searches", r.broad_searches},
+          {"pair_searches", r.pair_searches},
+          {"candidates", r.candidates},
+          {"inline_steps", r.inline_steps}}},
+        {"energy",
+         {{"kinetic", r.energy.kinetic},
+          {"elastic", r.energy.elastic},
+          {"potential", r.energy.potential},
+          {"dissipated", r.energy.dissipated}}},
+        {"momentum", vector_json(r.momentum)},
+        {"angular_momentum", vector_json(r.angular_momentum)},
+        {"max_penetration", r.max_penetration},
+        {"max_gap_violation", r.max_gap_violation},
+        {"mean_edge", result.mean_edge},
+        {"worst_volume_ratio", r.worst_volume_ratio},
+        {"worst_volume_body", r.worst_volume_body},
+        {"probes", probes},
+        {"state_hash", hash_text(result.state_hash)},
+    };
+}
+
+}  // namespace skerry

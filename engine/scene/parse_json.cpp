@@ -1,0 +1,133 @@
+#include "engine/scene/parse_json.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <sstream>
+
+namespace skerry {
+
+namespace {
+
+/// Builds the document and watches what nlohmann's own builder lets pass: keys given twice.
+class StrictBuilder : public nlohmann::json_sax<Json> {
+public:
+    StrictBuilder(const std::string& text, const std::filesystem::path& file) : text_(text), file_(file) {}
+
+    Json take() { return std::move(root_); }
+
+    bool null() override { return put(Json()), true; }
+    bool boolean(bool value) override { return put(value), true; }
+    bool number_integer(number_integer_t value) override { return put(value), true; }
+    bool number_unsigned(number_unsigned_t value) override { return put(value), true; }
+    bool number_float(number_float_t value, const string_t&) override { return put(value), true; }
+    bool string(string_t& value) override { return put(std::move(value)), true; }
+    bool binary(binary_t&) override { return false; }  // not part of JSON text
+    bool start_object(std::size_t) override { return open(Json::object()); }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t) override { return open(Json::array()); }
+    bool end_array() override { return close(); }
+
+    bool key(string_t& name) override {
+        if (open_.back().value->contains(name))
+            here().refuse("the key " + in_quotes(name) + " twice", "every key once", "which of the two counts would be a guess");
+        open_.back().key = name;
+        return true;
+    }
+
+    bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
+        const std::string what = error.what();
+        if (error.id == out_of_range_id) here().refuse("the number " + token, "a finite number");
+        std::string hint;
+        if (token.find('/') != std::string::npos || token.find('#') != std::string::npos)
+            hint = "comments are not JSON: scenes have \"description\" keys";
+        else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos || token.find("I") == token.size() - 1)
+            hint = "JSON has no NaN and no Infinity";
+        throw SceneError(file_.string() + ": " + line_and_column(position) + ": not valid JSON: " + reason(what) +
+                         (hint.empty() ? "" : " (" + hint + ")"));
+    }
+
+private:
+    static constexpr int out_of_range_id = 406;  // nlohmann's "number overflow"
+
+    struct Open {
+        Json* value;
+        std::string key;
+    };
+
+    Place here() const {
+        Place place(file_);
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            const Open& level = open_[i];
+            const std::size_t begun = i + 1 < open_.size() ? 1 : 0;  // an open child is in its list already
+            if (level.value->is_array())
+                place = place.item(level.value->size() - begun);
+            else if (!level.key.empty())
+                place = place.key(level.key);
+        }
+        return place;
+    }
+
+    Json* put(Json value) {
+        if (open_.empty()) return &(root_ = std::move(value));
+        Json& parent = *open_.back().value;
+        if (parent.is_array()) return &parent.emplace_back(std::move(value));
+        Json& slot = parent[open_.back().key];
+        slot = std::move(value);
+        return &slot;
+    }
+
+    bool open(Json value) {
+        open_.push_back({put(std::move(value)), {}});
+        return true;
+    }
+
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    std::string line_and_column(std::size_t position) const {
+        const std::size_t end = std::min(position == 0 ? 0 : position - 1, text_.size());
+        const auto first = text_.begin();
+        const auto last = first + static_cast<std::ptrdiff_t>(end);
+        const auto lines = std::count(first, last, '\n');
+        const std::size_t line_start = text_.rfind('\n', end == 0 ? 0 : end - 1);
+        const std::size_t column = lines == 0 || line_start == std::string::npos ? end + 1 : end - line_start;
+        return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column);
+    }
+
+    /// The library's message without its own prefix and place.
+    static std::string reason(const std::string& what) {
+        const std::size_t start = what.find(": ");
+        return start == std::string::npos ? what : what.substr(start + 2);
+    }
+
+    const std::string& text_;
+    std::filesystem::path file_;
+    Json root_;
+    std::vector<Open> open_;
+};
+
+}  // namespace
+
+Json parse_json(const std::string& text, const std::filesystem::path& file) {
+    if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c); }))
+        Complaint{file.string(), {}, {}, "an empty file", "a scene in JSON", {}}.raise();
+    StrictBuilder builder(text, file);
+    Json::sax_parse(text, &builder);
+    return builder.take();
+}
+
+Json read_json(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) Complaint{file.string(), {}, {}, "no such file", "a scene in JSON", {}}.raise();
+    if (std::filesystem::is_directory(file, error)) Complaint{file.string(), {}, {}, "a folder", "a scene in JSON", {}}.raise();
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream) Complaint{file.string(), {}, {}, "a file that cannot be read", "a scene in JSON", {}}.raise();
+    return parse_json(text.str(), file);
+}
+
+}  // namespace skerry

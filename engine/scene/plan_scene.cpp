@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <cstdint>
+
+#include "engine/scene/scene_file.h"
+#include "engine/scene/scene_plan.h"
+
+namespace skerry {
+
+namespace {
+
+Mesh make_shape(const MeshEntry& entry) {
+    if (entry.box) return mesh::box(entry.box->size, entry.box->cells);
+    if (entry.ball) return mesh::ball(entry.ball->radius, entry.ball->resolution);
+    if (entry.cylinder) return mesh::cylinder(entry.cylinder->radius, entry.cylinder->height, entry.cylinder->resolution);
+    if (entry.lathe) return mesh::lathe(entry.lathe->profile, entry.lathe->resolution);
+    if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
+    if (entry.table) return mesh::table(*entry.table);
+    return mesh::read(entry.file->path.string());
+}
+
+Mesh make_mesh(const MeshEntry& entry) {
+    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry); });
+    for (Vec3& node : mesh.nodes) node *= entry.scale;
+    return mesh;
+}
+
+SurfaceMesh make_surface(const MeshEntry& entry) {
+    if (!entry.file) return mesh::boundary(make_mesh(entry));
+    SurfaceMesh surface = called_at(entry.place, [&] { return mesh::read_surface(entry.file->path.string()); });
+    for (Vec3& node : surface.nodes) node *= entry.scale;
+    return surface;
+}
+
+Shape make_collider_shape(const ShapeEntry& entry) {
+    if (entry.plane) return *entry.plane;
+    if (entry.sphere) return *entry.sphere;
+    if (entry.box) return *entry.box;
+    if (entry.capsule) return *entry.capsule;
+    if (entry.cylinder) return *entry.cylinder;
+    if (entry.bucket) return *entry.bucket;
+    return make_surface(*entry.mesh);
+}
+
+Motion make_motion(const MotionEntry& entry) {
+    Motion motion{.velocity = entry.velocity, .angular_velocity = entry.angular_velocity, .keys = {}};
+    for (const KeyEntry& key : entry.keys) motion.keys.push_back({key.time, key.position, key.rotation.value});
+    return motion;
+}
+
+std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place) {
+    std::vector<Index> inside;
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+        if ((mesh.nodes[i].array() >= box.lower.array()).all() && (mesh.nodes[i].array() <= box.upper.array()).all())
+            inside.push_back(static_cast<Index>(i));
+    if (inside.empty()) place.key("box").refuse("a box without any node", "a box around nodes of the mesh, in the mesh's own frame");
+    return inside;
+}
+
+PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
+    PinPlan pin{.nodes = {}, .motion = make_motion(entry.motion), .pivot = entry.pivot, .place = entry.place};
+    if (entry.box) {
+        pin.nodes = nodes_inside(mesh, *entry.box, entry.place);
+        return pin;
+    }
+    if (entry.nodes.empty()) entry.place.key("nodes").refuse("an empty list", "at least one node number");
+    for (std::size_t i = 0; i < entry.nodes.size(); ++i) {
+        const Place place = entry.place.key("nodes").item(i);
+        if (static_cast<std::size_t>(entry.nodes[i]) >= mesh.nodes.size())
+            place.refuse("node " + std::to_string(entry.nodes[i]), "a node number below " + std::to_string(mesh.nodes.size()));
+        if (std::find(pin.nodes.begin(), pin.nodes.end(), entry.nodes[i]) != pin.nodes.end())
+            place.refuse("node " + std::to_string(entry.nodes[i]) + " again", "every node once");
+        pin.nodes.push_back(entry.nodes[i]);
+    }
+    return pin;
+}
+
+/// Numbers that are the same everywhere (splitmix64, Steele et al. 2014); std distributions differ between libraries.
+class Jitter {
+public:
+    explicit Jitter(int seed) : state_(static_cast<std::uint64_t>(seed)) {}
+    /// In [-1, 1).
+    Real next() {
+        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+        return static_cast<Real>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+std::vector<Placement> placements_of(const BodyEntry& entry) {
+    if (!entry.placements.empty()) return entry.placements;
+    std::vector<Placement> placements;
+    for (const Vec3& position : entry.positions) placements.push_back({position, entry.rotation});
+    if (entry.repeat) {
+        const RepeatEntry& grid = *entry.repeat;
+        Jitter jitter(grid.seed);
+        for (int k = 0; k < grid.count[2]; ++k)
+            for (int j = 0; j < grid.count[1]; ++j)
+                for (int i = 0; i < grid.count[0]; ++i) {
+                    Vec3 position = entry.position + grid.spacing.cwiseProduct(Vec3(i, j, k));
+                    for (Index axis = 0; axis < 3; ++axis) position[axis] += grid.jitter * jitter.next();
+                    placements.push_back({position, entry.rotation});
+                }
+    }
+    if (placements.empty()) placements.push_back({entry.position, entry.rotation});
+    return placements;
+}
+
+std::size_t find_material(const ScenePlan& plan, const BodyEntry& entry) {
+    std::vector<std::string> names;
+    for (const auto& [name, material] : plan.materials) names.push_back(name);
+    const auto found = std::find(names.begin(), names.end(), entry.material);
+    if (found == names.end())
+        entry.place.key("material")
+            .refuse(in_quotes(entry.material),
+                    names.empty() ? "one of the materials, but the scene has none" : "one of the materials " + listed(names),
+                    nearest_hint(entry.material, names));
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
+    const std::size_t material = find_material(plan, entry);
+    const Mesh& mesh = plan.meshes.emplace_back(make_mesh(entry.mesh));
+    std::vector<PinPlan> pins;
+    for (const PinEntry& pin : entry.pin.items) pins.push_back(plan_pin(pin, mesh));
+
+    const std::string name = entry.name.empty() ? "body_" + std::to_string(number) : entry.name;
+    const bool copies = entry.repeat || !entry.positions.empty() || !entry.placements.empty();
+    const std::vector<Placement> placements = placements_of(entry);
+    for (std::size_t copy = 0; copy < placements.size(); ++copy) {
+        BodyPlan body;
+        body.settings.position = placements[copy].position;
+        body.settings.rotation = placements[copy].rotation.value;
+        body.settings.velocity = entry.velocity;
+        body.settings.angular_velocity = entry.angular_velocity;
+        body.settings.contact_distance = entry.contact_distance;
+        body.settings.self_contact = entry.self_contact;
+        body.settings.name = copies ? name + "_" + std::to_string(copy) : name;
+        body.mesh = plan.meshes.size() - 1;
+        body.material = material;
+        body.pins = pins;
+        body.place = entry.place;
+        for (const BodyPlan& other : plan.bodies)
+            if (other.settings.name == body.settings.name)
+                entry.place.key("name").refuse(in_quotes(body.settings.name) + " again", "a name of its own for every body");
+        plan.bodies.push_back(std::move(body));
+    }
+}
+
+ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number) {
+    ColliderPlan collider;
+    collider.shape = make_collider_shape(entry.shape);
+    collider.settings.position = entry.position;
+    collider.settings.rotation = entry.rotation.value;
+    collider.settings.motion = make_motion(entry.motion);
+    collider.settings.friction = entry.friction;
+    collider.settings.static_friction = entry.static_friction;
+    collider.settings.dynamic_friction = entry.dynamic_friction;
+    collider.settings.restitution = entry.restitution;
+    collider.settings.contact_distance = entry.contact_distance;
+    collider.settings.name = entry.name.empty() ? "collider_" + std::to_string(number) : entry.name;
+    collider.place = entry.place;
+    return collider;
+}
+
+ProbePlan plan_probe(const ProbeEntry& entry, const ScenePlan& plan) {
+    std::vector<std::string> names;
+    for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
+    const auto found = std::find(names.begin(), names.end(), entry.body);
+    if (found == names.end()) entry.place.key("body").refuse(in_quotes(entry.body), "the name of a body", nearest_hint(entry.body, names));
+    for (const ProbePlan& other : plan.probes)
+        if (other.name == entry.name) entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a name of its own for every probe");
+    const auto body = static_cast<std::size_t>(found - names.begin());
+    return {entry.name, body, nodes_inside(plan.meshes[plan.bodies[body].mesh], entry.box, entry.place)};
+}
+
+void apply(const SceneOverrides& overrides, Settings& settings) {
+    if (overrides.threads) settings.threads = *overrides.threads;
+    if (overrides.backend) settings.backend = *overrides.backend;
+    if (overrides.contact_regions) settings.contact_regions = *overrides.contact_regions;
+    if (overrides.method) settings.method = *overrides.method;
+    if (overrides.friction) settings.friction = *overrides.friction;
+    if (overrides.tolerance) settings.tolerance = *overrides.tolerance;
+    if (overrides.step_size) settings.step_size = *overrides.step_size;
+}
+
+}  // namespace
+
+ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {
+    const SceneFile scene = read_scene_file(file);
+    ScenePlan plan;
+    plan.file = file;
+    plan.name = scene.name;
+    plan.description = scene.description;
+    plan.seconds = scene.seconds;
+    plan.frame_step = scene.frame_step;
+    plan.probe_step = scene.probe_step.value_or(scene.frame_step);
+    plan.settings = scene.settings;
+    apply(overrides, plan.settings);
+    plan.materials = scene.materials.items;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, plan);
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i) plan.colliders.push_back(plan_collider(scene.colliders[i], i));
+    for (const ProbeEntry& probe : scene.probes) plan.probes.push_back(plan_probe(probe, plan));
+    return plan;
+}
+
+}  // namespace skerry

@@ -1,0 +1,45 @@
+#include "engine/scene/parse_json.h"
+#include "engine/scene/peer_drop.h"
+#include "engine/scene/scene_rules.h"
+
+namespace skerry {
+
+namespace {
+
+/// `open` lists the files that are being read, outermost first.
+void read_into(SceneFile& scene, const std::filesystem::path& file, std::vector<std::filesystem::path>& open) {
+    const Json json = read_json(file);
+    const Place place(file);
+    if (is_drop_file(json)) return read_drop_file(json, place, scene);
+
+    // A first reading for what it includes; a second one on top of that.
+    SceneFile own;
+    rule_of<SceneFile>().read(json, place, own);
+    open.push_back(std::filesystem::weakly_canonical(file));
+    for (const FilePath& included : own.include.items) {
+        const std::filesystem::path next = std::filesystem::weakly_canonical(included.path);
+        if (std::find(open.begin(), open.end(), next) != open.end())
+            place.key("include").refuse(in_quotes(included.path.string()) + ", which includes this file",
+                                        "scenes that do not include each other in a circle");
+        read_into(scene, included.path, open);
+    }
+    open.pop_back();
+    if (own.include.items.empty() && open.empty()) {
+        scene = std::move(own);
+        return;
+    }
+    rule_of<SceneFile>().read(json, place, scene);
+}
+
+}  // namespace
+
+SceneFile read_scene_file(const std::filesystem::path& file) {
+    SceneFile scene;
+    std::vector<std::filesystem::path> open;
+    read_into(scene, file, open);
+    if (scene.name.empty()) scene.name = file.stem().string();
+    if (scene.bodies.empty()) Place(file).key("bodies").refuse("no body", "at least one");
+    return scene;
+}
+
+}  // namespace skerry

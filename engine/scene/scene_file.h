@@ -1,0 +1,142 @@
+// What a scene file says, key by key, before anything is built from it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/scene/values.h"
+#include "skerry/settings.h"
+
+namespace skerry {
+
+struct BoxMesh {
+    Vec3 size = {1, 1, 1};  // m
+    std::array<int, 3> cells{1, 1, 1};
+};
+struct BallMesh {
+    Real radius = 1;  // m
+    int resolution = 4;
+};
+struct CylinderMesh {
+    Real radius = 1;  // m
+    Real height = 1;  // m
+    int resolution = 4;
+};
+struct LatheMesh {
+    std::vector<std::array<Real, 2>> profile;  // m, (radius, z)
+    int resolution = 4;
+};
+struct SkittleMesh {
+    Real height = 1;  // m
+    int resolution = 4;
+};
+/// Exactly one of the shapes, or a file.
+struct MeshEntry {
+    std::optional<BoxMesh> box;
+    std::optional<BallMesh> ball;
+    std::optional<CylinderMesh> cylinder;
+    std::optional<LatheMesh> lathe;
+    std::optional<SkittleMesh> skittle;
+    std::optional<mesh::TableShape> table;
+    std::optional<FilePath> file;
+    Real scale = 1;
+    Place place;
+};
+
+struct RestBox {
+    Vec3 lower = Vec3::Zero();  // m, in the mesh's own frame
+    Vec3 upper = Vec3::Zero();
+};
+struct KeyEntry {
+    Real time = 0;
+    Vec3 position = Vec3::Zero();
+    Rotation rotation;
+};
+struct MotionEntry {
+    Vec3 velocity = Vec3::Zero();
+    Vec3 angular_velocity = Vec3::Zero();
+    std::vector<KeyEntry> keys;
+};
+struct PinEntry {
+    std::optional<RestBox> box;
+    std::vector<int> nodes;
+    MotionEntry motion;
+    Vec3 pivot = Vec3::Zero();
+    Place place;
+};
+/// A grid of copies.
+struct RepeatEntry {
+    std::array<int, 3> count{1, 1, 1};
+    Vec3 spacing = Vec3::Zero();  // m
+    Real jitter = 0;              // m
+    int seed = 1;
+};
+/// Where one copy of a body is put.
+struct Placement {
+    Vec3 position = Vec3::Zero();
+    Rotation rotation;
+};
+struct BodyEntry {
+    std::string name;
+    MeshEntry mesh;
+    std::string material;
+    Vec3 position = Vec3::Zero();
+    Rotation rotation;
+    std::vector<Vec3> positions;
+    std::optional<RepeatEntry> repeat;
+    std::vector<Placement> placements;  // of a drop file
+    Vec3 velocity = Vec3::Zero();
+    Vec3 angular_velocity = Vec3::Zero();
+    std::optional<Real> contact_distance;
+    bool self_contact = false;
+    OneOrMore<PinEntry> pin;
+    Place place;
+};
+
+struct ShapeEntry {
+    std::optional<Plane> plane;
+    std::optional<Sphere> sphere;
+    std::optional<Box> box;
+    std::optional<Capsule> capsule;
+    std::optional<Cylinder> cylinder;
+    std::optional<Bucket> bucket;
+    std::optional<MeshEntry> mesh;
+};
+struct ColliderEntry {
+    std::string name;
+    ShapeEntry shape;
+    Vec3 position = Vec3::Zero();
+    Rotation rotation;
+    MotionEntry motion;
+    std::optional<Real> friction, static_friction, dynamic_friction, restitution;
+    Real contact_distance = 0;
+    Place place;
+};
+struct ProbeEntry {
+    std::string name;
+    std::string body;
+    RestBox box;
+    Place place;
+};
+
+struct SceneFile {
+    std::string schema;  // for editors, otherwise unused
+    std::string name;
+    std::string description;
+    Real seconds = 2;
+    Real frame_step = 1.0 / 60;
+    OneOrMore<FilePath> include;
+    Settings settings;
+    Named<MaterialSettings> materials;
+    std::vector<BodyEntry> bodies;
+    std::vector<ColliderEntry> colliders;
+    std::vector<ProbeEntry> probes;
+    std::optional<Real> probe_step;
+};
+
+/// Reads a scene file or a drop file, with all that it includes. Throws SceneError.
+SceneFile read_scene_file(const std::filesystem::path& file);
+
+}  // namespace skerry

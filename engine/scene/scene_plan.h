@@ -1,0 +1,57 @@
+// A scene with everything resolved: meshes read, copies placed, names found. What is left is to add it to a world.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/scene/place.h"
+#include "skerry/scene.h"
+
+namespace skerry {
+
+struct PinPlan {
+    std::vector<Index> nodes;  // local
+    Motion motion;
+    Vec3 pivot = Vec3::Zero();  // m, world
+    Place place;
+};
+struct BodyPlan {
+    BodySettings settings;     // the material's handle comes when it is built
+    std::size_t mesh = 0;      // of ScenePlan::meshes
+    std::size_t material = 0;  // of ScenePlan::materials
+    std::vector<PinPlan> pins;
+    Place place;
+};
+struct ColliderPlan {
+    Shape shape;
+    ColliderSettings settings;
+    Place place;
+};
+struct ProbePlan {
+    std::string name;
+    std::size_t body = 0;      // of ScenePlan::bodies
+    std::vector<Index> nodes;  // local
+};
+
+struct ScenePlan {
+    std::string name, description;
+    Real seconds = 2;     // s
+    Real frame_step = 0;  // s
+    Settings settings;
+    std::vector<std::pair<std::string, MaterialSettings>> materials;
+    std::vector<Mesh> meshes;  // one for each entry of "bodies": copies share it
+    std::vector<BodyPlan> bodies;
+    std::vector<ColliderPlan> colliders;
+    std::vector<ProbePlan> probes;
+    Real probe_step = 0;  // s
+    std::filesystem::path file;
+};
+
+/// Reads a scene and resolves it. Throws SceneError.
+ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
+
+/// Puts the world together. Throws SceneError for what only the world finds, such as inverted tetrahedra.
+Scene build_scene(const ScenePlan& plan);
+
+}  // namespace skerry

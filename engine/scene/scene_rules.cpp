@@ -1,0 +1,167 @@
+// The keys of a scene: settings, materials, bodies, colliders, probes.
+#include "engine/scene/scene_rules.h"
+
+namespace skerry {
+
+template <>
+const Rule<PinEntry>& rule_of<PinEntry>() {
+    static const auto rule = Rule<PinEntry>("pin", "Nodes of a body that stand still or follow a motion.")
+                                 .key("box", &PinEntry::box, {.meaning = "the nodes inside, in the mesh's own frame"})
+                                 .key("nodes", &PinEntry::nodes, {.meaning = "node numbers, from 0", .limits = at_least(0)})
+                                 .key("motion", &PinEntry::motion, {.meaning = "how they move; by default they do not"})
+                                 .key("pivot", &PinEntry::pivot, {.meaning = "the point that the motion turns about", .unit = "m"})
+                                 .exactly_one({"box", "nodes"});
+    return rule;
+}
+
+template <>
+const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
+    static const auto rule =
+        Rule<RepeatEntry>("repeat", "Copies in a grid that starts at the body's position; they are called NAME_0, NAME_1, ..., x first.")
+            .key("count", &RepeatEntry::count, {.meaning = "copies along x, y and z", .limits = within(1, 1000), .required = true})
+            .key("spacing", &RepeatEntry::spacing, {.meaning = "between copies", .unit = "m", .required = true})
+            .key("jitter", &RepeatEntry::jitter, {.meaning = "largest random shift along each axis", .unit = "m", .limits = at_least(0)})
+            .key("seed", &RepeatEntry::seed, {.meaning = "of the shifts; the same seed gives the same scene", .limits = at_least(0)});
+    return rule;
+}
+
+template <>
+const Rule<BodyEntry>& rule_of<BodyEntry>() {
+    static const auto rule =
+        Rule<BodyEntry>("body", "A deformable body. The rotation is applied before the position.")
+            .key("name", &BodyEntry::name, {.meaning = "for messages, output and probes; body_NUMBER by default"})
+            .key("mesh", &BodyEntry::mesh, {.meaning = "its tetrahedra", .required = true})
+            .key("material", &BodyEntry::material, {.meaning = "the name of one of the materials", .required = true})
+            .key("position", &BodyEntry::position, {.meaning = "of the mesh's origin", .unit = "m"})
+            .key("rotation", &BodyEntry::rotation, {.meaning = "about the mesh's origin"})
+            .key("positions", &BodyEntry::positions,
+                 {.meaning = "several positions: one copy at each, called NAME_0, NAME_1, ...", .unit = "m"})
+            .key("repeat", &BodyEntry::repeat, {.meaning = "copies in a grid"})
+            .key("velocity", &BodyEntry::velocity, {.meaning = "at the start", .unit = "m/s"})
+            .key("angular_velocity", &BodyEntry::angular_velocity, {.meaning = "at the start, about the centre of mass", .unit = "rad/s"})
+            .key("contact_distance", &BodyEntry::contact_distance,
+                 {.meaning = "thickness of the contact shell; by default 2 % of the mean surface edge", .unit = "m", .limits = at_least(0)})
+            .key("self_contact", &BodyEntry::self_contact, {.meaning = "whether it touches itself; false by default"})
+            .key("pin", &BodyEntry::pin, {.meaning = "nodes that are held"})
+            .at_most_one({"position", "positions"})
+            .at_most_one({"positions", "repeat"});
+    return rule;
+}
+
+template <>
+const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
+    using Entry = ColliderEntry;
+    static const auto rule =
+        Rule<Entry>("collider", "A rigid shape that stands still or moves by a script.")
+            .key("name", &Entry::name, {.meaning = "for messages and output; collider_NUMBER by default"})
+            .key("shape", &Entry::shape, {.meaning = "its shape", .required = true})
+            .key("position", &Entry::position, {.meaning = "of the shape's origin", .unit = "m"})
+            .key("rotation", &Entry::rotation, {.meaning = "about the shape's origin"})
+            .key("motion", &Entry::motion, {.meaning = "how it moves; by default it does not"})
+            .key("friction", &Entry::friction,
+                 {.meaning = "by default the body's own; else the geometric mean of both counts", .alias = "mu", .limits = at_least(0)})
+            .key("static_friction", &Entry::static_friction, {.meaning = "friction of sticking contacts", .limits = at_least(0)})
+            .key("dynamic_friction", &Entry::dynamic_friction, {.meaning = "friction of sliding contacts", .limits = at_least(0)})
+            .key("restitution", &Entry::restitution,
+                 {.meaning = "by default the body's own; else the larger of both counts", .limits = within(0, 1)})
+            .key("contact_distance", &Entry::contact_distance,
+                 {.meaning = "thickness of the contact shell of a mesh", .unit = "m", .limits = at_least(0)})
+            .together({"static_friction", "dynamic_friction"})
+            .at_most_one({"friction", "static_friction"})
+            .at_most_one({"mu", "static_friction"})
+            .check([](const Place& place, const Entry& c) {
+                if (c.static_friction && *c.dynamic_friction > *c.static_friction)
+                    place.key("dynamic_friction")
+                        .refuse(Json(*c.dynamic_friction).dump(), "at most static_friction, " + Json(*c.static_friction).dump());
+            });
+    return rule;
+}
+
+template <>
+const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
+    static const auto rule =
+        Rule<ProbeEntry>("probe",
+                         "A part of a body whose contacts the report counts: sticking or sliding, how often it changes, how fast it slips.")
+            .key("name", &ProbeEntry::name, {.meaning = "in the report", .required = true})
+            .key("body", &ProbeEntry::body, {.meaning = "the name of a body", .required = true})
+            .key("box", &ProbeEntry::box, {.meaning = "the nodes inside, in the mesh's own frame", .required = true});
+    return rule;
+}
+
+template <>
+const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
+    using M = MaterialSettings;
+    static const auto rule =
+        Rule<M>("material", "An elastic material and its surface.")
+            .key("young_modulus", &M::young_modulus, {.meaning = "Young's modulus", .unit = "Pa", .alias = "E", .limits = above(0)})
+            .key("poisson_ratio", &M::poisson_ratio,
+                 {.meaning = "Poisson's ratio", .alias = "nu", .limits = {.at_least = {}, .above = -1, .at_most = {}, .below = 0.5}})
+            .key("density", &M::density, {.meaning = "density", .unit = "kg/m^3", .alias = "rho", .limits = above(0)})
+            .key("friction", &M::friction, {.meaning = "Coulomb's coefficient", .alias = "mu", .limits = at_least(0)})
+            .key("static_friction", &M::static_friction, {.meaning = "friction of sticking contacts", .limits = at_least(0)})
+            .key("dynamic_friction", &M::dynamic_friction, {.meaning = "friction of sliding contacts", .limits = at_least(0)})
+            .key("restitution", &M::restitution,
+                 {.meaning = "of a surface point at an impact, not of the body as a whole", .limits = within(0, 1)})
+            .key("damping", &M::damping,
+                 {.meaning = "decay rate of deformation velocities; momentum is kept", .unit = "1/s", .limits = at_least(0)})
+            .key("model", &M::model, {.meaning = "the constitutive law"})
+            .together({"static_friction", "dynamic_friction"})
+            .at_most_one({"friction", "static_friction"})
+            .at_most_one({"mu", "static_friction"})
+            .check([](const Place& place, const M& m) {
+                if (m.static_friction && *m.dynamic_friction > *m.static_friction)
+                    place.key("dynamic_friction")
+                        .refuse(Json(*m.dynamic_friction).dump(), "at most static_friction, " + Json(*m.static_friction).dump());
+            });
+    return rule;
+}
+
+template <>
+const Rule<Settings>& rule_of<Settings>() {
+    using S = Settings;
+    static const auto rule =
+        Rule<S>("settings", "How the world is stepped. Defaults work.")
+            .key("gravity", &S::gravity, {.meaning = "gravity; [0, 0, -9.81] by default", .unit = "m/s^2"})
+            .key("step_size", &S::step_size,
+                 {.meaning = "by default the stable step of the stiffest body", .unit = "s", .limits = above(0)})
+            .key("step_safety", &S::step_safety,
+                 {.meaning = "fraction of the stable step that is used", .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
+            .key("backend", &S::backend, {.meaning = "what runs the threads"})
+            .key("threads", &S::threads, {.meaning = "0: as many as there are", .limits = within(0, 1024)})
+            .key("contact_regions", &S::contact_regions, {.meaning = "how contacts are grouped"})
+            .key("method", &S::method, {.meaning = "the contact solver"})
+            .key("friction", &S::friction, {.meaning = "the friction law"})
+            .key("warm_start", &S::warm_start, {.meaning = "whether contacts start from the impulses of the step before"})
+            .key("tolerance", &S::tolerance, {.meaning = "relative error of a region", .limits = above(0)})
+            .key("max_iterations", &S::max_iterations, {.meaning = "sweeps of a region", .limits = at_least(1)})
+            .key("fixed_iterations", &S::fixed_iterations, {.meaning = "do exactly max_iterations sweeps"})
+            .key("max_strain_step", &S::max_strain_step,
+                 {.meaning = "a step that moves nodes by more than this fraction of an element is refused", .limits = above(0)})
+            .key("contact_budgets", &S::contact_budgets, {.meaning = "skip what cannot have come close; false searches everything"});
+    return rule;
+}
+
+template <>
+const Rule<SceneFile>& rule_of<SceneFile>() {
+    static const auto rule =
+        Rule<SceneFile>("scene", "A world of deformable bodies and colliders, and a run. SI units.")
+            .key("$schema", &SceneFile::schema, {.meaning = "where editors find this schema"})
+            .key("name", &SceneFile::name, {.meaning = "of the scene; by default that of the file"})
+            .key("description", &SceneFile::description, {.meaning = "what it shows"})
+            .key("include", &SceneFile::include,
+                 {.meaning = "scene files, or drop files, that come first; their bodies, colliders and materials are added, single values "
+                             "are replaced by those here"})
+            .key("seconds", &SceneFile::seconds, {.meaning = "length of a run; 2 by default", .unit = "s", .limits = above(0)})
+            .key("frame_step", &SceneFile::frame_step,
+                 {.meaning = "between frames of output; 1/60 by default", .unit = "s", .limits = above(0)})
+            .key("settings", &SceneFile::settings, {.meaning = "of the step"})
+            .key("materials", &SceneFile::materials, {.meaning = "materials by name"})
+            .key("bodies", &SceneFile::bodies, {.meaning = "deformable bodies"})
+            .key("colliders", &SceneFile::colliders, {.meaning = "rigid shapes"})
+            .key("probes", &SceneFile::probes, {.meaning = "parts of bodies whose contacts are reported"})
+            .key("probe_step", &SceneFile::probe_step,
+                 {.meaning = "between two looks at the probes; frame_step by default", .unit = "s", .limits = above(0)});
+    return rule;
+}
+
+}  // namespace skerry

@@ -1,0 +1,59 @@
+// Which keys scene files know: declarations of the tables in scene_rules.cpp and shape_rules.cpp.
+#pragma once
+
+#include "engine/scene/scene_file.h"
+
+namespace skerry {
+
+template <>
+const Rule<BoxMesh>& rule_of<BoxMesh>();
+template <>
+const Rule<BallMesh>& rule_of<BallMesh>();
+template <>
+const Rule<CylinderMesh>& rule_of<CylinderMesh>();
+template <>
+const Rule<LatheMesh>& rule_of<LatheMesh>();
+template <>
+const Rule<SkittleMesh>& rule_of<SkittleMesh>();
+template <>
+const Rule<mesh::TableShape>& rule_of<mesh::TableShape>();
+template <>
+const Rule<MeshEntry>& rule_of<MeshEntry>();
+template <>
+const Rule<RestBox>& rule_of<RestBox>();
+template <>
+const Rule<KeyEntry>& rule_of<KeyEntry>();
+template <>
+const Rule<MotionEntry>& rule_of<MotionEntry>();
+template <>
+const Rule<PinEntry>& rule_of<PinEntry>();
+template <>
+const Rule<RepeatEntry>& rule_of<RepeatEntry>();
+template <>
+const Rule<BodyEntry>& rule_of<BodyEntry>();
+template <>
+const Rule<Plane>& rule_of<Plane>();
+template <>
+const Rule<Sphere>& rule_of<Sphere>();
+template <>
+const Rule<Box>& rule_of<Box>();
+template <>
+const Rule<Capsule>& rule_of<Capsule>();
+template <>
+const Rule<Cylinder>& rule_of<Cylinder>();
+template <>
+const Rule<Bucket>& rule_of<Bucket>();
+template <>
+const Rule<ShapeEntry>& rule_of<ShapeEntry>();
+template <>
+const Rule<ColliderEntry>& rule_of<ColliderEntry>();
+template <>
+const Rule<ProbeEntry>& rule_of<ProbeEntry>();
+template <>
+const Rule<MaterialSettings>& rule_of<MaterialSettings>();
+template <>
+const Rule<Settings>& rule_of<Settings>();
+template <>
+const Rule<SceneFile>& rule_of<SceneFile>();
+
+}  // namespace skerry

@@ -1,0 +1,193 @@
+#include "engine/scene/values.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+namespace skerry {
+
+namespace {
+
+std::string shown(Real number) {
+    return Json(number).dump();
+}
+
+std::string expected_number(const KeyDoc& doc, const std::string& kind) {
+    std::string text = kind;
+    const auto add = [&text](const char* words, const std::optional<Real>& bound) {
+        if (bound)
+            text +=
+                (text.find(" of ") == std::string::npos && text.find(" above ") == std::string::npos ? " " : " and ") + std::string(words) +
+                " " +
+                (*bound == std::floor(*bound) && std::abs(*bound) < 1e15 ? std::to_string(static_cast<long long>(*bound)) : shown(*bound));
+    };
+    add("of at least", doc.limits.at_least);
+    add("above", doc.limits.above);
+    add("of at most", doc.limits.at_most);
+    add("below", doc.limits.below);
+    return text + (doc.unit.empty() ? "" : " [" + doc.unit + "]");
+}
+
+void check_limits(Real number, const Json& json, const Place& place, const KeyDoc& doc, const std::string& kind) {
+    const Limits& limits = doc.limits;
+    const bool inside = std::isfinite(number) && (!limits.at_least || number >= *limits.at_least) &&
+                        (!limits.above || number > *limits.above) && (!limits.at_most || number <= *limits.at_most) &&
+                        (!limits.below || number < *limits.below);
+    if (!inside) place.refuse(json.dump(), expected_number(doc, kind));
+}
+
+/// How far rotation_rows may be from a rotation: files print a handful of digits.
+constexpr Real rotation_tolerance = 1e-6;
+
+/// Axis and angle, the spelling of a rotation as an object.
+struct AxisAngle {
+    Vec3 axis = Vec3::UnitZ();
+    std::optional<Real> degrees, radians;
+};
+
+}  // namespace
+
+template <>
+const Rule<AxisAngle>& rule_of<AxisAngle>() {
+    static const Rule<AxisAngle> rule =
+        Rule<AxisAngle>("axis_and_angle", "A rotation about an axis.")
+            .key("axis", &AxisAngle::axis, {.meaning = "direction, of any length but zero", .required = true})
+            .key("degrees", &AxisAngle::degrees, {.meaning = "angle", .unit = "degrees"})
+            .key("radians", &AxisAngle::radians, {.meaning = "angle", .unit = "rad"})
+            .exactly_one({"degrees", "radians"})
+            .check([](const Place& place, const AxisAngle& r) {
+                if (!(r.axis.norm() > 0)) place.key("axis").refuse("a vector of length 0", "a direction");
+            });
+    return rule;
+}
+
+Real read_number(const Json& json, const Place& place, const KeyDoc& doc) {
+    if (!json.is_number()) place.refuse(described(json), expected_number(doc, "a number"));
+    const Real number = json.get<Real>();
+    check_limits(number, json, place, doc, "a number");
+    return number;
+}
+
+Json number_schema(const char* type, const KeyDoc& doc) {
+    Json schema = {{"type", type}};
+    if (doc.limits.at_least) schema["minimum"] = *doc.limits.at_least;
+    if (doc.limits.above) schema["exclusiveMinimum"] = *doc.limits.above;
+    if (doc.limits.at_most) schema["maximum"] = *doc.limits.at_most;
+    if (doc.limits.below) schema["exclusiveMaximum"] = *doc.limits.below;
+    return schema;
+}
+
+void check_count(const Json& json, const Place& place, std::size_t count, const char* of_what) {
+    if (!json.is_array() || json.size() != count) place.refuse(described(json), "a list of " + std::to_string(count) + " " + of_what);
+}
+
+void Value<bool>::read(const Json& json, const Place& place, const KeyDoc&, bool& out) {
+    if (!json.is_boolean()) place.refuse(described(json), "true or false");
+    out = json.get<bool>();
+}
+
+void Value<int>::read(const Json& json, const Place& place, const KeyDoc& doc, int& out) {
+    const std::string kind = "a whole number";
+    if (!json.is_number()) place.refuse(described(json), expected_number(doc, kind));
+    const Real number = json.get<Real>();
+    constexpr Real largest = 2147483647;
+    if (number != std::floor(number) || std::abs(number) > largest) place.refuse(described(json), expected_number(doc, kind));
+    check_limits(number, json, place, doc, kind);
+    out = static_cast<int>(number);
+}
+
+void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc&, std::string& out) {
+    if (!json.is_string() || json.get_ref<const std::string&>().empty()) place.refuse(described(json), "a text that is not empty");
+    out = json.get<std::string>();
+}
+
+void Value<FilePath>::read(const Json& json, const Place& place, const KeyDoc& doc, FilePath& out) {
+    std::string text;
+    Value<std::string>::read(json, place, doc, text);
+    out.path = place.file().parent_path() / text;  // an absolute path stays what it is
+    std::error_code error;
+    if (!std::filesystem::exists(out.path, error))
+        place.refuse("no file " + in_quotes(out.path.string()), "the path of a file, from the folder of the scene on");
+    if (std::filesystem::is_directory(out.path, error)) place.refuse("a folder, " + in_quotes(out.path.string()), "the path of a file");
+}
+
+void Value<RotationRows>::read(const Json& json, const Place& place, const KeyDoc&, RotationRows& out) {
+    check_count(json, place, 3, "rows");
+    Mat3 matrix;
+    for (Index row = 0; row < 3; ++row) {
+        const auto place_in_list = static_cast<std::size_t>(row);
+        Vec3 numbers = Vec3::Zero();
+        Value<Vec3>::read(json[place_in_list], place.item(place_in_list), {}, numbers);
+        matrix.row(row) = numbers.transpose();
+    }
+    const Mat3 defect = matrix * matrix.transpose() - Mat3::Identity();
+    if (!(defect.cwiseAbs().maxCoeff() <= rotation_tolerance))
+        place.refuse("rows that are not orthonormal by " + shown(defect.cwiseAbs().maxCoeff()), "a rotation matrix to 1e-6");
+    if (matrix.determinant() < 0) place.refuse("a reflection (determinant -1)", "a rotation matrix (determinant 1)");
+    const Eigen::AngleAxis<Real> turn(Eigen::Quaternion<Real>(matrix).normalized());
+    out.value = turn.angle() * turn.axis();
+}
+
+Json Value<RotationRows>::schema(SchemaBook& book, const KeyDoc&) {
+    return {{"type", "array"}, {"items", Value<Vec3>::schema(book, {})}, {"minItems", 3}, {"maxItems", 3}};
+}
+
+void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& doc, Rotation& out) {
+    if (json.is_array()) {
+        RotationRows rows;
+        Value<RotationRows>::read(json, place, doc, rows);
+        out.value = rows.value;
+        return;
+    }
+    if (!json.is_object()) place.refuse(described(json), R"({"axis": [x, y, z], "degrees": angle} or three rows of a rotation matrix)");
+    AxisAngle turn;
+    Value<AxisAngle>::read(json, place, doc, turn);
+    const Real angle = turn.radians ? *turn.radians : *turn.degrees * std::numbers::pi / 180;
+    out.value = angle * turn.axis.normalized();
+}
+
+Json Value<Rotation>::schema(SchemaBook& book, const KeyDoc& doc) {
+    return {{"oneOf", {Value<AxisAngle>::schema(book, doc), Value<RotationRows>::schema(book, doc)}}};
+}
+
+void check_group(const KeyGroup& group, const Json& json, const Place& place) {
+    std::vector<std::string> present;
+    for (const std::string& key : group.keys)
+        if (json.contains(key)) present.push_back(key);
+    const std::string all = listed(group.keys);
+    switch (group.kind) {
+        case KeyGroup::Kind::exactly_one:
+            if (present.size() == 1) return;
+            place.refuse(present.empty() ? "none of these keys" : "the keys " + listed(present), "exactly one of " + all);
+        case KeyGroup::Kind::at_most_one:
+            if (present.size() <= 1) return;
+            place.refuse("the keys " + listed(present), "at most one of " + all);
+        case KeyGroup::Kind::together:
+            if (present.empty() || present.size() == group.keys.size()) return;
+            place.refuse("only " + listed(present), "all of " + all + ", or none");
+    }
+}
+
+Json group_schema(const KeyGroup& group) {
+    Json one_each = Json::array(), pairs = Json::array(), needs = Json::object();
+    for (const std::string& key : group.keys) {
+        one_each.push_back({{"required", Json::array({key})}});
+        Json others = Json::array();
+        for (const std::string& other : group.keys)
+            if (other != key) others.push_back(other);
+        needs[key] = others;
+        for (const std::string& other : group.keys)
+            if (key < other) pairs.push_back({{"required", Json::array({key, other})}});
+    }
+    switch (group.kind) {
+        case KeyGroup::Kind::exactly_one:
+            return {{"oneOf", one_each}};
+        case KeyGroup::Kind::at_most_one:
+            return {{"not", {{"anyOf", pairs}}}};
+        case KeyGroup::Kind::together:
+            return {{"dependentRequired", needs}};
+    }
+    return {};
+}
+
+}  // namespace skerry

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, in metres: python3 scenes/meshes/make_meshes.py"""
+import math
+import pathlib
+
+FOLDER = pathlib.Path(__file__).resolve().parent
+# Kuhn's six tetrahedra of a cell; its corners are numbered by bits x + 2 y + 4 z. Neighbouring cells match, also around a ring.
+KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]
+
+
+class Builder:
+    def __init__(self):
+        self.nodes, self.tetrahedra, self.number = [], [], {}
+
+    def node(self, key, point):
+        if key not in self.number:
+            self.number[key] = len(self.nodes)
+            self.nodes.append(point)
+        return self.number[key]
+
+    def cell(self, corners):
+        for kuhn in KUHN:
+            t = [corners[c] for c in kuhn]
+            a, b, c, d = (self.nodes[n] for n in t)
+            u, v, w = ([p[i] - a[i] for i in range(3)] for p in (b, c, d))
+            volume = sum(u[i] * (v[(i + 1) % 3] * w[(i + 2) % 3] - v[(i + 2) % 3] * w[(i + 1) % 3]) for i in range(3))
+            self.tetrahedra.append(t if volume > 0 else [t[0], t[1], t[3], t[2]])
+
+
+def torus(ring_radius, tube_radius, across, around):
+    """A square grid of cells bent to a disc and swept around."""
+    mesh = Builder()
+
+    def corner(i, j, k):
+        x, y = 2 * i / across - 1, 2 * j / across - 1
+        x, y = x * math.sqrt(1 - y * y / 2), y * math.sqrt(1 - x * x / 2)
+        angle, radius = 2 * math.pi * k / around, ring_radius + tube_radius * x
+        return mesh.node((i, j, k % around), (radius * math.cos(angle), radius * math.sin(angle), tube_radius * y))
+
+    for k in range(around):
+        for j in range(across):
+            for i in range(across):
+                mesh.cell([corner(i + (b & 1), j + (b >> 1 & 1), k + (b >> 2)) for b in range(8)])
+    return mesh
+
+
+def voxels(rows, size, depth):
+    """Cubes where a picture has an x, several cells deep."""
+    mesh = Builder()
+    height, width = len(rows), max(len(row) for row in rows)
+
+    def corner(i, j, k):
+        return mesh.node((i, j, k), (size * (i - width / 2), size * (j - depth / 2), size * (k - height / 2)))
+
+    for row, line in enumerate(rows):
+        for i, mark in enumerate(line):
+            for j in range(depth if mark == "x" else 0):
+                mesh.cell([corner(i + (b & 1), j + (b >> 1 & 1), height - 1 - row + (b >> 2)) for b in range(8)])
+    return mesh
+
+
+def point_lines(mesh, first=None):
+    for i, p in enumerate(mesh.nodes):
+        yield ("" if first is None else f"{i + first} ") + " ".join(f"{c:.9g}" for c in p)
+
+
+def write_gmsh(mesh, name):
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(mesh.nodes)), *point_lines(mesh, 1), "$EndNodes", "$Elements", str(len(mesh.tetrahedra))]
+    lines += [f"{i + 1} 4 2 1 1 " + " ".join(str(n + 1) for n in t) for i, t in enumerate(mesh.tetrahedra)]
+    (FOLDER / name).write_text("\n".join(lines + ["$EndElements", ""]))
+
+
+def write_vtk(mesh, name):
+    count = len(mesh.tetrahedra)
+    lines = ["# vtk DataFile Version 3.0", "made by make_meshes.py", "ASCII", "DATASET UNSTRUCTURED_GRID", f"POINTS {len(mesh.nodes)} double", *point_lines(mesh)]
+    lines += [f"CELLS {count} {5 * count}"] + ["4 " + " ".join(map(str, t)) for t in mesh.tetrahedra] + [f"CELL_TYPES {count}"] + ["10"] * count
+    (FOLDER / name).write_text("\n".join(lines + [""]))
+
+
+def write_tetgen(mesh, name):
+    (FOLDER / f"{name}.node").write_text("\n".join([f"{len(mesh.nodes)} 3 0 0", *point_lines(mesh, 0), ""]))
+    elements = [f"{i} " + " ".join(map(str, t)) for i, t in enumerate(mesh.tetrahedra)]
+    (FOLDER / f"{name}.ele").write_text("\n".join([f"{len(mesh.tetrahedra)} 4 0", *elements, ""]))
+
+
+write_gmsh(torus(0.06, 0.028, 3, 18), "torus.msh")
+write_vtk(voxels([".x.", "xxx", ".x."], 0.04, 2), "cross.vtk")
+write_tetgen(voxels(["xxx", "x..", "xxx", "..x", "xxx"], 0.028, 2), "letter_s")

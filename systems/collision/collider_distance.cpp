@@ -1,0 +1,214 @@
+#include "systems/collision/collider_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "components/check.h"
+
+namespace skerry {
+
+namespace {
+
+// m: below it the direction from the nearest point is rounding noise, and a fixed one is taken.
+constexpr Real min_length = 1e-14;
+
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
+
+Vec3 direction_or(const Vec3& v, Real length, const Vec3& otherwise) {
+    return length > min_length ? Vec3(v / length) : otherwise;
+}
+
+SurfacePoint distance_to_ball(const Vec3& p, const Vec3& centre, Real radius) {
+    const Vec3 offset = p - centre;
+    const Real length = offset.norm();
+    const Vec3 normal = direction_or(offset, length, Vec3::UnitZ());
+    return {length - radius, normal, centre + radius * normal};
+}
+
+SurfacePoint distance_to_box(const Vec3& p, const Vec3& half) {
+    const Vec3 beyond = p.cwiseAbs() - half;
+    int face = 0;  // the nearest when inside, the lowest axis of equals
+    for (int i = 1; i < 3; ++i)
+        if (beyond[i] > beyond[face]) face = i;
+    Vec3 face_normal = Vec3::Zero();
+    face_normal[face] = p[face] < 0 ? -1 : 1;
+    if (!(beyond[face] > 0)) return {beyond[face], face_normal, p - beyond[face] * face_normal};
+    const Vec3 nearest = p.cwiseMin(half).cwiseMax(-half);
+    const Vec3 offset = p - nearest;
+    const Real length = offset.norm();
+    return {length, direction_or(offset, length, face_normal), nearest};
+}
+
+/// A point of the half plane through the axis of a body of revolution.
+struct Flat {
+    Real r;  // m, from the axis
+    Real z;  // m, along it
+};
+
+Real norm(const Flat& v) {
+    return std::sqrt(v.r * v.r + v.z * v.z);
+}
+
+struct FlatDistance {
+    Real distance;
+    Flat normal;
+    Flat nearest;
+};
+
+/// Distance to r0 <= r <= r1, z0 <= z <= z1; r0 = -infinity for a solid one. Of equally near sides the end faces come first.
+FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Real z1) {
+    const bool top = p.z >= 0.5 * (z0 + z1);
+    const bool outer = r0 == -infinite || p.r >= 0.5 * (r0 + r1);
+    const Real beyond_z = top ? p.z - z1 : z0 - p.z;
+    const Real beyond_r = outer ? p.r - r1 : r0 - p.r;
+    const bool through_end = beyond_z >= beyond_r;
+    const Flat side = through_end ? Flat{0, top ? 1.0 : -1.0} : Flat{outer ? 1.0 : -1.0, 0};
+    if (!(beyond_z > 0) && !(beyond_r > 0)) {
+        const Real depth = through_end ? beyond_z : beyond_r;
+        return {depth, side, {p.r - depth * side.r, p.z - depth * side.z}};
+    }
+    const Flat nearest{std::clamp(p.r, r0, r1), std::clamp(p.z, z0, z1)};
+    const Flat offset{p.r - nearest.r, p.z - nearest.z};
+    const Real length = norm(offset);
+    return {length, length > min_length ? Flat{offset.r / length, offset.z / length} : side, nearest};
+}
+
+/// The half plane through p. The nearest point of a body of revolution lies in it.
+struct AxialFrame {
+    Vec3 radial;  // unit; +x on the axis itself
+    Flat p;
+
+    explicit AxialFrame(const Vec3& point) {
+        const Real r = std::sqrt(point[0] * point[0] + point[1] * point[1]);
+        radial = direction_or(Vec3(point[0], point[1], 0), r, Vec3::UnitX());
+        p = {r, point[2]};
+    }
+    Vec3 lift(const Flat& v) const { return v.r * radial + Vec3(0, 0, v.z); }
+    SurfacePoint lift(const FlatDistance& d) const { return {d.distance, lift(d.normal), lift(d.nearest)}; }
+};
+
+FlatDistance distance_to_bucket_part(const Vec3& size, Index part, const Flat& p) {
+    if (part == 0) return distance_to_rectangle(p, -infinite, size[0] + size[2], -size[2], 0);
+    return distance_to_rectangle(p, size[0], size[0] + size[2], -size[2], size[1]);
+}
+
+/// Of the L-shaped profile. Outside, the nearer part; inside, the nearest side of the outline, the first of equals.
+FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
+    const FlatDistance floor = distance_to_bucket_part(size, 0, p), wall = distance_to_bucket_part(size, 1, p);
+    if (floor.distance > 0 && wall.distance > 0) return floor.distance <= wall.distance ? floor : wall;
+
+    const Real inner = size[0], height = size[1], outer = size[0] + size[2], bottom = -size[2];
+    struct Side {
+        Flat from, to, normal;
+    };
+    const std::array<Side, 5> sides{{{{0, 0}, {inner, 0}, {0, 1}},
+                                     {{inner, 0}, {inner, height}, {-1, 0}},
+                                     {{inner, height}, {outer, height}, {0, 1}},
+                                     {{outer, bottom}, {outer, height}, {1, 0}},
+                                     {{0, bottom}, {outer, bottom}, {0, -1}}}};
+    FlatDistance best{-infinite, {0, 1}, p};
+    for (const Side& side : sides) {
+        const Flat nearest{std::clamp(p.r, std::min(side.from.r, side.to.r), std::max(side.from.r, side.to.r)),
+                           std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
+        const Flat offset{nearest.r - p.r, nearest.z - p.z};
+        const Real length = norm(offset);
+        if (!(-length <= best.distance))  // a length that is not a number shows
+            best = {-length, length > min_length ? Flat{offset.r / length, offset.z / length} : side.normal, nearest};
+    }
+    return best;
+}
+
+SurfacePoint local_distance(const ColliderGeometry& geometry, Index part, const Vec3& p) {
+    const Vec3& size = geometry.size;
+    switch (geometry.shape) {
+        case ColliderShape::plane:
+            return {p[2], Vec3::UnitZ(), Vec3(p[0], p[1], 0)};
+        case ColliderShape::sphere:
+            return distance_to_ball(p, Vec3::Zero(), size[0]);
+        case ColliderShape::box:
+            return distance_to_box(p, size);
+        case ColliderShape::capsule:
+            return distance_to_ball(p, Vec3(0, 0, std::clamp(p[2], -size[1], size[1])), size[0]);
+        case ColliderShape::cylinder: {
+            const AxialFrame frame(p);
+            return frame.lift(distance_to_rectangle(frame.p, -infinite, size[0], -size[1], size[1]));
+        }
+        case ColliderShape::bucket: {
+            const AxialFrame frame(p);
+            return frame.lift(part == no_index ? distance_to_bucket(size, frame.p) : distance_to_bucket_part(size, part, frame.p));
+        }
+        case ColliderShape::mesh:
+            break;
+    }
+    check_failed("a mesh collider has no analytic distance", __FILE__, __LINE__);
+}
+
+}  // namespace
+
+SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion, const Vec3& world_point) {
+    return distance_to_collider_part(geometry, motion, no_index, world_point);
+}
+
+Index collider_part_count(ColliderShape shape) {
+    return shape == ColliderShape::bucket ? 2 : 1;
+}
+
+SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part, const Vec3& world_point) {
+    const Vec3 local = motion.rotation.transpose() * (world_point - motion.position);
+    const SurfacePoint found = local_distance(geometry, part, local);
+    return {found.distance, motion.rotation * found.normal, motion.position + motion.rotation * found.point};
+}
+
+Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion) {
+    const Vec3& size = geometry.size;
+    const Vec3 axis = motion.rotation.col(2);
+    // A disc reaches radius * sin(angle between its axis and the world axis).
+    const Vec3 disc = (Vec3::Ones() - axis.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
+    Vec3 centre = motion.position, half = Vec3::Constant(infinite);
+    switch (geometry.shape) {
+        case ColliderShape::plane:
+        case ColliderShape::mesh:
+            break;
+        case ColliderShape::sphere:
+            half = Vec3::Constant(size[0]);
+            break;
+        case ColliderShape::box:
+            half = motion.rotation.cwiseAbs() * size;
+            break;
+        case ColliderShape::capsule:
+            half = size[1] * axis.cwiseAbs() + Vec3::Constant(size[0]);
+            break;
+        case ColliderShape::cylinder:
+            half = size[1] * axis.cwiseAbs() + size[0] * disc;
+            break;
+        case ColliderShape::bucket:
+            centre += 0.5 * (size[1] - size[2]) * axis;
+            half = 0.5 * (size[1] + size[2]) * axis.cwiseAbs() + (size[0] + size[2]) * disc;
+            break;
+    }
+    return {centre - half, centre + half};
+}
+
+Real collider_radius(const ColliderGeometry& geometry) {
+    const Vec3& size = geometry.size;
+    switch (geometry.shape) {
+        case ColliderShape::sphere:
+            return size[0];
+        case ColliderShape::box:
+            return size.norm();
+        case ColliderShape::capsule:
+            return size[0] + size[1];
+        case ColliderShape::cylinder:
+            return std::hypot(size[0], size[1]);
+        case ColliderShape::bucket:
+            return std::hypot(size[0] + size[2], std::max(size[1], size[2]));
+        case ColliderShape::plane:
+        case ColliderShape::mesh:
+            break;
+    }
+    return 0;
+}
+
+}  // namespace skerry

@@ -1,0 +1,96 @@
+#include "systems/collision/edge_edge_contact.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace skerry {
+
+namespace {
+
+// rad: an edge that bends less counts as flat. Left out, it lets two edges come nearer by at most a quarter of this fraction of their
+// length than the points around show: an eighth of the default contact distance.
+constexpr Real min_bend = 0.01;
+
+// rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that border exactly.
+constexpr Real border_angle = 0.002;
+
+Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
+    for (Index n : triangle)
+        if (n != edge[0] && n != edge[1]) return n;
+    return triangle[0];
+}
+
+/// The faces at one edge.
+class Wedge {
+public:
+    Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge) {
+        const auto& ends = surface.edges.node[edge];
+        const auto& around = surface.edges.triangle[edge];
+        const Vec3& origin = position[ends[0]];
+        length_ = (position[ends[1]] - origin).norm();
+        const auto& first = surface.triangles.node[around[0]];
+        const Vec3 normal = (position[first[1]] - position[first[0]]).cross(position[first[2]] - position[first[0]]);
+        into_[0] = position[opposite(first, ends)] - origin;
+        if (around[1] == no_index) {
+            // The rim of an open surface: as if a wall went down from it.
+            into_[1] = normal * (-length_ / std::max(normal.norm(), std::numeric_limits<Real>::min()));
+            convex_ = true;
+            return;
+        }
+        into_[1] = position[opposite(surface.triangles.node[around[1]], ends)] - origin;
+        // The other face falls away below the plane of the first.
+        convex_ = normal.dot(into_[1]) < -min_bend * normal.norm() * length_;
+    }
+
+    bool convex() const { return convex_; }
+
+    /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
+    bool faces(const Vec3& direction) const {
+        const Real border = border_angle * length_;
+        // Both faces together fall away from it, which tells the outside of a nearly flat edge from its inside.
+        return direction.dot(into_[0]) <= border && direction.dot(into_[1]) <= border && direction.dot(into_[0] + into_[1]) < 0;
+    }
+
+private:
+    std::array<Vec3, 2> into_;  // m, from the edge into either face
+    Real length_;               // m
+    bool convex_;
+};
+
+}  // namespace
+
+EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first, Index second,
+                                  const PairScale& scale, Real near) {
+    const auto &ea = surface.edges.node[first], &eb = surface.edges.node[second];
+    const Vec3 &a0 = position[ea[0]], &a1 = position[ea[1]], &b0 = position[eb[0]], &b1 = position[eb[1]];
+    EdgeEdgeContact contact;
+    contact.closest = closest_points_of_segments(a0, a1, b0, b1);
+    const Real distance = std::sqrt(contact.closest.distance_squared);
+    contact.sleep = distance - scale.edge_depth;
+    if (!contact.closest.interior || !(distance <= std::max(near, scale.edge_depth))) return contact;
+
+    // Along the connection, but well defined when the edges touch.
+    Vec3 normal = (a1 - a0).cross(b1 - b0).normalized();
+    const Real height = normal.dot(contact.closest.on_first - contact.closest.on_second);
+    if (height < 0) normal = -normal;
+    const Wedge wedge_a(surface, position, first);
+    if (!wedge_a.convex()) return contact;
+    const Wedge wedge_b(surface, position, second);
+    if (!wedge_b.convex()) return contact;
+    if (wedge_b.faces(normal) && wedge_a.faces(-normal)) {
+        contact.distance = distance;
+        contact.normal = normal;
+    } else if (distance <= scale.edge_depth && wedge_b.faces(-normal) && wedge_a.faces(normal)) {
+        contact.distance = -distance;  // they have passed each other
+        contact.normal = -normal;
+    } else {
+        return contact;
+    }
+    contact.touching = true;
+    return contact;
+}
+
+}  // namespace skerry

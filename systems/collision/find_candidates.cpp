@@ -1,0 +1,129 @@
+#include "systems/collision/find_candidates.h"
+
+#include <algorithm>
+
+#include "jobs/parallel_for.h"
+#include "systems/collision/bvh.h"
+#include "systems/collision/contact_reach.h"
+#include "systems/collision/find_pairs.h"
+#include "systems/collision/search_pair.h"
+#include "systems/collision/step_reach.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t trees_per_block = 4;  // a refit takes microseconds
+
+void set_body_fronts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool measure, Column<Real>& front) {
+    front.resize(inputs.body.slot.size());
+    for (std::size_t b = 0; b < front.size(); ++b)
+        front[b] = inputs.body.travel[b] + body_reach(inputs, settings, static_cast<Index>(b), measure, h);
+}
+
+void set_collider_fronts(const CollisionInputs& inputs, Real h, SearchMemory& memory) {
+    memory.collider_front.resize(inputs.collider.slot.size());
+    for (std::size_t c = 0; c < memory.collider_front.size(); ++c)
+        memory.collider_front[c] = inputs.collider.travel[c] + collider_reach(inputs, static_cast<Index>(c), memory.collider_extent[c], h);
+}
+
+bool all_below(const Column<Real>& front, const Column<Real>& valid_until) {
+    bool below = true;
+    for (std::size_t i = 0; i < front.size(); ++i) below &= front[i] < valid_until[i];
+    return below;
+}
+
+/// A mesh collider moves as a body; its row among the colliders says nothing.
+bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
+    bool below = true;
+    for (std::size_t c = 0; c < search.memory.collider_front.size(); ++c)
+        below &= search.memory.collider_front[c] < search.collider_valid_until[c] || inputs.collider.body[c] != no_index;
+    return below;
+}
+
+void list_expired(const CollisionInputs& inputs, bool all, SearchMemory& memory, PairTable& pairs) {
+    memory.expired.clear();
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const Real own = memory.body_front[pairs.first[p]];
+        pairs.front[p] =
+            own + (pairs.kind[p] == PairKind::collider ? memory.collider_front[pairs.second[p]] : memory.body_front[pairs.second[p]]);
+        if (all || !(pairs.front[p] < pairs.valid_until[p])) memory.expired.push_back(static_cast<Index>(p));
+    }
+    // A tree that several expired pairs share is fitted once.
+    memory.refit.clear();
+    if (memory.expired.empty()) return;
+    memory.needs_refit.assign(inputs.body.slot.size(), 0);
+    for (Index p : memory.expired) {
+        if (pairs.kind[p] == PairKind::collider) continue;
+        memory.needs_refit[pairs.first[p]] = memory.needs_refit[pairs.second[p]] = 1;
+    }
+    for (std::size_t b = 0; b < memory.needs_refit.size(); ++b)
+        if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
+}
+
+void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<const Index> bodies, std::span<Aabb> boxes) {
+    parallel_for(executor, bodies.size(), trees_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            refit_bvh(inputs.body.bvh_nodes[bodies[i]], inputs.bvh_node, inputs.bvh_triangle, inputs.surface.triangles.node,
+                      inputs.position, boxes);
+    });
+}
+
+/// What both partners may close in this step, m. Not front minus travel: a shape that turns may have travelled without bounds.
+Real closing(const CollisionInputs& inputs, const SearchMemory& memory, const PairToSearch& pair, Real h) {
+    const auto of_body = [&](Index b) { return memory.body_front[b] - inputs.body.travel[b]; };
+    return of_body(pair.first) + (pair.kind == PairKind::collider
+                                      ? collider_reach(inputs, pair.second, memory.collider_extent[pair.second], h)
+                                      : of_body(pair.second));
+}
+
+void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> boxes, Index p,
+                  const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
+    PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0};
+    pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
+    pair.travel = pair_travel(inputs, pair.kind, pair.first, pair.second);
+    pair.margin = settings.pair_skin * pair.scale.edge + closing(inputs, memory, pair, h);
+    pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
+
+    pairs.candidates[p].resize(found.size());
+    pairs.asleep_until[p].resize(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        pairs.candidates[p][i] = found[i].candidate;
+        pairs.asleep_until[p][i] = found[i].asleep_until;
+    }
+}
+
+}  // namespace
+
+bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<Aabb> boxes,
+                     SearchState& search, PairTable& pairs) {
+    SearchMemory& memory = search.memory;
+    const std::size_t body_count = inputs.body.slot.size(), collider_count = inputs.collider.slot.size();
+    const bool afresh =
+        !settings.use_budgets || search.body_valid_until.size() != body_count || search.collider_valid_until.size() != collider_count;
+    set_body_fronts(inputs, settings, h, afresh, memory.body_front);
+    bool broad = afresh;
+    if (!afresh) {
+        set_collider_fronts(inputs, h, memory);
+        broad = !all_below(memory.body_front, search.body_valid_until) || !colliders_below(inputs, search);
+    }
+    if (broad) {
+        find_pairs(executor, inputs, settings, h, afresh, search, pairs);
+        set_collider_fronts(inputs, h, memory);  // of a plane that turns, by where the bodies are now
+    }
+    list_expired(inputs, afresh, memory, pairs);
+    if (!broad && memory.expired.empty()) return false;
+
+    refit_trees(executor, inputs, memory.refit, boxes);
+    if (memory.found.size() < memory.expired.size()) memory.found.resize(memory.expired.size());
+    parallel_for(executor, memory.expired.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            search_again(inputs, settings, h, boxes, memory.expired[i], memory, pairs, memory.found[i]);
+    });
+    search.pair_searches += memory.expired.size();
+    search.candidate_count = 0;
+    for (std::size_t p = 0; p < pairs.size(); ++p) search.candidate_count += pairs.candidates[p].size();
+    return true;
+}
+
+}  // namespace skerry

@@ -1,0 +1,301 @@
+#include "systems/collision/find_contacts.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "jobs/parallel_for.h"
+#include "systems/collision/collider_distance.h"
+#include "systems/collision/contact_key.h"
+#include "systems/collision/contact_reach.h"
+#include "systems/collision/edge_edge_contact.h"
+#include "systems/collision/point_triangle_contact.h"
+
+namespace skerry {
+
+namespace {
+
+// Candidates of one block, asleep or not; a pair counts as some more. Asleep it takes a microsecond, awake a hundred.
+constexpr Index candidates_per_block = 2048;
+constexpr Index candidates_worth_of_a_pair = 16;
+
+// Candidates whose sleep is tested together, without a branch for each.
+constexpr Index candidates_at_once = 16;
+
+constexpr std::size_t rows_per_block = 256;
+
+// Another triangle is nearer to a point only if it is by more than rounding.
+constexpr Real nearer_fraction = 1e-9;
+
+/// Looks at a range of the candidates of one pair.
+class PairContacts {
+public:
+    PairContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs, Index p,
+                 Column<ContactRow>& found)
+        : inputs_(inputs),
+          settings_(settings),
+          h_(h),
+          key_(pairs.key[p]),
+          kind_(pairs.kind[p]),
+          first_(pairs.first[p]),
+          second_(pairs.second[p]),
+          front_(pairs.front[p]),
+          candidates_(pairs.candidates[p].span()),
+          asleep_until_(pairs.asleep_until[p].span()),
+          found_(found) {}
+
+    void run(Index begin, Index end) {
+        for (Index i = begin; i < end; i += candidates_at_once) {
+            const Index stop = std::min(i + candidates_at_once, end);
+            if (settings_.use_budgets && all_asleep(i, stop)) continue;
+            for (Index c = i; c < stop; ++c)
+                if (!settings_.use_budgets || !(front_ < asleep_until_[c])) wake(c);
+        }
+    }
+
+private:
+    bool all_asleep(Index begin, Index end) const {
+        const Real* const until = asleep_until_.data();
+        bool awake = false;
+#pragma omp simd reduction(| : awake)
+        for (Index i = begin; i < end; ++i) awake |= !(front_ < until[i]);
+        return !awake;
+    }
+
+    void wake(Index c) {
+        if (!prepared_) prepare();
+        const Candidate& candidate = candidates_[c];
+        if (kind_ == PairKind::collider)
+            point_against_collider(c, candidate);
+        else if (is_edge_edge(candidate.feature))
+            edge_against_edge(c, candidate);
+        else
+            point_against_triangle(c, candidate);
+    }
+
+    /// What all candidates of the pair share, once one is awake.
+    void prepare() {
+        scale_ = pair_scale(inputs_, kind_, first_, second_);
+        surface_ = pair_surface(inputs_, kind_, first_, second_);
+        travel_ = pair_travel(inputs_, kind_, first_, second_);
+        const Real closing = front_ - travel_;
+        near_ = scale_.contact_distance + (closing >= 0 ? closing : 0);
+        prepared_ = true;
+    }
+
+    bool within_reach(Real distance, Real relative_speed) const {
+        const Real gap = distance - scale_.contact_distance;
+        return gap <= reach(h_, relative_speed, settings_.gravity, scale_.contact_distance);
+    }
+
+    bool moves(const Stencil& stencil) const {
+        for (std::size_t a = 0; a < 4; ++a)
+            if (stencil.weight[a] != 0 && inputs_.inverse_mass[stencil.node[a]] > 0) return true;
+        return false;
+    }
+
+    void add(const Candidate& candidate, ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
+             const Vec3& surface_velocity) {
+        if (!moves(stencil)) return;
+        const bool turned = kind == ContactKind::point_triangle && is_point_of_second(candidate.feature);
+        ContactRow row;
+        row.key = {key_, candidate.feature};
+        row.kind = kind;
+        row.stencil = stencil;
+        row.point = point;
+        row.normal = normal;
+        row.gap = distance - scale_.contact_distance;
+        row.distance = distance;
+        row.surface_velocity = surface_velocity;
+        row.static_friction = surface_.static_friction;
+        row.dynamic_friction = surface_.dynamic_friction;
+        row.restitution = surface_.restitution;
+        row.first_body = turned ? second_ : first_;
+        row.second_body = kind_ == PairKind::collider ? no_index : turned ? first_ : second_;
+        row.collider = kind_ == PairKind::collider ? second_ : inputs_.body.collider[second_];
+        found_.push_back(row);
+    }
+
+    void point_against_collider(Index c, const Candidate& candidate) {
+        const Index node = inputs_.surface.vertices.node[candidate.first];
+        const RigidMotion& motion = inputs_.collider.motion[candidate.second];
+        const SurfacePoint nearest = distance_to_collider_part(inputs_.collider.geometry[candidate.second], motion,
+                                                               second_local(candidate.feature), inputs_.position[node]);
+        asleep_until_[c] = travel_ + nearest.distance - scale_.contact_distance;
+        if (!(nearest.distance <= near_)) return;
+        const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(nearest.point - motion.position);
+        if (!within_reach(nearest.distance, (inputs_.velocity[node] - velocity).norm())) return;
+        add(candidate, ContactKind::point_collider, {{node, node, node, node}, {1, 0, 0, 0}}, nearest.point, nearest.normal,
+            nearest.distance, velocity);
+    }
+
+    void point_against_triangle(Index c, const Candidate& candidate) {
+        const Index node = inputs_.surface.vertices.node[candidate.first];
+        const PointTriangleContact contact =
+            point_triangle_contact(inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_);
+        asleep_until_[c] = travel_ + contact.sleep;
+        if (contact.side == Side::none) return;
+        const auto& corner = inputs_.surface.triangles.node[candidate.second];
+        Real speed_squared = 0;
+        for (Index n : corner) speed_squared = std::max(speed_squared, (inputs_.velocity[node] - inputs_.velocity[n]).squaredNorm());
+        if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
+        if (contact.side == Side::inside && !is_truly_inside(c, node, corner, -contact.distance)) return;
+
+        Stencil stencil{{node, node, node, node}, {1, 0, 0, 0}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (contact.closest.weight[k] == 0) continue;  // a node without weight joins no regions
+            stencil.node[k + 1] = corner[k];
+            stencil.weight[k + 1] = -contact.closest.weight[k];
+        }
+        add(candidate, ContactKind::point_triangle, stencil, contact.closest.nearest, contact.normal, contact.distance, Vec3::Zero());
+    }
+
+    /// A point behind a triangle is inside the body only if no other of its triangles is nearer: it may be in front of the far side of a thin
+    /// part, or be pushed out through a nearer face. All triangles as near as that are candidates of the same point, in one row.
+    bool is_truly_inside(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
+        if (kind_ == PairKind::self && !was_far_at_rest(point, corner)) return false;
+        const std::uint64_t group = point_of_feature(candidates_[c].feature);
+        const Index count = static_cast<Index>(candidates_.size());
+        const Real limit = depth - nearer_fraction * (depth + scale_.edge);
+        const auto nearer = [&](Index i) {
+            const auto& n = inputs_.surface.triangles.node[candidates_[i].second];
+            const PointTriangle other =
+                closest_point_on_triangle(inputs_.position[point], inputs_.position[n[0]], inputs_.position[n[1]], inputs_.position[n[2]]);
+            return limit > 0 && other.distance_squared < limit * limit;
+        };
+        for (Index i = c - 1; i >= 0 && point_of_feature(candidates_[i].feature) == group; --i)
+            if (nearer(i)) return false;
+        for (Index i = c + 1; i < count && point_of_feature(candidates_[i].feature) == group; ++i)
+            if (nearer(i)) return false;
+        return true;
+    }
+
+    /// In a body's contact with itself a point behind a triangle may simply be on the other side of a thin part.
+    bool was_far_at_rest(Index point, const std::array<Index, 3>& corner) const {
+        if (inputs_.rest_position.empty()) return false;
+        const auto& rest = inputs_.rest_position;
+        const Real squared = closest_point_on_triangle(rest[point], rest[corner[0]], rest[corner[1]], rest[corner[2]]).distance_squared;
+        return squared > 4 * scale_.face_depth * scale_.face_depth;
+    }
+
+    void edge_against_edge(Index c, const Candidate& candidate) {
+        const EdgeEdgeContact contact =
+            edge_edge_contact(inputs_.surface, inputs_.position, candidate.first, candidate.second, scale_, near_);
+        asleep_until_[c] = travel_ + contact.sleep;
+        if (!contact.touching) return;
+        const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
+        Real speed_squared = 0;
+        for (Index m : a)
+            for (Index n : b) speed_squared = std::max(speed_squared, (inputs_.velocity[m] - inputs_.velocity[n]).squaredNorm());
+        if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
+        const Real s = contact.closest.s, t = contact.closest.t;
+        add(candidate, ContactKind::edge_edge, {{a[0], a[1], b[0], b[1]}, {1 - s, s, -(1 - t), -t}}, contact.closest.on_second,
+            contact.normal, contact.distance, Vec3::Zero());
+    }
+
+    const CollisionInputs& inputs_;
+    const CollisionSettings& settings_;
+    const Real h_;
+    const std::uint64_t key_;
+    const PairKind kind_;
+    const Index first_, second_;
+    const Real front_;
+    std::span<const Candidate> candidates_;
+    std::span<Real> asleep_until_;
+    Column<ContactRow>& found_;
+    bool prepared_ = false;
+    PairScale scale_;
+    SurfaceProperties surface_;
+    Real travel_ = 0;
+    Real near_ = 0;
+};
+
+/// Cuts the concatenated candidate lists into blocks of about equal length. Returns their number.
+Index cut_blocks(PairTable& pairs) {
+    pairs.block.clear();
+    Index filled = candidates_per_block;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const Index count = static_cast<Index>(pairs.candidates[p].size());
+        for (Index begin = 0; begin < count;) {
+            if (filled >= candidates_per_block) {
+                pairs.block.push_back({static_cast<Index>(p), begin});
+                filled = 0;
+            }
+            const Index take = std::min(count - begin, candidates_per_block - filled);
+            begin += take;
+            filled += take + candidates_worth_of_a_pair;
+        }
+    }
+    const Index blocks = static_cast<Index>(pairs.block.size());
+    pairs.block.push_back({static_cast<Index>(pairs.size()), 0});
+    return blocks;
+}
+
+void look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b, PairTable& pairs) {
+    const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
+    Column<ContactRow>& found = pairs.found[b];
+    found.clear();
+    for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
+        const Index from = p == begin.pair ? begin.candidate : 0;
+        const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
+        if (from < to) PairContacts(inputs, settings, h, pairs, p, found).run(from, to);
+    }
+}
+
+void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTable& contacts) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const ContactRow& row = found[i];
+        const std::size_t c = first + i;
+        contacts.key[c] = row.key;
+        contacts.kind[c] = row.kind;
+        contacts.stencil[c] = row.stencil;
+        contacts.point[c] = row.point;
+        contacts.normal[c] = row.normal;
+        contacts.gap[c] = row.gap;
+        contacts.distance[c] = row.distance;
+        contacts.surface_velocity[c] = row.surface_velocity;
+        contacts.static_friction[c] = row.static_friction;
+        contacts.dynamic_friction[c] = row.dynamic_friction;
+        contacts.restitution[c] = row.restitution;
+        contacts.first_body[c] = row.first_body;
+        contacts.second_body[c] = row.second_body;
+        contacts.collider[c] = row.collider;
+        contacts.impulse[c] = Vec3::Zero();
+        contacts.region[c] = no_index;
+        contacts.slip[c] = Vec3::Zero();
+        contacts.state[c] = ContactState::open;
+    }
+}
+
+}  // namespace
+
+bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
+                   ContactTable& contacts) {
+    const Index blocks = cut_blocks(pairs);
+    if (blocks == 0) {
+        contacts.resize(0);
+        return false;
+    }
+    if (pairs.found.size() < static_cast<std::size_t>(blocks)) pairs.found.resize(static_cast<std::size_t>(blocks));
+    parallel_for(executor, static_cast<std::size_t>(blocks), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) look_at_block(inputs, settings, h, static_cast<Index>(b), pairs);
+    });
+
+    // Pairs are in key order, candidates in feature order, blocks in both: so are the contacts.
+    pairs.block_first.resize(static_cast<std::size_t>(blocks));
+    std::size_t count = 0;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {
+        pairs.block_first[b] = count;
+        count += pairs.found[b].size();
+    }
+    contacts.resize(count);
+    const auto write = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) write_rows(pairs.found[b].span(), pairs.block_first[b], contacts);
+    };
+    parallel_for(executor, static_cast<std::size_t>(blocks), count > rows_per_block ? 1 : static_cast<std::size_t>(blocks), write);
+    return true;
+}
+
+}  // namespace skerry

@@ -1,0 +1,129 @@
+#include "systems/collision/point_triangle_contact.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace skerry {
+
+namespace {
+
+// A point that is on the border between two features by less than this fraction of its distance (and of an edge) belongs to both: a contact
+// found twice does no harm, one lost by rounding does.
+constexpr Real tie_fraction = 1e-6;
+constexpr Real tie_edge_fraction = 1e-12;
+
+// Nearer to an edge or vertex than this fraction of the contact distance (or of an edge) the direction to the point is not trusted as normal
+// (methods.md 6, item 5).
+constexpr Real normal_distance_fraction = 0.1;
+constexpr Real normal_edge_fraction = 1e-6;
+
+struct Query {
+    const SurfaceTables& surface;
+    std::span<const Vec3> position;
+    const PairScale& scale;
+    Vec3 offset;    // m, from the nearest point of the triangle to the point
+    Real distance;  // m, its length
+
+    const Vec3& at(Index node) const { return position[node]; }
+    Real tie(const Vec3& direction) const { return (tie_fraction * distance + tie_edge_fraction * scale.edge) * direction.norm(); }
+    /// Zero for a triangle without area.
+    Vec3 unit_normal(Index triangle) const {
+        const auto& n = surface.triangles.node[triangle];
+        const Vec3 normal = (at(n[1]) - at(n[0])).cross(at(n[2]) - at(n[0]));
+        const Real length = normal.norm();
+        return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+    }
+};
+
+/// Mean normal of the faces around the nearest edge; zero when the other face comes nearer to the point.
+Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face_normal) {
+    const Index edge = q.surface.triangles.edge[triangle][k];
+    const auto& around = q.surface.edges.triangle[edge];
+    const Index other = around[0] == triangle ? around[1] : around[0];
+    if (other == no_index) return face_normal;
+    const auto& ends = q.surface.edges.node[edge];
+    for (Index n : q.surface.triangles.node[other]) {
+        if (n == ends[0] || n == ends[1]) continue;
+        const Vec3 into = q.at(n) - q.at(ends[0]);
+        if (q.offset.dot(into) > q.tie(into)) return Vec3::Zero();
+    }
+    return face_normal + q.unit_normal(other);
+}
+
+/// Mean normal of the faces around the nearest vertex, weighted by their angles (Baerentzen, Aanaes 2005: its sign tells inside from
+/// outside); zero when one of the faces comes nearer to the point.
+Vec3 vertex_normal(const Query& q, Index triangle, std::size_t k) {
+    const VertexTable& vertices = q.surface.vertices;
+    const Index vertex = q.surface.triangles.vertex[triangle][k];
+    const Index self = vertices.node[vertex];
+    Vec3 sum = Vec3::Zero();
+    for (Index i = vertices.triangle_begin[vertex]; i < vertices.triangle_end[vertex]; ++i) {
+        const Index other = q.surface.vertex_triangle[i];
+        const auto& node = q.surface.triangles.node[other];
+        const std::size_t c = node[0] == self ? 0 : node[1] == self ? 1 : 2;
+        const Vec3 a = q.at(node[(c + 1) % 3]) - q.at(self), b = q.at(node[(c + 2) % 3]) - q.at(self);
+        if (q.offset.dot(a) > q.tie(a) || q.offset.dot(b) > q.tie(b)) return Vec3::Zero();
+        const Vec3 cross = a.cross(b);
+        const Real length = cross.norm();
+        if (length > 0) sum += cross * (std::atan2(length, a.dot(b)) / length);
+    }
+    return sum;
+}
+
+/// Contact with an edge or a vertex around which the faces have this mean normal.
+void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, PointTriangleContact& contact) {
+    const Real length = mean_normal.norm();
+    if (!(length > 0)) return;
+    const bool outside = q.offset.dot(mean_normal) >= 0;
+    // Straight behind an edge inside a flat face: as deep as behind the face itself.
+    if (!outside && q.distance > (straight_behind ? q.scale.face_depth : q.scale.edge_depth)) return;
+    contact.side = outside ? Side::outside : Side::inside;
+    contact.distance = outside ? q.distance : -q.distance;
+    const bool noise = q.distance <= std::max(normal_distance_fraction * q.scale.contact_distance, normal_edge_fraction * q.scale.edge);
+    contact.normal = noise ? Vec3(mean_normal / length) : Vec3(q.offset / contact.distance);
+}
+
+}  // namespace
+
+PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position, const Vec3& point, Index triangle,
+                                            const PairScale& scale, Real near) {
+    const auto& corner = surface.triangles.node[triangle];
+    PointTriangleContact contact;
+    contact.closest = closest_point_on_triangle(point, position[corner[0]], position[corner[1]], position[corner[2]]);
+    const Real distance = std::sqrt(contact.closest.distance_squared);
+    contact.sleep = distance - scale.zone;
+    if (!(distance <= std::max(near, scale.zone))) return contact;
+
+    const Query q{surface, position, scale, point - contact.closest.nearest, distance};
+    const Vec3 face_normal = q.unit_normal(triangle);
+    const Real height = q.offset.dot(face_normal);  // of the point above the plane of the face
+    const Real aside_squared = std::max(Real(0), distance * distance - height * height);
+    contact.sleep = distance - scale.edge_depth;  // not less than the contact distance
+    if (height < 0) {
+        // It can also come to lie behind the face, at most face_depth below.
+        const Real below = std::max(Real(0), -height - scale.face_depth);
+        contact.sleep = std::min(contact.sleep, std::sqrt(aside_squared + below * below));
+    }
+    const std::size_t region = static_cast<std::size_t>(contact.closest.region);
+    if (contact.closest.region == TriangleRegion::face) {
+        if (height < -scale.face_depth) return contact;
+        contact.side = height >= 0 ? Side::outside : Side::inside;
+        contact.distance = height;
+        contact.normal = face_normal;
+        return contact;
+    }
+    const bool straight_behind = aside_squared <= tie_fraction * tie_fraction * distance * distance;
+    if (region <= static_cast<std::size_t>(TriangleRegion::edge20)) {
+        const std::size_t k = region - static_cast<std::size_t>(TriangleRegion::edge01);
+        if (surface.triangles.owned_edges[triangle] >> k & 1)
+            touch_border(q, edge_normal(q, triangle, k, face_normal), straight_behind, contact);
+    } else {
+        const std::size_t k = region - static_cast<std::size_t>(TriangleRegion::vertex0);
+        if (surface.triangles.owned_vertices[triangle] >> k & 1) touch_border(q, vertex_normal(q, triangle, k), straight_behind, contact);
+    }
+    return contact;
+}
+
+}  // namespace skerry

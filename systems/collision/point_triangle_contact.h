@@ -1,0 +1,32 @@
+// A point against a triangle of a closed surface (methods.md 6, items 4 and 5).
+#pragma once
+
+#include <span>
+
+#include "components/surface_table.h"
+#include "systems/collision/contact_reach.h"
+#include "systems/geometry/closest_points.h"
+
+namespace skerry {
+
+enum class Side : std::uint8_t {
+    none,     // no contact by this triangle: a neighbour owns it, or the point is out of its way
+    outside,  // a contact
+    inside,   // a contact if no other triangle of the body is nearer to the point
+};
+
+struct PointTriangleContact {
+    Side side = Side::none;
+    Real distance = 0;  // m, signed
+    Vec3 normal;        // unit, out of the triangle's body
+    PointTriangle closest;
+    Real sleep = 0;  // m: travel after which this may be a contact of gap 0; not above 0: look again in the next step
+};
+
+/// The point against the feature of the triangle that is nearest to it. A point that is nearest to an edge or a vertex is left to the
+/// lowest triangle around it, and is a contact only where no other triangle around comes nearer. Normals: of the face; from the edge or
+/// vertex to the point, or, too near for that, the mean of the faces around. Features further than `near` are not looked at closely.
+PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position, const Vec3& point, Index triangle,
+                                            const PairScale& scale, Real near);
+
+}  // namespace skerry

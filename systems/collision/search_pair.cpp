@@ -1,0 +1,247 @@
+#include "systems/collision/search_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "components/check.h"
+#include "systems/collision/box.h"
+#include "systems/collision/collider_distance.h"
+#include "systems/collision/contact_key.h"
+#include "systems/geometry/closest_points.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
+
+// Two trees over at most 2^31 triangles are at most 2 * 32 levels deep together, and a level leaves at most two waiting pairs.
+constexpr std::size_t max_waiting = 192;
+
+template <std::size_t Size>
+bool share_node(const std::array<Index, Size>& a, Index node) {
+    return std::find(a.begin(), a.end(), node) != a.end();
+}
+
+/// The triangles of a leaf with their boxes and those of their edges.
+struct Leaf {
+    struct Item {
+        Index row;
+        Aabb box;
+    };
+    std::array<Item, 4> item;
+    Index count;
+};
+
+class BodySearch {
+public:
+    BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found)
+        : inputs_(inputs),
+          triangle_(inputs.surface.triangles),
+          pair_(pair),
+          boxes_(boxes),
+          found_(found),
+          radius_(pair.scale.zone + pair.margin),
+          radius_squared_(radius_ * radius_),
+          edge_radius_squared_((pair.scale.edge_depth + pair.margin) * (pair.scale.edge_depth + pair.margin)),
+          self_(pair.kind == PairKind::self) {}
+
+    void run() {
+        push(inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin);
+        while (waiting_count_ > 0) {
+            const auto [a, b] = waiting_[--waiting_count_];
+            if (self_ && a == b)
+                split_with_itself(a);
+            else if (distance_squared(boxes_[a], boxes_[b]) < radius_squared_)
+                split(a, b);
+        }
+    }
+
+private:
+    const BvhNode& node(Index row) const { return inputs_.bvh_node[row]; }
+    const Vec3& position(Index n) const { return inputs_.position[n]; }
+
+    void push(Index a, Index b) {
+        SKERRY_CHECK(waiting_count_ < max_waiting);
+        waiting_[waiting_count_++] = {a, b};
+    }
+
+    void split_with_itself(Index a) {
+        if (node(a).count > 0) {
+            compare_leaves(a, a);
+            return;
+        }
+        push(a + 1, a + 1);
+        push(node(a).right, node(a).right);
+        push(a + 1, node(a).right);
+    }
+
+    /// Opens the tree with more below it.
+    void split(Index a, Index b) {
+        const bool leaf_a = node(a).count > 0, leaf_b = node(b).count > 0;
+        if (leaf_a && leaf_b) {
+            compare_leaves(a, b);
+        } else if (leaf_b || (!leaf_a && node(a).skip - a >= node(b).skip - b)) {
+            push(a + 1, b);
+            push(node(a).right, b);
+        } else {
+            push(a, b + 1);
+            push(a, node(b).right);
+        }
+    }
+
+    Leaf open(Index row) const {
+        Leaf leaf;
+        leaf.count = node(row).count;
+        for (Index i = 0; i < leaf.count; ++i) {
+            const Index t = inputs_.bvh_triangle[node(row).first + i];
+            Aabb box = empty_box();
+            for (Index n : triangle_.node[t]) grow(box, position(n));
+            leaf.item[i] = {t, box};
+        }
+        return leaf;
+    }
+
+    void compare_leaves(Index a, Index b) {
+        const Leaf first = open(a), second = open(b);
+        for (Index i = 0; i < first.count; ++i) {
+            if (!(distance_squared(boxes_[b], first.item[i].box) < radius_squared_)) continue;
+            for (Index j = self_ && a == b ? i : 0; j < second.count; ++j)
+                if (distance_squared(first.item[i].box, second.item[j].box) < radius_squared_)
+                    compare_triangles(first.item[i], second.item[j]);
+        }
+    }
+
+    void compare_triangles(const Leaf::Item& a, const Leaf::Item& b) {
+        compare_points(a, b, false);
+        if (a.row == b.row) return;  // the edges of one triangle share its nodes
+        compare_points(b, a, true);
+        if (distance_squared(a.box, b.box) < edge_radius_squared_) compare_edges(a, b);
+    }
+
+    void compare_points(const Leaf::Item& owner, const Leaf::Item& other, bool of_second) {
+        const std::uint8_t owned = triangle_.owned_vertices[owner.row];
+        const auto& corner = triangle_.node[other.row];
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!(owned >> k & 1)) continue;
+            const Index n = triangle_.node[owner.row][k];
+            if (!(distance_squared(other.box, position(n)) < radius_squared_)) continue;
+            const Real squared =
+                closest_point_on_triangle(position(n), position(corner[0]), position(corner[1]), position(corner[2])).distance_squared;
+            if (!(squared < radius_squared_) || (self_ && excluded_at_rest(n, corner))) continue;
+            const Index vertex = triangle_.vertex[owner.row][k];
+            add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin, other.row - triangles(of_second).begin),
+                 vertex, other.row},
+                squared, pair_.scale.zone);
+        }
+    }
+
+    void compare_edges(const Leaf::Item& a, const Leaf::Item& b) {
+        const std::uint8_t owned_a = triangle_.owned_edges[a.row], owned_b = triangle_.owned_edges[b.row];
+        if (owned_a == 0 || owned_b == 0) return;
+        const auto &na = triangle_.node[a.row], &nb = triangle_.node[b.row];
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (!(owned_a >> i & 1)) continue;
+            const std::array<Index, 2> ea{na[i], na[(i + 1) % 3]};
+            const Aabb box = edge_box(ea);
+            if (!(distance_squared(box, b.box) < edge_radius_squared_)) continue;
+            for (std::size_t j = 0; j < 3; ++j) {
+                if (!(owned_b >> j & 1)) continue;
+                const std::array<Index, 2> eb{nb[j], nb[(j + 1) % 3]};
+                if (!(distance_squared(box, edge_box(eb)) < edge_radius_squared_)) continue;
+                const Real squared =
+                    closest_points_of_segments(position(ea[0]), position(ea[1]), position(eb[0]), position(eb[1])).distance_squared;
+                if (!(squared < edge_radius_squared_) || (self_ && excluded_at_rest(ea, eb))) continue;
+                add_edges(triangle_.edge[a.row][i], triangle_.edge[b.row][j], squared);
+            }
+        }
+    }
+
+    void add_edges(Index a, Index b, Real squared) {
+        if (self_ && a > b) std::swap(a, b);
+        const Index first = a - inputs_.body.edges[pair_.first].begin, second = b - inputs_.body.edges[pair_.second].begin;
+        add({edge_edge_feature(first, second), a, b}, squared, pair_.scale.edge_depth);
+    }
+
+    Aabb edge_box(const std::array<Index, 2>& edge) const {
+        const Vec3 &a = position(edge[0]), &b = position(edge[1]);
+        return {a.cwiseMin(b), a.cwiseMax(b)};
+    }
+
+    Range vertices(bool of_second) const { return inputs_.body.vertices[of_second ? pair_.second : pair_.first]; }
+    Range triangles(bool of_first) const { return inputs_.body.triangles[of_first ? pair_.first : pair_.second]; }
+
+    bool excluded_at_rest(Index point, const std::array<Index, 3>& corner) const {
+        if (share_node(corner, point)) return true;
+        if (inputs_.rest_position.empty()) return false;
+        const auto& rest = inputs_.rest_position;
+        const Real squared = closest_point_on_triangle(rest[point], rest[corner[0]], rest[corner[1]], rest[corner[2]]).distance_squared;
+        return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
+    }
+
+    bool excluded_at_rest(const std::array<Index, 2>& a, const std::array<Index, 2>& b) const {
+        if (share_node(b, a[0]) || share_node(b, a[1])) return true;
+        if (inputs_.rest_position.empty()) return false;
+        const auto& rest = inputs_.rest_position;
+        const Real squared = closest_points_of_segments(rest[a[0]], rest[a[1]], rest[b[0]], rest[b[1]]).distance_squared;
+        return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
+    }
+
+    /// It sleeps until it may have come within the zone in which it is looked at closely.
+    void add(const Candidate& candidate, Real squared, Real zone) {
+        found_.push_back({candidate, pair_.travel + std::sqrt(squared) - zone});
+    }
+
+    const CollisionInputs& inputs_;
+    const TriangleTable& triangle_;
+    const PairToSearch& pair_;
+    std::span<const Aabb> boxes_;
+    Column<FoundCandidate>& found_;
+    const Real radius_;
+    const Real radius_squared_;
+    const Real edge_radius_squared_;  // edges are looked at less deep
+    const bool self_;
+    std::array<std::array<Index, 2>, max_waiting> waiting_;
+    std::size_t waiting_count_ = 0;
+};
+
+Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found) {
+    const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
+    if (first.size() == 0 || second.size() == 0) return infinite;
+    BodySearch(inputs, pair, boxes, found).run();
+    std::sort(found.begin(), found.end(),
+              [](const FoundCandidate& a, const FoundCandidate& b) { return a.candidate.feature < b.candidate.feature; });
+    const Real apart = std::sqrt(distance_squared(boxes[first.begin], boxes[second.begin])) - pair.scale.zone;
+    return pair.travel + std::max(pair.margin, apart);
+}
+
+Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found) {
+    const ColliderGeometry& geometry = inputs.collider.geometry[pair.second];
+    const RigidMotion& motion = inputs.collider.motion[pair.second];
+    const Index parts = collider_part_count(geometry.shape);
+    const Range vertices = inputs.body.vertices[pair.first];
+    const Real radius = pair.scale.zone + pair.margin;
+    Real nearest = infinite;
+    for (Index v = vertices.begin; v < vertices.end; ++v) {
+        const Vec3& point = inputs.position[inputs.surface.vertices.node[v]];
+        for (Index part = 0; part < parts; ++part) {
+            const Real distance = distance_to_collider_part(geometry, motion, part, point).distance;
+            nearest = distance < nearest ? distance : nearest;
+            if (!(distance < radius)) continue;
+            found.push_back({{point_collider_feature(v - vertices.begin, part), v, pair.second}, pair.travel + distance - pair.scale.zone});
+        }
+    }
+    return pair.travel + std::max(pair.margin, nearest - pair.scale.zone);
+}
+
+}  // namespace
+
+Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found) {
+    found.clear();
+    if (pair.kind == PairKind::collider) return search_collider(inputs, pair, found);
+    return search_bodies(inputs, pair, boxes, found);
+}
+
+}  // namespace skerry

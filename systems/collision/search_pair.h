@@ -1,0 +1,24 @@
+// Features of one pair that are near each other.
+#pragma once
+
+#include "components/pair_table.h"
+#include "systems/collision/collision_inputs.h"
+#include "systems/collision/contact_reach.h"
+
+namespace skerry {
+
+struct PairToSearch {
+    PairKind kind;
+    Index first;
+    Index second;
+    PairScale scale;
+    Real travel;  // m, sum of both
+    Real margin;  // m: features nearer than scale.zone + margin are listed
+};
+
+/// Lists the near features of a pair in feature order, each once: points against triangles both ways and edges against edges (by two trees
+/// whose boxes fit the present positions), or points against the parts of a collider. In a body's pair with itself features that share a
+/// node are left out, and those that are nearer than the contact distance at rest. Returns until which front the list is complete.
+Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found);
+
+}  // namespace skerry

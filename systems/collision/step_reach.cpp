@@ -1,0 +1,41 @@
+#include "systems/collision/step_reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/collision/contact_reach.h"
+
+namespace skerry {
+
+namespace {
+
+Real surface_speed(const CollisionInputs& inputs, Index body) {
+    Real squared = 0;
+    const Range vertices = inputs.body.vertices[body];
+    for (Index v = vertices.begin; v < vertices.end; ++v)
+        squared = std::max(squared, inputs.velocity[inputs.surface.vertices.node[v]].squaredNorm());
+    return std::sqrt(squared);
+}
+
+bool stands_still(const RigidMotion& motion) {
+    return motion.velocity.isZero(0) && motion.angular_velocity.isZero(0);
+}
+
+}  // namespace
+
+Real body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure, Real h) {
+    Real speed = inputs.body.max_speed[body];
+    const Index collider = inputs.body.collider[body];
+    const bool scripted = inputs.body.kind[body] == BodyKind::kinematic && !stands_still(inputs.collider.motion[collider]);
+    if (measure || scripted) speed = std::max(speed, surface_speed(inputs, body));
+    // Gravity acts on two bodies alike, yet the other partner may be held: each counts it in full.
+    return reach(h, speed, settings.gravity, inputs.body.contact_distance[body] / 2);
+}
+
+Real collider_reach(const CollisionInputs& inputs, Index collider, Real extent, Real h) {
+    const RigidMotion& motion = inputs.collider.motion[collider];
+    const Real turning = motion.angular_velocity.norm();
+    return reach(h, motion.velocity.norm() + (turning > 0 ? turning * extent : 0), 0, 0);
+}
+
+}  // namespace skerry

@@ -1,0 +1,80 @@
+#include "systems/contact/measure_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "components/check.h"
+#include "jobs/parallel_for.h"
+#include "systems/contact/tangent_frame.h"
+
+namespace skerry {
+namespace {
+
+Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std::span<const Vec3> velocity) {
+    Vec3 sum = -surface_velocity;
+    for (std::size_t a = 0; a < 4; ++a)
+        if (stencil.weight[a] != 0) sum += stencil.weight[a] * velocity[stencil.node[a]];
+    return sum;
+}
+
+/// What the tangential impulse uses up: its length for the cone, the larger of its two components for the pyramid.
+Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction friction) {
+    if (friction == Friction::cone) return tangential.norm();
+    const TangentFrame frame = tangent_frame(normal);
+    return std::max(std::abs(tangential.dot(frame.first)), std::abs(tangential.dot(frame.second)));
+}
+
+ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_friction, Real dynamic_friction, Friction friction) {
+    const Real along = impulse.dot(normal);
+    if (!(along > 0)) return ContactState::open;
+    // the solver puts a sliding impulse onto the dynamic limit to rounding; the warm start turns it without changing the ratio
+    constexpr Real rounding = 1e-9;
+    const Real load = tangential_load(impulse - along * normal, normal, friction);
+    const Real limit = dynamic_friction * along;
+    const bool on_limit = std::abs(load - limit) <= rounding * limit || load >= static_friction * along * (1 - rounding);
+    return on_limit ? ContactState::slide : ContactState::stick;
+}
+
+void add(ContactMeasures& sum, const ContactMeasures& part) {
+    sum.max_penetration = std::max(sum.max_penetration, part.max_penetration);
+    sum.max_gap_violation = std::max(sum.max_gap_violation, part.max_gap_violation);
+    sum.dissipated += part.dissipated;
+    sum.stick_count += part.stick_count;
+    sum.slide_count += part.slide_count;
+}
+
+}  // namespace
+
+ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Vec3> velocity,
+                                 std::span<const Vec3> velocity_next, std::span<Vec3> slip, std::span<ContactState> state,
+                                 Friction friction) {
+    const std::size_t count = contacts.size();
+    SKERRY_CHECK(slip.size() == count && state.size() == count);
+    // a fixed number of parts, so that their sums need no memory; their borders depend on the contact count alone
+    constexpr std::size_t part_limit = 64, smallest_part = 512;
+    const std::size_t part_size = std::max(smallest_part, (count + part_limit - 1) / part_limit);
+    std::array<ContactMeasures, part_limit> parts{};
+    parallel_for(executor, count, part_size, [&](std::size_t begin, std::size_t end) {
+        ContactMeasures& part = parts[begin / part_size];
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3& normal = contacts.normal[i];
+            const Vec3& impulse = contacts.impulse[i];
+            const Vec3 after = relative_velocity(contacts.stencil[i], contacts.surface_velocity[i], velocity_next);
+            slip[i] = after - after.dot(normal) * normal;
+            state[i] = state_of(impulse, normal, contacts.static_friction[i], contacts.dynamic_friction[i], friction);
+            part.max_penetration = std::max(part.max_penetration, -contacts.distance[i]);
+            part.max_gap_violation = std::max(part.max_gap_violation, -contacts.gap[i]);
+            part.stick_count += state[i] == ContactState::stick;
+            part.slide_count += state[i] == ContactState::slide;
+            if (state[i] == ContactState::open) continue;
+            const Vec3 before = relative_velocity(contacts.stencil[i], contacts.surface_velocity[i], velocity);
+            part.dissipated -= 0.5 * impulse.dot(before + after);
+        }
+    });
+    ContactMeasures total;
+    for (const ContactMeasures& part : parts) add(total, part);
+    return total;
+}
+
+}  // namespace skerry

@@ -1,0 +1,152 @@
+#include "systems/contact/separate_regions.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "components/check.h"
+#include "systems/contact/algorithm_1.h"
+
+namespace skerry {
+namespace {
+
+/// Starts a new set of stamps and makes room for all nodes. Nothing is cleared per step: a stamp of an earlier step is no stamp.
+void begin_step(std::size_t node_count, UnionFind& memory) {
+    if (memory.parent.size() < node_count) {
+        memory.parent.resize(node_count);
+        memory.stamp.resize(node_count);
+        memory.label.resize(node_count);
+    }
+    if (memory.now == std::numeric_limits<std::uint32_t>::max()) {
+        std::fill(memory.stamp.begin(), memory.stamp.end(), 0u);
+        memory.now = 0;
+    }
+    ++memory.now;
+}
+
+Index find_root(Column<Index>& parent, Index node) {
+    while (parent[node] != node) {
+        parent[node] = parent[parent[node]];  // path halving
+        node = parent[node];
+    }
+    return node;
+}
+
+/// Joins the moving nodes of a contact. The smaller root wins, so that roots do not depend on the order of the joins.
+/// Returns one of its moving nodes, or no_index.
+Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, UnionFind& memory) {
+    Index root = no_index;
+    for (std::size_t a = 0; a < 4; ++a) {
+        const Index node = stencil.node[a];
+        if (stencil.weight[a] == 0 || !(inverse_mass[node] > 0)) continue;
+        if (memory.stamp[node] != memory.now) {
+            memory.stamp[node] = memory.now;
+            memory.parent[node] = node;
+            memory.label[node] = no_index;
+        }
+        const Index other = find_root(memory.parent, node);
+        if (root == no_index) root = other;
+        const Index winner = std::min(root, other);
+        memory.parent[std::max(root, other)] = winner;
+        root = winner;
+    }
+    return root;
+}
+
+/// Numbers the regions by their first contact.
+Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, UnionFind& memory,
+                          std::span<Index> contact_region) {
+    begin_step(inverse_mass.size(), memory);
+    for (std::size_t i = 0; i < stencil.size(); ++i) contact_region[i] = unite(stencil[i], inverse_mass, memory);
+    Index region_count = 0;
+    for (Index& region : contact_region) {
+        if (region == no_index) continue;
+        const Index root = find_root(memory.parent, region);
+        if (memory.label[root] == no_index) memory.label[root] = region_count++;
+        region = memory.label[root];
+    }
+    return region_count;
+}
+
+Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, std::span<Index> contact_region) {
+    bool any = false;
+    for (std::size_t i = 0; i < stencil.size(); ++i) {
+        const bool moves = has_moving_node(stencil[i], inverse_mass);
+        contact_region[i] = moves ? 0 : no_index;
+        any |= moves;
+    }
+    return any ? 1 : 0;
+}
+
+/// Counting sort of the contacts by region: stable, so a region holds its contacts in contact order.
+void collect_contacts(std::span<const Index> contact_region, Index region_count, RegionTable& regions) {
+    Column<Index>& offset = regions.contacts.offset;
+    offset.assign(static_cast<std::size_t>(region_count) + 1, 0);
+    for (const Index region : contact_region)
+        if (region != no_index) ++offset[region + 1];
+    for (Index r = 0; r < region_count; ++r) offset[r + 1] += offset[r];
+    regions.contacts.item.resize(static_cast<std::size_t>(offset[region_count]));
+    for (std::size_t i = 0; i < contact_region.size(); ++i)
+        if (contact_region[i] != no_index) regions.contacts.item[offset[contact_region[i]]++] = static_cast<Index>(i);
+    // the fill has moved each offset to the start of the next region: move them back
+    for (Index r = region_count; r > 0; --r) offset[r] = offset[r - 1];
+    offset[0] = 0;
+}
+
+void resize_results(Index region_count, RegionTable& regions) {
+    const std::size_t count = static_cast<std::size_t>(region_count);
+    regions.iterations.assign(count, 0);
+    regions.error.assign(count, 0);
+    regions.status.assign(count, RegionStatus::converged);
+    regions.dissipated.assign(count, 0);
+    regions.order.assign(count, 0);
+}
+
+}  // namespace
+
+bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, ContactRegions mode, UnionFind& memory,
+                      RegionTable& regions, std::span<Index> contact_region) {
+    SKERRY_CHECK(contact_region.size() == stencil.size());
+    regions.independent = true;
+    if (stencil.empty()) {
+        regions.contacts.clear();
+        resize_results(0, regions);
+        return false;
+    }
+    Index region_count = 0;
+    switch (mode) {
+        case ContactRegions::separate:
+            region_count = label_by_union_find(stencil, inverse_mass, memory, contact_region);
+            break;
+        case ContactRegions::global:
+            region_count = label_all_as_one(stencil, inverse_mass, contact_region);
+            break;
+        case ContactRegions::paper_algorithm_1:
+            region_count = label_by_algorithm_1(stencil, inverse_mass, contact_region);
+            break;
+    }
+    collect_contacts(contact_region, region_count, regions);
+    resize_results(region_count, regions);
+    if (mode == ContactRegions::paper_algorithm_1) regions.independent = count_shared_nodes(stencil, inverse_mass, regions) == 0;
+    return true;
+}
+
+Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const RegionTable& regions) {
+    std::vector<std::pair<Index, Index>> node_region;
+    for (std::size_t r = 0; r < regions.size(); ++r)
+        for (const Index contact : regions.contacts[r])
+            for (std::size_t a = 0; a < 4; ++a)
+                if (stencil[contact].weight[a] != 0 && inverse_mass[stencil[contact].node[a]] > 0)
+                    node_region.emplace_back(stencil[contact].node[a], static_cast<Index>(r));
+    std::sort(node_region.begin(), node_region.end());
+    node_region.erase(std::unique(node_region.begin(), node_region.end()), node_region.end());
+    std::set<std::pair<Index, Index>> pairs;
+    for (std::size_t i = 0; i < node_region.size(); ++i)
+        for (std::size_t j = i + 1; j < node_region.size() && node_region[j].first == node_region[i].first; ++j)
+            pairs.emplace(node_region[i].second, node_region[j].second);
+    return static_cast<Index>(pairs.size());
+}
+
+}  // namespace skerry

@@ -1,0 +1,24 @@
+// The two tangents of a contact, a function of its normal alone.
+#pragma once
+
+#include <cmath>
+
+#include "components/types.h"
+
+namespace skerry {
+
+struct TangentFrame {
+    Vec3 first, second;
+};
+
+/// Unit tangents that make a right-handed frame with the unit normal (normal, first, second). Duff et al. 2017, "Building an orthonormal
+/// basis, revisited", eq. 1 of the errata form: no branch but the sign, continuous except at z = 0. For (0,0,1): x and y.
+inline TangentFrame tangent_frame(const Vec3& normal) {
+    const Real sign = std::copysign(Real(1), normal.z());
+    const Real a = -1 / (sign + normal.z());
+    const Real b = normal.x() * normal.y() * a;
+    return {Vec3(1 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x()),
+            Vec3(b, sign + normal.y() * normal.y() * a, -normal.y())};
+}
+
+}  // namespace skerry

@@ -1,0 +1,126 @@
+#include "systems/dynamics/damp_velocity.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "components/check.h"
+#include "jobs/parallel_for.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t node_blocks_per_job = 8;
+
+Real damping_of(const DampingInputs& bodies, std::size_t body) {
+    const Index material = bodies.body_material[body];
+    return material == no_index ? 0 : bodies.material_damping[static_cast<std::size_t>(material)];
+}
+
+bool is_damped(const DampingInputs& bodies, std::size_t body) {
+    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0;
+}
+
+/// A body without pinned nodes keeps its rigid motion.
+bool keeps_rigid_motion(const DampingInputs& bodies, std::size_t body) {
+    return bodies.body_pinned_count[body] == 0;
+}
+
+/// The node that a body's sums refer to: far from the world's origin they would cancel.
+std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
+    return static_cast<std::size_t>(bodies.block_begin[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)]);
+}
+
+/// Sums over a block; positions and velocities relative to those of the body's first node.
+NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::span<const Vec3> velocity) {
+    const std::size_t origin = first_node(bodies, static_cast<std::size_t>(bodies.block_body[block]));
+    NodeBlockSums sums{0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Zero()};
+    for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]); n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
+        if (!(bodies.inverse_mass[n] > 0)) continue;
+        const Real m = bodies.mass[n];
+        const Vec3 x = bodies.position[n] - bodies.position[origin];
+        const Vec3 p = m * (velocity[n] - velocity[origin]);
+        sums.mass += m;
+        sums.momentum += p;
+        sums.first_moment += m * x;
+        sums.angular_momentum += x.cross(p);
+        sums.second_moment += (m * x) * x.transpose();
+    }
+    return sums;
+}
+
+/// Leaves in the entry of the body's first block the sums of the whole body: momentum in the world frame, the moments of second order
+/// and the angular momentum about the centre of mass.
+void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const Vec3> velocity, std::span<NodeBlockSums> sums) {
+    const Range blocks = bodies.body_node_blocks[body];
+    NodeBlockSums& total = sums[static_cast<std::size_t>(blocks.begin)];
+    for (std::size_t b = static_cast<std::size_t>(blocks.begin) + 1; b < static_cast<std::size_t>(blocks.end); ++b) {
+        total.mass += sums[b].mass;
+        total.momentum += sums[b].momentum;
+        total.first_moment += sums[b].first_moment;
+        total.angular_momentum += sums[b].angular_momentum;
+        total.second_moment += sums[b].second_moment;
+    }
+    if (!(total.mass > 0)) return;
+    total.angular_momentum -= total.first_moment.cross(total.momentum) / total.mass;
+    total.second_moment -= total.first_moment * total.first_moment.transpose() / total.mass;
+    total.momentum += total.mass * velocity[first_node(bodies, body)];
+}
+
+/// Angular velocity with the given angular momentum. Nodes on a line or in a point cannot turn about it: no rotation there.
+Vec3 angular_velocity_of(const NodeBlockSums& total) {
+    const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
+    const Real least = 1e-12 * eigen.eigenvalues()[2];  // below it the moment is rounding
+    Vec3 omega = Vec3::Zero();
+    for (int i = 0; i < 3; ++i)
+        if (eigen.eigenvalues()[i] > least)
+            omega += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(total.angular_momentum) / eigen.eigenvalues()[i]);
+    return omega;
+}
+
+/// Moves the velocities of a block towards the rigid motion of the body's sums by `fraction`.
+void damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total, std::span<Vec3> velocity) {
+    const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);
+    const bool rigid = keeps_rigid_motion(bodies, body);
+    if (rigid && !(total.mass > 0)) return;
+    const Vec3 linear = rigid ? Vec3(total.momentum / total.mass) : Vec3::Zero();
+    const Vec3 angular = rigid ? angular_velocity_of(total) : Vec3::Zero();
+    const Vec3 centre = rigid ? Vec3(bodies.position[first_node(bodies, body)] + total.first_moment / total.mass) : Vec3::Zero();
+    for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]); n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
+        if (!(bodies.inverse_mass[n] > 0)) continue;
+        const Vec3 target = linear + angular.cross(bodies.position[n] - centre);
+        velocity[n] += fraction * (target - velocity[n]);
+    }
+}
+
+}  // namespace
+
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, Real h, std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next) {
+    const std::size_t body_count = bodies.body_node_blocks.size(), block_count = bodies.block_begin.size();
+    SKERRY_CHECK(sums.size() == block_count);
+    bool any = false;
+    for (std::size_t body = 0; body < body_count && !any; ++body) any = is_damped(bodies, body);
+    if (!any) return false;
+
+    parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
+            if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) sums[b] = sum_block(bodies, b, velocity_next);
+        }
+    });
+    for (std::size_t body = 0; body < body_count; ++body)
+        if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) add_up_body(bodies, body, velocity_next, sums);
+    parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
+            if (!is_damped(bodies, body)) continue;
+            const NodeBlockSums& total = sums[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)];
+            damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * h), total, velocity_next);
+        }
+    });
+    return true;
+}
+
+}  // namespace skerry

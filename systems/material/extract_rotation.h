@@ -1,0 +1,86 @@
+// The rotation nearest to a deformation gradient, started from the last step's (the idea of Mueller 2016, with Newton's step).
+#pragma once
+
+#include "components/element_table.h"
+#include "systems/material/lane_math.h"
+
+namespace skerry {
+
+/// A quaternion of T.
+template <class T>
+struct LaneQuaternion {
+    T w, x, y, z;
+};
+
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> rotation_of(const LaneQuaternion<T>& q) {
+    const T x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+    const T xx = q.x * x2, yy = q.y * y2, zz = q.z * z2;
+    const T xy = q.x * y2, yz = q.y * z2, zx = q.z * x2;
+    const T wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
+    return {{1.0 - (yy + zz), xy + wz, zx - wy}, {xy - wz, 1.0 - (xx + zz), yz + wx}, {zx + wy, yz - wx, 1.0 - (xx + yy)}};
+}
+
+/// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and a the axial vector of
+/// R^T F, it turns by G^-1 a. Mueller's a / tr(S) leaves a third of the error in every pass; this leaves its cube. Returns (by lane)
+/// whether that was the last pass needed: it started safely inside the basin of the maximum and turned by less than 2e-5.
+template <class T>
+[[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q) {
+    constexpr Real settled_turn_squared = 4e-10;  // rad^2; its cube is below the rounding of F
+    constexpr Real least_curvature = 1e-3;        // det G over (tr S / 3)^3, 8 at rest
+    const LaneMat3<T> R = rotation_of(q);
+    const T a00 = dot(R.c0, F.c0), a11 = dot(R.c1, F.c1), a22 = dot(R.c2, F.c2);
+    const T a01 = dot(R.c0, F.c1), a10 = dot(R.c1, F.c0);
+    const T a12 = dot(R.c1, F.c2), a21 = dot(R.c2, F.c1);
+    const T a20 = dot(R.c2, F.c0), a02 = dot(R.c0, F.c2);
+    const LaneVec3<T> axial{a21 - a12, a02 - a20, a10 - a01};
+    const T g00 = a11 + a22, g11 = a00 + a22, g22 = a00 + a11;
+    const T g01 = -0.5 * (a01 + a10), g12 = -0.5 * (a12 + a21), g20 = -0.5 * (a20 + a02);
+    // Adjugate of the symmetric G.
+    const T h00 = g11 * g22 - g12 * g12, h11 = g00 * g22 - g20 * g20, h22 = g00 * g11 - g01 * g01;
+    const T h01 = g20 * g12 - g01 * g22, h12 = g01 * g20 - g00 * g12, h20 = g01 * g12 - g20 * g11;
+    const T det = g00 * h00 + g01 * h01 + g20 * h20;
+    const T third = (a00 + a11 + a22) * (1.0 / 3.0);
+    const auto inside = (g00 > 0.0) & (h22 > 0.0) & (det > least_curvature * (third * third * third)) & (third > 0.0);
+    const T half_inverse = inside ? 0.5 / det : T{};
+    const LaneVec3<T> o{half_inverse * (h00 * axial.x + h01 * axial.y + h20 * axial.z),
+                        half_inverse * (h01 * axial.x + h11 * axial.y + h12 * axial.z),
+                        half_inverse * (h20 * axial.x + h12 * axial.y + h22 * axial.z)};
+    // q <- q (1, o), o half the turn. Its length is |q| sqrt(1 + |o|^2): known before the product is, which keeps the root and the
+    // division off the critical path. The first factor takes back what |q| has lost to rounding.
+    const T o_squared = dot(o, o);
+    const T scale = (1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)) / square_root(1.0 + o_squared);
+    const LaneQuaternion<T> p = q;
+    q = {scale * (p.w - (p.x * o.x + p.y * o.y + p.z * o.z)), scale * (p.x + (p.w * o.x + (p.y * o.z - p.z * o.y))),
+         scale * (p.y + (p.w * o.y + (p.z * o.x - p.x * o.z))), scale * (p.z + (p.w * o.z + (p.x * o.y - p.y * o.x)))};
+    return inside & (4.0 * o_squared <= settled_turn_squared);
+}
+
+/// The rotation (w, x, y, z) that maximises tr(R^T F), for any F: the top eigenvector of Horn's 4x4 matrix. Where several do equally
+/// well (F of rank one or zero, a mirrored F) it is the one nearest to `start`. `start` itself when F is not finite.
+std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start);
+
+/// The same in all lanes, from `start`; a lane without volume keeps its own. Out of line and slow: rarely needed.
+void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
+
+/// The rotations nearest to F in all lanes, started from q. Lanes without volume keep theirs.
+[[gnu::always_inline]] inline void extract_rotation(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& q) {
+    constexpr int max_passes = 4;  // from a warm start two are enough; what needs more is solved lane by lane
+    const LaneQuaternion<Real8> start = q;
+    for (int pass = 0; pass < max_passes; ++pass)
+        if (all(turn_towards(F, q) | (volume == 0.0))) return;
+    q = start;
+    solve_rotations(F, volume, q);
+}
+
+inline LaneQuaternion<Real8> load(const ElementRotation& from) {
+    return {load(from[0]), load(from[1]), load(from[2]), load(from[3])};
+}
+inline void store(const LaneQuaternion<Real8>& from, ElementRotation& to) {
+    store(from.w, to[0]);
+    store(from.x, to[1]);
+    store(from.y, to[2]);
+    store(from.z, to[3]);
+}
+
+}  // namespace skerry

@@ -1,0 +1,138 @@
+// Arithmetic of the element kernels: the same source works on one element (T = Real) and on element_lanes of them side by side (T = Real8).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "components/lanes.h"
+#include "components/types.h"
+
+#ifdef __GNUC__
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // everything below is inlined: how a wide register is passed does not matter
+#endif
+
+namespace skerry {
+
+/// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler instead of a loop over Lanes:
+/// it does not depend on the vectoriser's luck, and every lane gets the bits that the same source gives for one Real.
+typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
+
+inline Real8 load(const Lanes<Real, element_lanes>& from) {
+    Real8 to;
+    std::memcpy(&to, from.lane, sizeof to);
+    return to;
+}
+
+inline void store(const Real8& from, Lanes<Real, element_lanes>& to) {
+    std::memcpy(to.lane, &from, sizeof from);
+}
+
+inline Real square_root(Real x) {
+    return std::sqrt(x);
+}
+inline Real8 square_root(const Real8& x) {
+    alignas(sizeof(Real8)) Real lane[element_lanes];
+    std::memcpy(lane, &x, sizeof x);
+#pragma omp simd
+    for (int l = 0; l < element_lanes; ++l) lane[l] = std::sqrt(lane[l]);
+    Real8 root;
+    std::memcpy(&root, lane, sizeof root);
+    return root;
+}
+
+/// Whether a comparison holds in all lanes.
+inline bool all(bool mask) {
+    return mask;
+}
+template <class Mask>
+bool all(const Mask& mask) {
+    auto both = mask[0];
+    for (int l = 1; l < element_lanes; ++l) both &= mask[l];
+    return both != 0;
+}
+
+/// A vector of three T. The parts are named, not indexed, so that they live in registers at every optimisation level.
+template <class T>
+struct LaneVec3 {
+    T x, y, z;
+};
+
+template <class T>
+LaneVec3<T> operator+(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T>
+LaneVec3<T> operator-(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class S, class T>
+LaneVec3<T> operator*(const S& s, const LaneVec3<T>& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+template <class T>
+T dot(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+LaneVec3<T> cross(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// A 3x3 matrix of T by columns.
+template <class T>
+struct LaneMat3 {
+    LaneVec3<T> c0, c1, c2;
+};
+
+template <class T>
+LaneMat3<T> operator+(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+    return {a.c0 + b.c0, a.c1 + b.c1, a.c2 + b.c2};
+}
+template <class T>
+LaneMat3<T> operator-(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+    return {a.c0 - b.c0, a.c1 - b.c1, a.c2 - b.c2};
+}
+template <class S, class T>
+LaneMat3<T> operator*(const S& s, const LaneMat3<T>& a) {
+    return {s * a.c0, s * a.c1, s * a.c2};
+}
+template <class T>
+LaneVec3<T> multiply(const LaneMat3<T>& a, const LaneVec3<T>& b) {
+    return b.x * a.c0 + b.y * a.c1 + b.z * a.c2;
+}
+template <class T>
+LaneMat3<T> multiply(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+    return {multiply(a, b.c0), multiply(a, b.c1), multiply(a, b.c2)};
+}
+template <class T>
+T inner_product(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+    return dot(a.c0, b.c0) + dot(a.c1, b.c1) + dot(a.c2, b.c2);
+}
+/// det(a) a^-T, defined for every a.
+template <class T>
+LaneMat3<T> cofactor(const LaneMat3<T>& a) {
+    return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
+}
+
+/// One lane as a plain matrix, and back.
+inline Mat3 lane_of(const LaneMat3<Real8>& a, int l) {
+    Mat3 m;
+    m << a.c0.x[l], a.c1.x[l], a.c2.x[l], a.c0.y[l], a.c1.y[l], a.c2.y[l], a.c0.z[l], a.c1.z[l], a.c2.z[l];
+    return m;
+}
+inline LaneMat3<Real> from_matrix(const Mat3& m) {
+    return {{m(0, 0), m(1, 0), m(2, 0)}, {m(0, 1), m(1, 1), m(2, 1)}, {m(0, 2), m(1, 2), m(2, 2)}};
+}
+inline Mat3 to_matrix(const LaneMat3<Real>& a) {
+    Mat3 m;
+    m << a.c0.x, a.c1.x, a.c2.x, a.c0.y, a.c1.y, a.c2.y, a.c0.z, a.c1.z, a.c2.z;
+    return m;
+}
+
+}  // namespace skerry
+
+#ifdef __GNUC__
+#pragma GCC diagnostic pop
+#endif

@@ -1,0 +1,37 @@
+// Linear elasticity: exact for small displacements, wrong for rotations.
+#pragma once
+
+#include "components/material_table.h"
+#include "systems/material/lane_math.h"
+
+namespace skerry::linear {
+
+/// Elastic energy per rest volume, J/m^3: mu |e|^2 + lambda/2 (tr e)^2 with e = (F + F^T)/2 - I.
+Real energy_density(const MaterialConstants& material, const Mat3& F);
+
+/// First Piola-Kirchhoff stress dPsi/dF, Pa (methods.md 5).
+Mat3 stress(const MaterialConstants& material, const Mat3& F);
+
+/// Largest eigenvalue of dP/dF, Pa: that of the rest shape, whatever the deformation.
+Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+
+/// The same by lanes.
+template <class T>
+T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
+    const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
+    const T gxy = F.c1.x + F.c0.y, gyz = F.c2.y + F.c1.z, gzx = F.c0.z + F.c2.x;
+    const T trace = exx + eyy + ezz;
+    return material.shear_modulus * (exx * exx + eyy * eyy + ezz * ezz + 0.5 * (gxy * gxy + gyz * gyz + gzx * gzx)) +
+           (0.5 * material.lame_lambda) * (trace * trace);
+}
+
+template <class T>
+LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
+    const Real mu = material.shear_modulus;
+    const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
+    const T pressure = material.lame_lambda * (exx + eyy + ezz);
+    const T sxy = mu * (F.c1.x + F.c0.y), syz = mu * (F.c2.y + F.c1.z), szx = mu * (F.c0.z + F.c2.x);
+    return {{(2 * mu) * exx + pressure, sxy, szx}, {sxy, (2 * mu) * eyy + pressure, syz}, {szx, syz, (2 * mu) * ezz + pressure}};
+}
+
+}  // namespace skerry::linear

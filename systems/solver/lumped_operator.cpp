@@ -1,0 +1,58 @@
+#include "systems/solver/lumped_operator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/solver/contact_operator.h"
+
+namespace skerry {
+
+static_assert(ContactOperator<LumpedOperator>);
+
+Real contact_bias(const RegionInputs& inputs, Index row, const SolverSettings& settings, Real h) {
+    const Real gap = inputs.gap[row];
+    const Real closing = gap < 0 ? 0 : gap / h;
+    const Real restitution = inputs.restitution[row];
+    if (restitution == 0) return closing;
+    const Stencil& stencil = inputs.stencil[row];
+    Vec3 before = -inputs.surface_velocity[row];
+    for (std::size_t a = 0; a < 4; ++a)
+        if (stencil.weight[a] != 0) before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
+    const Real approach = before.dot(inputs.normal[row]);
+    // weight alone gives a resting contact g h per step: what is not clearly faster does not bounce (methods.md 1.3 b)
+    const Real slowest_impact = std::max(settings.restitution_speed, 2 * inputs.gravity * h);
+    const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
+    return impact ? std::min(closing, restitution * approach) : closing;
+}
+
+void LumpedOperator::refresh() {
+    for (std::size_t n = 0; n < memory_.node.size(); ++n) memory_.velocity[n] = padded(memory_.free_velocity[memory_.node[n]]);
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i) apply_impulse(memory_.contact[i], memory_.impulse[i], memory_.velocity.data());
+}
+
+Real LumpedOperator::error() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i) {
+        const LumpedContact& contact = memory_.contact[i];
+        if (contact.node_count == 0) continue;
+        const Vec4 u = contact_velocity(contact, memory_.velocity.data());
+        sum += contact.diagonal * natural_map(contact, friction_, memory_.impulse[i], u).squaredNorm();
+    }
+    if (sum == 0) return 0;  // solved exactly, whatever the scale
+    return std::sqrt(sum) / scale_;
+}
+
+void LumpedOperator::residual(std::span<Vec4> out) const {
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i)
+        out[i] =
+            memory_.contact[i].node_count == 0 ? Vec4(Vec4::Zero()) : Vec4(-contact_velocity(memory_.contact[i], memory_.velocity.data()));
+}
+
+void LumpedOperator::multiply(std::span<const Vec4> in, std::span<Vec4> out) {
+    std::fill(memory_.scratch.begin(), memory_.scratch.end(), Vec4::Zero());
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i) apply_impulse(memory_.contact[i], in[i], memory_.scratch.data());
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i)
+        out[i] = add_node_velocities(memory_.contact[i], memory_.scratch.data(), Vec4::Zero());
+}
+
+}  // namespace skerry

@@ -1,0 +1,158 @@
+// The contact operator of lumped masses: every block is a number times the identity (methods.md 0.1, fact A). It carries the velocities of
+// the region's moving nodes, so that one contact step is a gather and a scatter.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "components/options.h"
+#include "components/types.h"
+#include "systems/solver/friction_law.h"
+#include "systems/solver/solve_regions.h"
+
+namespace skerry {
+
+/// What a sweep needs of one contact, side by side. Nodes that do not move are not in the stencil: their velocity is in `offset`.
+struct LumpedContact {
+    Vec4 normal;                 // unit
+    Vec4 offset;                 // m/s: velocity of fixed nodes minus that of the collider, plus bias along the normal
+    std::array<Real, 4> weight;  // of the moving nodes
+    std::array<Real, 4> step;    // 1/kg, weight times inverse mass
+    std::array<Index, 4> node;   // rows of the region's own nodes
+    Index node_count;            // 0: no impulse of this contact could move anything
+    Real diagonal;               // 1/kg, D of methods.md 2.2
+    Real inverse_diagonal;       // kg
+    Real bias;                   // m/s, its part of the offset
+    FrictionLimits friction;
+};
+
+/// start + sum of weight times velocity of the moving nodes.
+inline Vec4 add_node_velocities(const LumpedContact& contact, const Vec4* velocity, Vec4 start) {
+    for (Index a = 0; a < contact.node_count; ++a) start += contact.weight[a] * velocity[contact.node[a]];
+    return start;
+}
+
+/// u = W r + q of one contact.
+inline Vec4 contact_velocity(const LumpedContact& contact, const Vec4* velocity) {
+    return add_node_velocities(contact, velocity, contact.offset);
+}
+
+inline void apply_impulse(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
+    for (Index a = 0; a < contact.node_count; ++a) velocity[contact.node[a]] += contact.step[a] * impulse;
+}
+
+/// The Gauss-Seidel step of one contact (methods.md 2.2). Returns D |change|^2.
+inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity, Vec4& impulse) {
+    const Vec4 u = contact_velocity(contact, velocity);
+    const Vec4 stopping = impulse - (relaxation * contact.inverse_diagonal) * u;
+    const Vec4 next = project_friction(stopping, contact.normal, contact.friction, friction);
+    const Vec4 change = next - impulse;
+    const Real size = change.dot(change);
+    if (size == 0) return 0;  // most contacts that are apart: nothing to scatter
+    apply_impulse(contact, change, velocity);
+    impulse = next;
+    return contact.diagonal * size;
+}
+
+/// F_i of methods.md 2.1: how far the impulse is from the one its velocity asks for. The De Saxce form where it exists (cone, one
+/// coefficient), else the residual of the contact step.
+inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse, const Vec4& u) {
+    const FrictionLimits mu = contact.friction;
+    if (friction == Friction::cone && mu.stick == mu.slide) {
+        const Vec4 tangential = u - contact.normal.dot(u) * contact.normal;
+        const Vec4 shifted = u + (mu.stick * tangential.norm()) * contact.normal;
+        return impulse - project_onto_cone(Vec4(impulse - contact.inverse_diagonal * shifted), contact.normal, mu.stick);
+    }
+    return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
+}
+
+/// Loads contact `row`; `local(node)` gives the region's row of a moving node. `velocity_next` is what the contact sees before the solve.
+template <class Local>
+LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings,
+                           Real h, Local&& local);
+
+/// b_n of methods.md 1.3 c: the gap may close within the step; an impact turns back with the restitution. Gaps below zero are left to
+/// push_out_region.
+Real contact_bias(const RegionInputs& inputs, Index row, const SolverSettings& settings, Real h);
+
+/// One region. The memory belongs to the caller.
+class LumpedOperator {
+public:
+    using Vector = Vec4;
+
+    struct Memory {
+        std::span<const LumpedContact> contact;
+        std::span<Vec4> impulse;                   // N s
+        std::span<Vec4> velocity;                  // m/s, of the region's nodes, moved by the impulse
+        std::span<const Index> node;               // rows of NodeTable
+        std::span<const Vec3> free_velocity;       // m/s, by row of NodeTable
+        std::span<Vec4> scratch;                   // by node of the region; empty unless the algorithm multiplies
+        std::array<std::span<Vec4>, 4> workspace;  // by contact
+    };
+
+    /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse.
+    LumpedOperator(const Memory& memory, Friction friction, Real scale) : memory_(memory), friction_(friction), scale_(scale) {}
+
+    Index size() const { return static_cast<Index>(memory_.contact.size()); }
+    std::span<Vec4> impulse() { return memory_.impulse; }
+    std::span<Vec4> workspace(Index slot) { return memory_.workspace[slot]; }
+    void refresh();
+    Real step(Index i, Real relaxation) {
+        return solve_contact(memory_.contact[i], friction_, relaxation, memory_.velocity.data(), memory_.impulse[i]);
+    }
+    /// e_nat of methods.md 2.1.
+    Real error() const;
+    /// A sweep's change is about the natural map of its start: worth a look once it is as small.
+    bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
+    void residual(std::span<Vec4> out) const;
+    void multiply(std::span<const Vec4> in, std::span<Vec4> out);
+    Vec4 project(Index i, const Vec4& impulse) const {
+        return project_friction(impulse, memory_.contact[i].normal, memory_.contact[i].friction, friction_);
+    }
+    Vec4 feasible(Index i, const Vec4& residual) const {
+        return feasible_direction(residual, memory_.impulse[i], memory_.contact[i].normal, memory_.contact[i].friction, friction_);
+    }
+
+private:
+    Memory memory_;
+    Friction friction_;
+    Real scale_;
+};
+
+template <class Local>
+LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings,
+                           Real h, Local&& local) {
+    const Stencil& stencil = inputs.stencil[row];
+    LumpedContact contact;
+    contact.normal = padded(inputs.normal[row]);
+    contact.bias = contact_bias(inputs, row, settings, h);
+    Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
+    contact.node_count = 0;
+    contact.diagonal = 0;
+    Real lightest = 0;  // 1/kg
+    for (std::size_t a = 0; a < 4; ++a) {
+        const Real weight = stencil.weight[a];
+        if (weight == 0) continue;
+        const Index node = stencil.node[a];
+        const Real inverse_mass = inputs.inverse_mass[node];
+        if (!(inverse_mass > 0)) {
+            offset += weight * velocity_next[node];
+            continue;
+        }
+        const Index place = contact.node_count++;
+        contact.weight[place] = weight;
+        contact.step[place] = weight * inverse_mass;
+        contact.node[place] = local(node);
+        contact.diagonal += weight * weight * inverse_mass;
+        lightest = std::max(lightest, inverse_mass);
+    }
+    // a moving node whose share is below 1e-6 would have to move a million times faster than the contact to stop it: it cannot
+    constexpr Real smallest_share = 1e-12;  // of the squared weight
+    if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
+    contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
+    contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};
+    contact.offset = padded(offset);
+    return contact;
+}
+
+}  // namespace skerry

@@ -1,0 +1,21 @@
+// The one place where the name of an algorithm becomes a call.
+#pragma once
+
+#include "components/options.h"
+#include "systems/solver/pcg_pgs.h"
+#include "systems/solver/pgs.h"
+
+namespace skerry {
+
+template <ContactOperator Op>
+SolveResult run_method(SolverMethod method, Op& op, const SolveLimits& limits) {
+    switch (method) {
+        case SolverMethod::pgs:
+            return solve_pgs(op, limits);
+        case SolverMethod::pcg_pgs:
+            return solve_pcg_pgs(op, limits);
+    }
+    return {};
+}
+
+}  // namespace skerry

@@ -1,0 +1,23 @@
+// The exact Coulomb solution of one contact with a general symmetric positive block (methods.md 2.3), in its own frame: normal, tangent 1,
+// tangent 2.
+#pragma once
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// A block prepared for many right-hand sides: the tangents after the normal is eliminated, turned to their principal axes.
+struct LocalBlock {
+    Mat3 matrix;         // s/kg, symmetric part of the block
+    Real normal;         // s/kg, matrix(0,0)
+    Real coupling[2];    // s/kg, tangent to normal, along the principal axes
+    Real eigenvalue[2];  // s/kg, of the tangential Schur complement, > 0
+    Real cosine, sine;   // of the principal axes
+};
+
+LocalBlock prepare_block(const Mat3& matrix);
+
+/// r with u = W r + b and the Coulomb law. A block without mobility along the normal gives zero.
+Vec3 solve_block(const LocalBlock& block, const Vec3& b, Real mu);
+
+}  // namespace skerry

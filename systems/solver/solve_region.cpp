@@ -1,0 +1,171 @@
+#include "systems/solver/solve_region.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/solver/push_out_region.h"
+#include "systems/solver/run_method.h"
+
+namespace skerry {
+namespace {
+
+/// The region's part of the memory, and what loading it has shown.
+struct LoadedRegion {
+    LumpedOperator::Memory memory;
+    Real scale = 0;        // sqrt(J), of e_nat
+    bool separate = true;  // no contact closes: zero impulses solve it
+};
+
+/// Copies contacts and moving nodes side by side. A node's place in the list is remembered by node; regions share no moving node, so
+/// none overwrites what another needs, and an entry left from elsewhere shows by the list not agreeing.
+LoadedRegion load_region(const RegionStage& stage, std::span<const Index> row, Index base) {
+    SolverMemory::Data& data = stage.memory;
+    const std::size_t first = static_cast<std::size_t>(base), count = row.size();
+    const std::span<Index> node = data.node.span().subspan(4 * first, 4 * count);
+    const std::span<Vec4> velocity = data.velocity.span().subspan(4 * first, 4 * count);
+    std::size_t node_count = 0;
+    const auto local = [&](Index global) {
+        Index& place = data.place[global];
+        if (static_cast<std::size_t>(place) < node_count && node[place] == global) return place;
+        place = static_cast<Index>(node_count);
+        node[node_count] = global;
+        velocity[node_count++] = padded(stage.out.velocity_next[global]);
+        return place;
+    };
+    LoadedRegion region;
+    Real energy = 0, inverse_diagonals = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        LumpedContact& contact = data.contact[first + k];
+        contact = load_contact(stage.inputs, row[k], stage.out.velocity_next, stage.settings, stage.h, local);
+        const Vec4 u = contact_velocity(contact, velocity.data());
+        energy += contact.inverse_diagonal * u.squaredNorm();
+        inverse_diagonals += contact.inverse_diagonal;
+        region.separate &= contact.node_count == 0 || contact.normal.dot(u) >= 0;
+        data.impulse[first + k].setZero();
+    }
+    // methods.md 2.1; the floor keeps a region at rest from being asked for more than its weight makes sense of
+    region.scale = std::max(std::sqrt(energy), 1e-3 * stage.inputs.gravity * stage.h * std::sqrt(inverse_diagonals));
+    region.memory.contact = data.contact.span().subspan(first, count);
+    region.memory.impulse = data.impulse.span().subspan(first, count);
+    region.memory.velocity = velocity.first(node_count);
+    region.memory.node = node.first(node_count);
+    region.memory.free_velocity = stage.out.velocity_next;
+    const bool multiplies = stage.settings.method == SolverMethod::pcg_pgs;
+    region.memory.workspace[0] = data.workspace[0].span().subspan(first, count);
+    if (multiplies) {
+        region.memory.scratch = data.scratch.span().subspan(4 * first, node_count);
+        for (std::size_t slot = 1; slot < 4; ++slot) region.memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
+    }
+    return region;
+}
+
+void take_warm_start(const RegionStage& stage, std::span<const Index> row, const LumpedOperator::Memory& memory) {
+    for (std::size_t k = 0; k < row.size(); ++k) {
+        if (memory.contact[k].node_count == 0) continue;
+        memory.impulse[k] = padded(stage.out.impulse[row[k]]);
+        apply_impulse(memory.contact[k], memory.impulse[k], memory.velocity.data());
+    }
+}
+
+/// From the warm start, unless it is so far off that zero is nearer. A solved warm start costs no sweep.
+RegionOutcome run_region(const RegionStage& stage, std::span<const Index> row, LoadedRegion& region) {
+    const SolverSettings& settings = stage.settings;
+    const SolveLimits limits{settings.tolerance, settings.max_iterations, settings.fixed_iterations, settings.relaxation};
+    LumpedOperator op(region.memory, settings.friction, region.scale);
+    if (settings.warm_start == WarmStart::on) {
+        take_warm_start(stage, row, region.memory);
+        if (!settings.fixed_iterations) {
+            const Real error = op.error();
+            if (error <= settings.tolerance) return {0, error, RegionStatus::certified, 0};
+            constexpr Real suspicious = 0.5;  // a start from zero has an error of about 1
+            if (!(error <= suspicious)) {
+                // workspace 0 keeps the warm start while zero is looked at
+                BestIterate<LumpedOperator> better(op);
+                better.offer(error);
+                std::fill(region.memory.impulse.begin(), region.memory.impulse.end(), Vec4::Zero());
+                op.refresh();
+                if (error < op.error()) better.restore();
+            }
+        }
+    }
+    const SolveResult result = run_method(settings.method, op, limits);
+    RegionStatus status = result.converged ? RegionStatus::converged : RegionStatus::iteration_limit;
+    if (!std::isfinite(result.error)) status = RegionStatus::not_finite;
+    return {result.iterations, result.error, status, 0};
+}
+
+/// J, taken out by a contact (methods.md 4.3).
+Real dissipated_by(const RegionStage& stage, Index row) {
+    const Vec3& impulse = stage.out.impulse[row];
+    if (impulse.isZero(0)) return 0;
+    const Stencil& stencil = stage.inputs.stencil[row];
+    Vec3 twice_mean = -2 * stage.inputs.surface_velocity[row];
+    for (std::size_t a = 0; a < 4; ++a)
+        if (stencil.weight[a] != 0)
+            twice_mean += stencil.weight[a] * (stage.inputs.velocity[stencil.node[a]] + stage.out.velocity_next[stencil.node[a]]);
+    return -0.5 * impulse.dot(twice_mean);
+}
+
+/// Writes impulses and velocities, and returns what the region dissipated.
+Real write_back(const RegionStage& stage, std::span<const Index> row, const LumpedOperator::Memory& memory) {
+    for (std::size_t k = 0; k < row.size(); ++k) stage.out.impulse[row[k]] = memory.impulse[k].head<3>();
+    for (std::size_t n = 0; n < memory.node.size(); ++n) stage.out.velocity_next[memory.node[n]] = memory.velocity[n].head<3>();
+    Real dissipated = 0;
+    for (const Index i : row) dissipated += dissipated_by(stage, i);
+    return dissipated;
+}
+
+void write_push(const RegionStage& stage, std::span<const Index> node, std::span<const Vec4> push) {
+    for (std::size_t n = 0; n < node.size(); ++n) stage.out.push_out[node[n]] = push[n].head<3>();
+    stage.memory.pushed.store(true, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+RegionOutcome solve_region(const RegionStage& stage, std::span<const Index> row, Index base) {
+    LoadedRegion region = load_region(stage, row, base);
+    const LumpedOperator::Memory& memory = region.memory;
+    RegionOutcome outcome{0, 0, RegionStatus::certified, 0};
+    if (!region.separate || stage.settings.fixed_iterations) outcome = run_region(stage, row, region);
+    outcome.dissipated = write_back(stage, row, memory);
+    if (outcome.status == RegionStatus::not_finite) return outcome;
+    const std::size_t first = static_cast<std::size_t>(base);
+    const PushMemory push{stage.memory.push_impulse.span().subspan(first, row.size()),
+                          stage.memory.push_bias.span().subspan(first, row.size()),
+                          stage.memory.scratch.span().subspan(4 * first, memory.node.size())};
+    if (push_out_region(memory.contact, row, stage.inputs.gap, memory.velocity, stage.inputs.gravity, stage.settings, stage.h, push))
+        write_push(stage, memory.node, push.velocity);
+    return outcome;
+}
+
+RegionOutcome solve_single(const RegionStage& stage, Index row) {
+    std::array<Index, 4> node;
+    std::array<Vec4, 4> velocity, push_velocity;
+    std::size_t node_count = 0;
+    const LumpedContact contact = load_contact(stage.inputs, row, stage.out.velocity_next, stage.settings, stage.h, [&](Index global) {
+        // a stencil may name a node twice
+        for (std::size_t n = 0; n < node_count; ++n)
+            if (node[n] == global) return static_cast<Index>(n);
+        node[node_count] = global;
+        velocity[node_count] = padded(stage.out.velocity_next[global]);
+        return static_cast<Index>(node_count++);
+    });
+    Vec4 impulse = Vec4::Zero();
+    const Real size = solve_contact(contact, stage.settings.friction, 1, velocity.data(), impulse);
+    const LumpedOperator::Memory memory{{&contact, 1}, {&impulse, 1}, {velocity.data(), node_count}, {node.data(), node_count}, {}, {}, {}};
+    RegionOutcome outcome{1, 0, RegionStatus::converged, 0};
+    outcome.dissipated = write_back(stage, {&row, 1}, memory);
+    if (!std::isfinite(size)) {
+        outcome.status = RegionStatus::not_finite;
+        outcome.error = size;
+        return outcome;
+    }
+    Real push_impulse, push_bias;
+    const PushMemory push{{&push_impulse, 1}, {&push_bias, 1}, {push_velocity.data(), node_count}};
+    if (push_out_region({&contact, 1}, {&row, 1}, stage.inputs.gap, {velocity.data(), node_count}, stage.inputs.gravity, stage.settings,
+                        stage.h, push))
+        write_push(stage, memory.node, push.velocity);
+    return outcome;
+}
+
+}  // namespace skerry

@@ -1,0 +1,4 @@
+// A header of the user's own, by a name that Skerry uses inside.
+#pragma once
+
+using Mine = int;

@@ -1,0 +1,140 @@
+// Includes point down, and threading libraries stay in their files.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <optional>
+#include <regex>
+#include <set>
+
+#include "tests/contract/project_files.h"
+
+namespace {
+
+using skerry::test::ProjectFile;
+
+/// The folder that a file counts to, and the floor it stands on.
+struct Place {
+    std::string folder;
+    int floor;
+};
+
+std::optional<Place> place_of(const std::string& path) {
+    // jobs stands beside the components, and uses them; what supports the tests supports benchmarks, too. The first that fits counts.
+    static const std::vector<Place> places{
+        {"components/", 10},
+        {"jobs/", 11},
+        {"systems/geometry/", 20},
+        {"systems/material/", 30},
+        {"systems/collision/", 30},
+        {"systems/dynamics/", 40},
+        {"systems/contact/", 40},
+        {"systems/solver/", 50},
+        {"engine/", 60},
+        {"tests/support/", 70},
+        {"examples/", 71},
+        {"profiling/", 71},
+        {"tests/", 71},
+    };
+    for (const Place& place : places)
+        if (path.starts_with(place.folder)) return place;
+    return std::nullopt;
+}
+
+bool is_public(const std::string& path) {
+    static const std::set<std::string> components{"components/types.h", "components/options.h", "components/handle.h",
+                                                  "components/column.h"};
+    return path.starts_with("engine/include/skerry/") || components.contains(path);
+}
+
+/// The file of the project that an include names: beside the one it is in, from the root or, for a public header, from engine/include.
+std::optional<std::string> included_file(const std::string& from, const std::string& name) {
+    const std::string beside = (std::filesystem::path(from).parent_path() / name).lexically_normal().generic_string();
+    for (const std::string& path : {beside, name, "engine/include/" + name})
+        if (skerry::test::project_has(path)) return path;
+    return std::nullopt;
+}
+
+/// What is wrong with an include of a file of the project; empty when nothing is.
+std::string objection(const std::string& from, const std::string& to) {
+    const std::optional<Place> own = place_of(from), other = place_of(to);
+    if (!other) return "is on no floor";
+    if (own->folder != other->folder && other->floor >= own->floor) return "does not point down";
+    if (from.starts_with("engine/include/") && !is_public(to)) return "is no public header";
+    return "";
+}
+
+/// What is wrong with an include of a threading header; empty when nothing is. Atomics are no threads: a pool of scratch may count with one.
+std::string threading_objection(const std::string& from, const std::string& header) {
+    static const std::regex library("(tbb|oneapi)/.*|omp\\.h|pthread\\.h|future|execution");
+    static const std::regex primitive("thread|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token");
+    if (place_of(from)->floor >= 70 || from.starts_with("jobs/backend_")) return "";
+    if (std::regex_match(header, library)) return "is for jobs/backend_*.cpp alone";
+    if (std::regex_match(header, primitive) && !from.starts_with("jobs/")) return "is for jobs alone";
+    return "";
+}
+
+struct Include {
+    std::string name;
+    bool quoted;
+};
+
+std::optional<Include> include_of(const std::string& line) {
+    static const std::regex directive("\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"].*");
+    std::smatch match;
+    if (!std::regex_match(line, match, directive)) return std::nullopt;
+    return Include{match[2], match[1] == "\""};
+}
+
+bool is_checked(const ProjectFile& file) {
+    const bool is_code = file.path.ends_with(".h") || file.path.ends_with(".cpp");
+    return is_code && place_of(file.path) && !file.path.starts_with("tests/consumer/");
+}
+
+}  // namespace
+
+TEST_CASE("includes point down", "[contract]") {
+    int seen = 0;
+    for (const ProjectFile& file : skerry::test::project_files()) {
+        if (!is_checked(file)) continue;
+        for (const std::string& line : file.lines) {
+            const std::optional<Include> include = include_of(line);
+            if (!include) continue;
+            const std::optional<std::string> target = included_file(file.path, include->name);
+            INFO(file.path << ": " << line);
+            if (target) {
+                ++seen;
+                CHECK(objection(file.path, *target) == "");
+            } else {
+                // A quoted include is a file of the project.
+                CHECK_FALSE(include->quoted);
+            }
+        }
+    }
+    CHECK(seen > 100);
+}
+
+TEST_CASE("only jobs know a threading library", "[contract]") {
+    static const std::regex parallel_pragma("\\s*#\\s*pragma\\s+omp\\s+(?!simd|declare simd).*");
+    for (const ProjectFile& file : skerry::test::project_files()) {
+        if (!is_checked(file)) continue;
+        for (const std::string& line : file.lines) {
+            INFO(file.path << ": " << line);
+            if (const std::optional<Include> include = include_of(line)) CHECK(threading_objection(file.path, include->name) == "");
+            // Vector loops are no threads.
+            if (std::regex_match(line, parallel_pragma)) CHECK(file.path.starts_with("jobs/backend_"));
+        }
+    }
+}
+
+TEST_CASE("the test of includes notices what it is there for", "[contract]") {
+    CHECK(objection("systems/geometry/a.h", "systems/solver/b.h") != "");
+    CHECK(objection("systems/material/a.h", "systems/collision/b.h") != "");
+    CHECK(objection("components/a.h", "jobs/b.h") != "");
+    CHECK(objection("jobs/a.h", "components/b.h") == "");
+    CHECK(objection("engine/world/a.cpp", "engine/scene/b.h") == "");
+    CHECK(objection("engine/include/skerry/a.h", "engine/world/b.h") != "");
+    CHECK(objection("engine/include/skerry/a.h", "components/node_table.h") != "");
+    CHECK(threading_objection("systems/solver/a.cpp", "tbb/parallel_for.h") != "");
+    CHECK(threading_objection("engine/world/a.cpp", "mutex") != "");
+    CHECK(threading_objection("jobs/backend_tbb.cpp", "tbb/task_arena.h") == "");
+    CHECK(include_of("  #  include <omp.h>  // why")->name == "omp.h");
+}

@@ -1,0 +1,36 @@
+// Every scene that is shipped loads and runs.
+#include <skerry/scene.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+namespace {
+
+std::vector<std::filesystem::path> scene_files() {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(SKERRY_SOURCE_DIR "/scenes"))
+        if (entry.path().extension() == ".json" && entry.path().string().find("schema") == std::string::npos) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+}  // namespace
+
+TEST_CASE("every scene that is shipped runs", "[contract][scene]") {
+    const std::vector<std::filesystem::path> files = scene_files();
+    CHECK(files.size() >= 5);
+    for (const std::filesystem::path& file : files) {
+        INFO(file);
+        skerry::Scene scene = skerry::load_scene(file);
+        REQUIRE_FALSE(scene.world.bodies().empty());
+        CHECK(scene.seconds > 0);
+        for (int i = 0; i < 5; ++i) {
+            const skerry::StepReport report = scene.world.advance(scene.world.stable_step());
+            INFO(report.message());
+            REQUIRE(report.ok());
+        }
+        for (const skerry::BodyHandle body : scene.world.bodies())
+            for (const skerry::Vec3& position : scene.world.positions(body)) REQUIRE(position.allFinite());
+    }
+}

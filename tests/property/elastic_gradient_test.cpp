@@ -1,0 +1,170 @@
+// Derivatives by differences, and what stress must be for simple deformations.
+#include <catch2/catch.hpp>
+
+#include "jobs/executor.h"
+#include "systems/dynamics/element_energy.h"
+#include "tests/support/elastic_body.h"
+
+using namespace skerry;
+using test::ElasticBody;
+using test::jittered_box;
+
+namespace {
+
+constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean};
+
+Mat3 random_matrix(std::mt19937_64& random) {
+    Mat3 m;
+    m << test::random_vector(random), test::random_vector(random), test::random_vector(random);
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("stress is the derivative of the energy density", "[property]") {
+    std::mt19937_64 random(1);
+    for (MaterialModel model : models) {
+        const MaterialConstants material = material_constants(model, 1, 0.4, 1);
+        for (int trial = 0; trial < 300; ++trial) {
+            Mat3 F = Mat3::Identity() + (trial % 2 ? 1.0 : 0.2) * random_matrix(random);
+            if (trial % 3 == 0) F.col(1) *= -1;
+            if (stiffness_bound(material, F) > 100) continue;  // corotational, where the frame is about to jump
+            const Mat3 P = stress(material, F);
+            constexpr Real step = 1e-5;  // error step^2 times the third derivative plus 1e-16 / step
+            for (int i = 0; i < 9; ++i) {
+                Mat3 up = F, down = F;
+                up.data()[i] += step;
+                down.data()[i] -= step;
+                const Real slope = (energy_density(material, up) - energy_density(material, down)) / (2 * step);
+                INFO("model " << name_of(model) << " trial " << trial);
+                CHECK(std::abs(P.data()[i] - slope) <= 1e-6 * (1 + P.norm()));
+            }
+        }
+    }
+}
+
+TEST_CASE("small strains meet the Lame moduli", "[property]") {
+    // methods.md 8.19: dP/dF at rest is lambda I:dF + 2 mu sym(dF); 1e-6 for the differences.
+    std::mt19937_64 random(2);
+    for (MaterialModel model : models) {
+        const MaterialConstants material = material_constants(model, 1e5, 0.4, 1000);
+        for (int trial = 0; trial < 20; ++trial) {
+            const Mat3 d = random_matrix(random);
+            constexpr Real step = 1e-5;
+            const Mat3 slope = (stress(material, Mat3::Identity() + step * d) - stress(material, Mat3::Identity() - step * d)) / (2 * step);
+            const Mat3 expected = material.lame_lambda * d.trace() * Mat3::Identity() + material.shear_modulus * (d + d.transpose());
+            CHECK((slope - expected).norm() <= 1e-6 * expected.norm());
+        }
+    }
+}
+
+TEST_CASE("nodal forces are minus the derivative of the elastic energy", "[property]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    for (MaterialModel model : models) {
+        ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0.25, 3), material_constants(model, 1e5, 0.4, 1000));
+        std::mt19937_64 random(4);
+        for (Vec3& x : body.position) x += 0.015 * test::random_vector(random);
+        body.compute_forces(*executor);
+        Real scale = 0;
+        for (const Vec3& f : body.force) scale = std::max(scale, f.norm());
+        constexpr Real step = 1e-6;  // m; cells are 0.1 m
+        for (std::size_t n = 0; n < body.position.size(); ++n)
+            for (int i = 0; i < 3; ++i) {
+                const Real before = body.position[n][i];
+                body.position[n][i] = before + step;
+                const Real up = elastic_energy(body.inputs(), body.blocks, body.position);
+                body.position[n][i] = before - step;
+                const Real down = elastic_energy(body.inputs(), body.blocks, body.position);
+                body.position[n][i] = before;
+                CHECK(std::abs(body.force[n][i] + (up - down) / (2 * step)) <= 1e-6 * scale);
+            }
+    }
+}
+
+TEST_CASE("internal forces have no sum and, rotation-invariant models, no torque", "[property]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    for (MaterialModel model : models) {
+        ElasticBody body(jittered_box({3, 3, 3}, 0.1, 0.25, 5), material_constants(model, 1e5, 0.4, 1000));
+        std::mt19937_64 random(6);
+        for (Vec3& x : body.position) x = Vec3(1, 2, 3) + x + 0.03 * test::random_vector(random);
+        body.compute_forces(*executor);
+        Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
+        Real size = 0, arm = 0;
+        for (std::size_t n = 0; n < body.position.size(); ++n) {
+            sum += body.force[n];
+            torque += body.position[n].cross(body.force[n]);
+            size += body.force[n].norm();
+            arm += body.position[n].norm() * body.force[n].norm();
+        }
+        INFO(name_of(model));
+        CHECK(sum.norm() <= 1e-13 * size);
+        if (model == MaterialModel::linear)
+            CHECK(torque.norm() > 1e-6 * arm);  // the known fault of linear elasticity
+        else
+            CHECK(torque.norm() <= 1e-13 * arm);
+    }
+}
+
+TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one stress everywhere", "[property]") {
+    // methods.md 8.17: interior forces <= 1e-12 E h^2.
+    const auto executor = make_executor(Backend::serial, 1);
+    Mat3 A;
+    A << 1.1, 0.05, 0, 0.02, 0.95, 0.03, -0.04, 0, 1.2;
+    for (MaterialModel model : models) {
+        ElasticBody body(jittered_box({4, 4, 4}, 0.1, 0.25, 7), material_constants(model, 1e5, 0.4, 1000));
+        std::vector<bool> inside;
+        for (std::size_t n = 0; n < body.position.size(); ++n) {
+            const Index i = static_cast<Index>(n) % 5, j = static_cast<Index>(n) / 5 % 5, k = static_cast<Index>(n) / 25;
+            inside.push_back(i % 4 != 0 && j % 4 != 0 && k % 4 != 0);
+            body.position[n] = A * body.position[n] + Vec3(1, 2, 3);
+        }
+        body.compute_forces(*executor);
+        for (std::size_t n = 0; n < body.position.size(); ++n)
+            if (inside[n]) CHECK(body.force[n].norm() <= 1e-12 * 1e5 * 0.01 * 10);  // 10: positions are 30 cells from the origin
+        std::vector<Real> von_mises(384);
+        von_mises_stress(body.inputs(), body.blocks, body.position, von_mises);
+        for (Real s : von_mises) CHECK(s == Approx(von_mises[0]).epsilon(1e-11));
+    }
+}
+
+TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells by the known amount", "[property]") {
+    // methods.md 8.18.
+    const auto executor = make_executor(Backend::serial, 1);
+    std::mt19937_64 random(8);
+    for (MaterialModel model : models) {
+        const MaterialConstants material = material_constants(model, 1e5, 0.4, 1000);
+        ElasticBody body(jittered_box({3, 3, 3}, 0.1, 0.2, 9), material);
+        const std::vector<Vec3> rest = body.position;
+        Real volume = 0;
+        for (std::size_t e = 0; e < 162; ++e) volume += body.volume(e);
+        for (int trial = 0; trial < 20; ++trial) {
+            const Eigen::AngleAxis<Real> turn(M_PI * (trial + 1) / 20, test::random_vector(random).normalized());
+            for (std::size_t n = 0; n < rest.size(); ++n) body.position[n] = turn * rest[n];
+            body.compute_forces(*executor);
+            if (model != MaterialModel::linear) {
+                for (const Vec3& f : body.force) CHECK(f.norm() <= 1e-12 * material.shear_modulus * 0.01);
+            } else {
+                const Mat3 R = turn.toRotationMatrix();
+                const Mat3 strain = 0.5 * (R + R.transpose()) - Mat3::Identity();
+                const Real density =
+                    material.shear_modulus * strain.squaredNorm() + 0.5 * material.lame_lambda * strain.trace() * strain.trace();
+                CHECK(elastic_energy(body.inputs(), body.blocks, body.position) == Approx(volume * density));
+            }
+        }
+    }
+}
+
+TEST_CASE("forces turn with the body", "[property]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    std::mt19937_64 random(10);
+    for (MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
+        ElasticBody body(jittered_box({3, 2, 2}, 0.1, 0.2, 11), material_constants(model, 1e5, 0.4, 1000));
+        for (Vec3& x : body.position) x += 0.02 * test::random_vector(random);
+        body.compute_forces(*executor);
+        const std::vector<Vec3> before = body.force;
+        const Eigen::AngleAxis<Real> turn(2.2, Vec3(3, -1, 2).normalized());
+        for (Vec3& x : body.position) x = turn * x;
+        body.compute_forces(*executor);
+        for (std::size_t n = 0; n < before.size(); ++n) CHECK((body.force[n] - turn * before[n]).norm() <= 1e-11 * 1e5 * 0.01);
+    }
+}

@@ -1,0 +1,128 @@
+"""Reads a series of VtkWriter with VTK and compares every number: check_vtk.py FOLDER, which holds expected.json beside the series.
+
+Ends with 77 (skipped, for CTest) when Python has no VTK.
+"""
+import json
+import os
+import sys
+import xml.etree.ElementTree as ElementTree
+
+try:
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+    import numpy as np
+except ImportError as error:
+    print(f"SKIPPED: {error}; Debian: apt-get install python3-vtk9")
+    sys.exit(77)
+
+errors = []
+
+
+def read(reader, path):
+    reader.AddObserver("ErrorEvent", lambda caller, event: errors.append(path))
+    reader.SetFileName(path)
+    reader.Update()
+    assert not errors, f"VTK complains about {errors}"
+    return reader.GetOutput()
+
+
+def same(name, found, expected, tolerance):
+    expected = np.asarray(expected, dtype=float)
+    found = np.asarray(found, dtype=float).reshape(expected.shape)
+    scale = max(1e-30, np.abs(expected).max(initial=0))
+    worst = np.abs(found - expected).max(initial=0) / scale
+    assert worst <= tolerance, f"{name}: off by {worst:g} of {scale:g}"
+
+
+FLOAT = 1e-7  # half an ulp of a 32-bit float is 6e-8
+
+
+def point_array(data, name):
+    array = data.GetPointData().GetArray(name)
+    assert array is not None, f"no point data {name}"
+    return vtk_to_numpy(array)
+
+
+def cell_array(data, name):
+    array = data.GetCellData().GetArray(name)
+    assert array is not None, f"no cell data {name}"
+    return vtk_to_numpy(array)
+
+
+def points(data):
+    return vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.zeros((0, 3))
+
+
+def time_of(data):
+    return data.GetFieldData().GetArray("TimeValue").GetValue(0)
+
+
+def check_bodies(path, frame):
+    data = read(vtk.vtkXMLUnstructuredGridReader(), path)
+    assert data.GetNumberOfPoints() == len(frame["position"]), "points"
+    assert data.GetNumberOfCells() == len(frame["cells"]), "cells"
+    assert time_of(data) == frame["time"], "time"
+    assert data.GetPoints().GetDataType() == vtk.VTK_DOUBLE, "places are doubles"
+    same("position", points(data), frame["position"], 0)
+    same("velocity", point_array(data, "velocity"), frame["velocity"], FLOAT)
+    same("speed", point_array(data, "speed"), np.linalg.norm(frame["velocity"], axis=1), FLOAT)
+    same("von_mises", cell_array(data, "von_mises"), frame["von_mises"], FLOAT)
+    same("body", cell_array(data, "body"), frame["body"], 0)
+    for number, nodes in enumerate(frame["cells"]):
+        cell = data.GetCell(number)
+        assert cell.GetCellType() == vtk.VTK_TETRA
+        assert [cell.GetPointId(k) for k in range(4)] == nodes
+
+
+def check_contacts(path, frame):
+    data = read(vtk.vtkXMLPolyDataReader(), path)
+    rows = frame["contacts"]
+    assert data.GetNumberOfPoints() == len(rows) and data.GetNumberOfVerts() == len(rows), "a vertex a contact"
+    assert time_of(data) == frame["time"], "time"
+    same("point", points(data), [row["point"] for row in rows] or np.zeros((0, 3)), 0)
+    for name in ["normal", "impulse", "force", "slip"]:
+        same(name, point_array(data, name), [row[name] for row in rows] or np.zeros((0, 3)), FLOAT)
+    for name in ["gap", "state", "region", "first_body"]:
+        same(name, point_array(data, name), [row[name] for row in rows], FLOAT)
+    same("second_body", point_array(data, "second_body"), [-1] * len(rows), 0)
+    same("collider", point_array(data, "collider"), [0] * len(rows), 0)
+    return len(rows)
+
+
+def check_colliders(path):
+    data = read(vtk.vtkXMLPolyDataReader(), path)
+    numbers = cell_array(data, "collider")
+    assert set(numbers) == {0, 1, 2, 3, 4}, "a picture of each collider"
+    place = points(data)
+    ids = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    bucket = place[np.unique(ids[numbers == 1])]
+    # Floor at 0.005 with 0.02 of wall and floor around an inner radius of 0.48 and an inner height of 0.25.
+    same("bucket", [bucket[:, 2].min(), bucket[:, 2].max(), np.hypot(bucket[:, 0], bucket[:, 1]).max()], [-0.015, 0.255, 0.5], 1e-12)
+    plane = place[np.unique(ids[numbers == 0])]
+    assert np.abs(plane[:, 2]).max() == 0 and np.ptp(plane[:, 0]) > 0.5, "the plane is flat and reaches beyond the bodies"
+    capsule = place[np.unique(ids[numbers == 3])]
+    # Turned by 90 degrees about x: along y, 0.1 + 0.05 to either side of its place.
+    same("capsule", [capsule[:, 1].min(), capsule[:, 1].max()], [-0.35, -0.05], 1e-9)
+
+
+def main(folder):
+    with open(os.path.join(folder, "expected.json")) as file:
+        expected = json.load(file)
+    index = ElementTree.parse(os.path.join(folder, expected["name"] + ".pvd"))
+    parts = {}
+    for entry in index.iter("DataSet"):
+        parts.setdefault(float(entry.get("timestep")), {})[entry.get("name")] = os.path.join(folder, entry.get("file"))
+    assert list(parts) == [frame["time"] for frame in expected["frames"]], "one time a frame, in order"
+    contacts = 0
+    for frame in expected["frames"]:
+        files = parts[frame["time"]]
+        check_bodies(files["bodies"], frame)
+        contacts += check_contacts(files["contacts"], frame)
+        check_colliders(files["colliders"])
+    assert contacts > 0 and any(not frame["contacts"] for frame in expected["frames"]), "frames with and without contacts"
+    assert not [name for name in os.listdir(folder) if name.endswith(".part")], "no half-written file left"
+    print(f"{len(expected['frames'])} frames, {contacts} contacts: the same as written (VTK {vtk.vtkVersion().GetVTKVersion()})")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,177 @@
+// The budgets of contact_reach.h must not change what is found: against the twin that searches everything in each step.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <set>
+
+#include "tests/support/collision_world.h"
+
+using namespace skerry;
+using test::CollisionWorld;
+
+namespace {
+
+constexpr Real h = 2e-3;
+
+/// Balls and boxes in a room with a sphere, a bucket and a mesh in it; they drift at random, through each other, too.
+struct Room {
+    CollisionWorld w;
+    test::Random random{41};
+    std::vector<Vec3> aim, spin;
+
+    Room() {
+        const test::SolidMesh ball = test::ball_mesh(0.5, 3), box = test::box_mesh({2, 2, 2}, {0.7, 0.8, 0.9});
+        for (int i = 0; i < 7; ++i) {
+            const Vec3 where = 1.2 * random.vector() + Vec3(0, 0, 1.5);
+            w.add_solid(i % 2 ? ball : box, w.at(where, random.rotation()), i % 3 ? 0.02 : 0);
+            w.body.self_contact[i] = i == 3;
+        }
+        w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
+        const Index sphere = w.add_collider(ColliderShape::sphere, {0.4, 0, 0}, w.at({1, 0, 0.5}));
+        w.collider.motion[sphere].velocity = {-0.5, 0.2, 0.1};
+        w.add_collider(ColliderShape::bucket, {1.5, 0.5, 0.1}, w.at({0, 0, 0.2}));
+        const std::vector<Vec3> roof{{-2, -2, 2.2}, {2, -2, 2.2}, {2, 2, 2.2}, {-2, 2, 2.2}};
+        w.add_kinematic(roof, {{{0, 2, 1}, no_index}, {{0, 3, 2}, no_index}}, 0.01);
+        aim.assign(w.body.slot.size(), Vec3::Zero());
+        spin.assign(w.body.slot.size(), Vec3::Zero());
+    }
+
+    /// Rigid motion and a tremble of each node; now and then a new course, or a rest.
+    void steer(int step) {
+        for (std::size_t b = 0; b < w.body.slot.size(); ++b) {
+            if ((step + 7 * static_cast<int>(b)) % 40 == 0) {
+                const bool rests = random.number() < -0.6;
+                aim[b] = rests ? Vec3(Vec3::Zero()) : Vec3(3 * random.vector());
+                spin[b] = rests ? Vec3(Vec3::Zero()) : Vec3(2 * random.vector());
+                // Back to the middle of the room.
+                aim[b] -= w.nodes.position[w.body.nodes[b].begin] - Vec3(0, 0, 1);
+                if (w.body.kind[b] == BodyKind::kinematic) aim[b] = Vec3(0, 0, 0.3 * random.number());
+            }
+            const Range nodes = w.body.nodes[b];
+            Vec3 centre = Vec3::Zero();
+            for (Index n = nodes.begin; n < nodes.end; ++n) centre += w.nodes.position[n] / nodes.size();
+            for (Index n = nodes.begin; n < nodes.end; ++n) {
+                w.nodes.velocity[n] = aim[b] + spin[b].cross(w.nodes.position[n] - centre);
+                if (w.body.kind[b] == BodyKind::deformable) w.nodes.velocity[n] += 0.1 * random.vector();
+            }
+        }
+    }
+};
+
+/// The bits of all that find_contacts writes.
+std::vector<std::uint64_t> bits(ContactTable& contacts) {
+    std::vector<std::uint64_t> all;
+    const auto take = [&](const auto& column) {
+        for (const auto& row : column) {
+            std::vector<std::uint64_t> words((sizeof(row) + 7) / 8, 0);
+            std::memcpy(words.data(), &row, sizeof(row));
+            all.insert(all.end(), words.begin(), words.end());
+        }
+    };
+    take(contacts.key);
+    take(contacts.kind);
+    take(contacts.stencil);
+    take(contacts.point);
+    take(contacts.normal);
+    take(contacts.gap);
+    take(contacts.distance);
+    take(contacts.surface_velocity);
+    take(contacts.static_friction);
+    take(contacts.first_body);
+    take(contacts.second_body);
+    take(contacts.collider);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("budgets find exactly the contacts that a search of everything finds, over hundreds of random steps", "[unit]") {
+    Room thrifty, thorough;
+    thorough.w.settings.use_budgets = false;
+    std::size_t contacts = 0, pressed = 0, passed = 0, differing_steps = 0;
+    for (int step = 0; step < 600; ++step) {
+        thrifty.steer(step);
+        thorough.steer(step);
+        // A course may change at any moment: the speeds that count are those of the step. (In the engine forces are bounded, and what they
+        // add within one step has the factor speed_safety.)
+        thrifty.w.measure_speed();
+        thorough.w.measure_speed();
+        thrifty.w.find(h);
+        thorough.w.find(h);
+        const bool same = bits(thrifty.w.contacts) == bits(thorough.w.contacts);
+        differing_steps += !same;
+        if (!same) {
+            std::set<std::pair<std::uint64_t, std::uint64_t>> have;
+            for (const ContactKey& key : thrifty.w.contacts.key) have.insert({key.pair, key.feature});
+            for (std::size_t i = 0; i < thorough.w.contacts.size(); ++i) {
+                const ContactKey key = thorough.w.contacts.key[i];
+                if (have.count({key.pair, key.feature})) continue;
+                UNSCOPED_INFO("step " << step << " missed pair " << std::hex << key.pair << " feature " << key.feature << " gap "
+                                      << thorough.w.contacts.gap[i] << " distance " << thorough.w.contacts.distance[i]);
+            }
+            REQUIRE(same);
+        }
+        contacts += thorough.w.contacts.size();
+        for (std::size_t i = 0; i < thorough.w.contacts.size(); ++i) {
+            pressed += thorough.w.contacts.gap[i] <= 0;
+            passed += thorough.w.contacts.distance[i] < 0 && thorough.w.contacts.kind[i] != ContactKind::point_collider;
+        }
+        thrifty.w.drift(h);
+        thorough.w.drift(h);
+    }
+    INFO("contacts " << contacts << ", gap <= 0 " << pressed << ", overlap between bodies " << passed);
+    CHECK(contacts > 10000);
+    CHECK(pressed > 5000);
+    CHECK(passed > 1000);
+    // They must have saved something, too.
+    CHECK(thrifty.w.search.broad_searches < 300);
+    CHECK(thrifty.w.search.pair_searches * 3 < thorough.w.search.pair_searches);
+}
+
+TEST_CASE("contacts are the same bits on any number of workers", "[unit][determinism]") {
+    std::vector<std::vector<std::uint64_t>> found;
+    for (int workers : {1, 2, 4}) {
+        Room room;
+        room.w.executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
+        std::vector<std::uint64_t> all;
+        for (int step = 0; step < 40; ++step) {
+            room.steer(step);
+            room.w.measure_speed();
+            room.w.find(h);
+            const auto now = bits(room.w.contacts);
+            all.insert(all.end(), now.begin(), now.end());
+            room.w.drift(h);
+        }
+        found.push_back(all);
+    }
+    REQUIRE(found[0].size() > 1000);
+    CHECK(found[0] == found[1]);
+    CHECK(found[0] == found[2]);
+}
+
+TEST_CASE("removal of other bodies does not change the keys of a contact", "[unit]") {
+    const auto keys = [](bool with_other) {
+        CollisionWorld w;
+        const test::SolidMesh ball = test::ball_mesh(0.5, 2);
+        if (with_other)
+            w.add_solid(ball, w.at({20, 0, 0}), 0.02);
+        else
+            ++w.next_slot;  // its slot stays empty
+        w.add_solid(ball, w.at(Vec3::Zero()), 0.02);
+        w.add_solid(ball, w.at({0, 0, 1}), 0.02);
+        w.find(h);
+        return std::vector<ContactKey>(w.contacts.key.begin(), w.contacts.key.end());
+    };
+    REQUIRE(!keys(true).empty());
+    CHECK(keys(true) == keys(false));
+}
+
+TEST_CASE("a row of pairs in contact needs several blocks, and their contacts come out in key order", "[unit]") {
+    CollisionWorld w;
+    const test::SolidMesh box = test::box_mesh({4, 4, 4}, {1, 1, 1});
+    for (int i = 0; i < 12; ++i) w.add_solid(box, w.at({0, 0, 1.01 * i}), 0.01);
+    w.find(h);
+    REQUIRE(w.pairs.block.size() > 3);
+    CHECK(w.contacts.size() == 11 * 50);
+    for (std::size_t i = 1; i < w.contacts.size(); ++i) CHECK(w.contacts.key[i - 1] < w.contacts.key[i]);
+}

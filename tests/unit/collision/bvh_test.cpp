@@ -1,0 +1,84 @@
+#include "systems/collision/bvh.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <set>
+
+#include "tests/support/collision_world.h"
+
+using namespace skerry;
+
+namespace {
+
+bool contains(const Aabb& box, const Vec3& p) {
+    return (box.lower.array() <= p.array()).all() && (box.upper.array() >= p.array()).all();
+}
+
+void refit(test::CollisionWorld& world, Index body) {
+    refit_bvh(world.body.bvh_nodes[body], world.bvh.node, world.bvh.triangle, world.surface.triangles.node, world.nodes.position,
+              world.bvh.box);
+}
+
+}  // namespace
+
+TEST_CASE("a tree holds each triangle of its body in one leaf of at most four", "[unit]") {
+    test::CollisionWorld world;
+    world.add_solid(test::ball_mesh(1, 3), world.at(Vec3::Zero()), 0);
+    const Index b = world.add_solid(test::ball_mesh(1, 4), world.at({3, 0, 0}), 0);
+    const Range nodes = world.body.bvh_nodes[b], triangles = world.body.triangles[b];
+    std::set<Index> seen;
+    for (Index row = nodes.begin; row < nodes.end; ++row) {
+        const BvhNode& node = world.bvh.node[row];
+        CHECK(node.count <= 4);
+        CHECK(node.skip <= nodes.end);
+        if (node.count == 0) {
+            CHECK(world.bvh.node[row + 1].skip == node.right);
+            CHECK(world.bvh.node[node.right].skip == node.skip);
+        } else {
+            CHECK(node.skip == row + 1);
+        }
+        for (Index i = node.first; i < node.first + node.count; ++i) {
+            const Index t = world.bvh.triangle[i];
+            CHECK(t >= triangles.begin);
+            CHECK(t < triangles.end);
+            CHECK(seen.insert(t).second);
+        }
+    }
+    CHECK(static_cast<Index>(seen.size()) == triangles.size());
+    CHECK(world.bvh.node[nodes.begin].skip == nodes.end);
+}
+
+TEST_CASE("after a refit every box holds all triangles below it, and no more than that", "[unit]") {
+    test::CollisionWorld world;
+    const Index b = world.add_solid(test::ball_mesh(1, 4), world.at(Vec3::Zero()), 0);
+    test::Random random(5);
+    for (Vec3& x : world.nodes.position) x = 2 * x + 0.3 * random.vector();
+    refit(world, b);
+    const Range nodes = world.body.bvh_nodes[b];
+    for (Index row = nodes.begin; row < nodes.end; ++row) {
+        Aabb tight{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
+        for (Index below = row; below < world.bvh.node[row].skip; ++below)
+            for (Index i = world.bvh.node[below].first; i < world.bvh.node[below].first + world.bvh.node[below].count; ++i)
+                for (Index n : world.surface.triangles.node[world.bvh.triangle[i]]) {
+                    CHECK(contains(world.bvh.box[row], world.nodes.position[n]));
+                    tight.lower = tight.lower.cwiseMin(world.nodes.position[n]);
+                    tight.upper = tight.upper.cwiseMax(world.nodes.position[n]);
+                }
+        CHECK(tight.lower == world.bvh.box[row].lower);
+        CHECK(tight.upper == world.bvh.box[row].upper);
+    }
+}
+
+TEST_CASE("a point that is not a number stays out of the boxes", "[unit]") {
+    test::CollisionWorld world;
+    const Index b = world.add_solid(test::box_mesh({2, 2, 2}, {1, 1, 1}), world.at(Vec3::Zero()), 0);
+    world.nodes.position[0][1] = std::numeric_limits<Real>::quiet_NaN();
+    refit(world, b);
+    CHECK(world.bvh.box[world.body.bvh_nodes[b].begin].upper.allFinite());
+}
+
+TEST_CASE("a body without triangles has no tree", "[unit]") {
+    BvhTable bvh;
+    CHECK(append_bvh({0, 0}, {}, {}, bvh).size() == 0);
+    CHECK(bvh.node.empty());
+}

@@ -1,0 +1,231 @@
+#include "systems/collision/find_candidates.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "systems/collision/collider_distance.h"
+#include "systems/collision/contact_key.h"
+#include "systems/geometry/closest_points.h"
+#include "tests/support/collision_world.h"
+
+using namespace skerry;
+using test::CollisionWorld;
+
+namespace {
+
+constexpr Real h = 1e-4;
+
+/// Every feature of the pair nearer than `distance`, by looking at all of them.
+std::set<std::uint64_t> all_features(const CollisionWorld& w, Index first, Index second, Real distance) {
+    std::set<std::uint64_t> near;
+    const auto& x = w.nodes.position;
+    const auto points = [&](Index a, Index b, bool of_second) {
+        const Range vertices = w.body.vertices[a], triangles = w.body.triangles[b];
+        for (Index v = vertices.begin; v < vertices.end; ++v)
+            for (Index t = triangles.begin; t < triangles.end; ++t) {
+                const auto& n = w.surface.triangles.node[t];
+                if (std::sqrt(closest_point_on_triangle(x[w.surface.vertices.node[v]], x[n[0]], x[n[1]], x[n[2]]).distance_squared) <
+                    distance)
+                    near.insert(point_triangle_feature(of_second, v - vertices.begin, t - triangles.begin));
+            }
+    };
+    points(first, second, false);
+    points(second, first, true);
+    const Range ea = w.body.edges[first], eb = w.body.edges[second];
+    for (Index a = ea.begin; a < ea.end; ++a)
+        for (Index b = eb.begin; b < eb.end; ++b) {
+            const auto &m = w.surface.edges.node[a], &n = w.surface.edges.node[b];
+            if (std::sqrt(closest_points_of_segments(x[m[0]], x[m[1]], x[n[0]], x[n[1]]).distance_squared) < distance)
+                near.insert(edge_edge_feature(a - ea.begin, b - eb.begin));
+        }
+    return near;
+}
+
+void check_order(const PairTable& pairs) {
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        if (p > 0) CHECK(pairs.key[p - 1] < pairs.key[p]);
+        REQUIRE(pairs.asleep_until[p].size() == pairs.candidates[p].size());
+        for (std::size_t c = 1; c < pairs.candidates[p].size(); ++c)
+            CHECK(pairs.candidates[p][c - 1].feature < pairs.candidates[p][c].feature);
+    }
+}
+
+bool search(CollisionWorld& w) {
+    return find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
+}
+
+}  // namespace
+
+TEST_CASE("the candidates of two bodies are all features within contact distance and skin, each once", "[unit]") {
+    test::Random random(21);
+    const test::SolidMesh ball = test::ball_mesh(1, 3), box = test::box_mesh({2, 3, 2}, {1.2, 1.5, 1});
+    std::size_t found_in_all = 0;
+    for (int trial = 0; trial < 12; ++trial) {
+        CollisionWorld w;
+        // From deep overlap to far apart.
+        const Vec3 apart = random.vector().normalized() * (0.3 * trial);
+        const Index a = w.add_solid(trial % 2 ? ball : box, w.at(Vec3::Zero(), random.rotation()), 0.05);
+        const Index b = w.add_solid(trial % 3 ? box : ball, w.at(apart, random.rotation()), 0.15);
+        search(w);
+        check_order(w.pairs);
+        const Real edge = std::min(w.body.mean_edge[a], w.body.mean_edge[b]);
+        const std::set<std::uint64_t> near = all_features(w, a, b, 0.1 + w.settings.pair_skin * edge);
+        found_in_all += near.size();
+        if (near.empty()) continue;
+        REQUIRE(w.pairs.size() == 1);
+        std::set<std::uint64_t> listed;
+        for (const Candidate& c : w.pairs.candidates[0]) listed.insert(c.feature);
+        CHECK(std::includes(listed.begin(), listed.end(), near.begin(), near.end()));
+        // Not much beyond: the depth that is looked at, and what a step may close.
+        const std::set<std::uint64_t> far = all_features(w, a, b, 0.1 + (w.settings.pair_skin + 0.3) * edge);
+        CHECK(std::includes(far.begin(), far.end(), listed.begin(), listed.end()));
+    }
+    CHECK(found_in_all > 1000);
+}
+
+TEST_CASE("candidate rows are the features that their numbers name", "[unit]") {
+    CollisionWorld w;
+    w.add_solid(test::ball_mesh(1, 2), w.at({9, 9, 9}), 0.01);  // so that rows and local numbers differ
+    const Index a = w.add_solid(test::ball_mesh(1, 2), w.at(Vec3::Zero()), 0.01);
+    const Index b = w.add_solid(test::ball_mesh(1, 2), w.at({0.1, 0.2, 2}), 0.01);
+    search(w);
+    std::size_t looked_at = 0;
+    for (std::size_t p = 0; p < w.pairs.size(); ++p)
+        for (const Candidate& c : w.pairs.candidates[p]) {
+            ++looked_at;
+            REQUIRE(w.pairs.first[p] == a);
+            REQUIRE(w.pairs.second[p] == b);
+            const Index first_local = static_cast<Index>(point_of_feature(c.feature) & local_mask), second = second_local(c.feature);
+            if (is_edge_edge(c.feature)) {
+                CHECK(c.first == w.body.edges[a].begin + first_local);
+                CHECK(c.second == w.body.edges[b].begin + second);
+            } else {
+                const bool turned = is_point_of_second(c.feature);
+                CHECK(c.first == w.body.vertices[turned ? b : a].begin + first_local);
+                CHECK(c.second == w.body.triangles[turned ? a : b].begin + second);
+            }
+        }
+    CHECK(looked_at > 50);
+}
+
+TEST_CASE("the candidates of a collider are all surface points near it", "[unit]") {
+    CollisionWorld w;
+    const Index b = w.add_solid(test::ball_mesh(1, 4), w.at({0, 0, 1.1}), 0.02);
+    w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
+    search(w);
+    REQUIRE(w.pairs.size() == 1);
+    CHECK(w.pairs.kind[0] == PairKind::collider);
+    std::set<Index> listed;
+    for (const Candidate& c : w.pairs.candidates[0]) listed.insert(c.first);
+    std::size_t near = 0;
+    for (Index v = w.body.vertices[b].begin; v < w.body.vertices[b].end; ++v) {
+        const Real z = w.nodes.position[w.surface.vertices.node[v]][2];
+        if (z >= 0.01 + w.settings.pair_skin * w.body.mean_edge[b]) continue;
+        ++near;
+        CHECK(listed.count(v) == 1);
+    }
+    CHECK(near > 0);
+    CHECK(listed.size() < static_cast<std::size_t>(w.body.vertices[b].size()));
+}
+
+TEST_CASE("pairs without a deformable body are never looked at", "[unit]") {
+    CollisionWorld w;
+    const test::SolidMesh mesh = test::box_mesh({1, 1, 1}, {1, 1, 1});
+    const Index a = w.add_kinematic(mesh.nodes, boundary_triangles(mesh.tetrahedra), 0);
+    w.add_kinematic(mesh.nodes, boundary_triangles(mesh.tetrahedra), 0);
+    w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
+    w.add_collider(ColliderShape::sphere, {1, 0, 0}, w.at(Vec3::Zero()));
+    search(w);
+    CHECK(w.pairs.size() == 0);
+
+    const Index b = w.add_solid(mesh, w.at({0, 0, 1}), 0.1);
+    search(w);
+    // With both mesh colliders, the plane and the sphere; the body of a mesh collider is second, under the collider's name.
+    REQUIRE(w.pairs.size() == 4);
+    for (std::size_t p = 0; p < 4; ++p) CHECK(w.pairs.first[p] == b);
+    CHECK(w.pairs.key[0] == collider_pair_key(w.body.slot[b], w.body.slot[a]));
+    CHECK(w.pairs.second[0] == a);
+}
+
+TEST_CASE("a scene in which nothing moves is searched once", "[unit]") {
+    CollisionWorld w;
+    w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 1.01}), 0.02);
+    w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 3.02}), 0.02);
+    w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
+    CHECK(search(w));
+    const auto broad = w.search.broad_searches, narrow = w.search.pair_searches;
+    CHECK(broad == 1);
+    CHECK(narrow == w.pairs.size());
+    for (int step = 0; step < 100; ++step) {
+        CHECK_FALSE(search(w));
+        w.drift(h);
+    }
+    CHECK(w.search.broad_searches == broad);
+    CHECK(w.search.pair_searches == narrow);
+}
+
+TEST_CASE("a pair that stays near keeps its list over a broad search, and one that leaves is dropped", "[unit]") {
+    CollisionWorld w;
+    w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 0}), 0.02);
+    w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 2.05}), 0.02);
+    const Index goes = w.add_solid(test::ball_mesh(1, 3), w.at({2.05, 0, 0}), 0.02);
+    search(w);
+    const std::size_t pairs_before = w.pairs.size();
+    REQUIRE(pairs_before >= 2);
+    const std::uint64_t kept_key = body_pair_key(w.body.slot[0], w.body.slot[1]);
+    REQUIRE(w.pairs.key[0] == kept_key);
+    const Candidate* const memory = w.pairs.candidates[0].data();
+    const auto narrow = w.search.pair_searches;
+
+    for (Index n = w.body.nodes[goes].begin; n < w.body.nodes[goes].end; ++n) w.nodes.position[n] += Vec3(50, 0, 0);
+    w.body.travel[goes] += 50;
+    CHECK(search(w));
+    CHECK(w.search.broad_searches == 2);
+    CHECK(w.pairs.size() < pairs_before);
+    REQUIRE(w.pairs.key[0] == kept_key);
+    CHECK(w.pairs.candidates[0].data() == memory);
+    CHECK(w.search.pair_searches == narrow);  // nothing else had moved
+}
+
+TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer than the contact distance at rest", "[unit]") {
+    CollisionWorld w;
+    // A flat body whose two faces are nearer than the skin.
+    const Index b = w.add_solid(test::box_mesh({6, 6, 1}, {6, 6, 0.3}), w.at(Vec3::Zero()), 0.1);
+    w.body.self_contact[b] = 1;
+    search(w);
+    REQUIRE(w.pairs.size() == 1);
+    CHECK(w.pairs.kind[0] == PairKind::self);
+    CHECK(w.pairs.candidates[0].size() > 0);
+    for (const Candidate& c : w.pairs.candidates[0]) {
+        if (is_edge_edge(c.feature)) {
+            CHECK(c.first < c.second);
+            for (Index m : w.surface.edges.node[c.first])
+                for (Index n : w.surface.edges.node[c.second]) CHECK(m != n);
+        } else {
+            for (Index n : w.surface.triangles.node[c.second]) CHECK(n != w.surface.vertices.node[c.first]);
+        }
+    }
+    // Thicker contact than body: the other face is part of the same shell.
+    w.body.contact_distance[b] = 0.31;
+    w.search.body_valid_until.clear();
+    search(w);
+    for (const Candidate& c : w.pairs.candidates[0]) {
+        if (is_edge_edge(c.feature)) continue;
+        const auto& n = w.surface.triangles.node[c.second];
+        const auto& x = w.nodes.rest_position;
+        CHECK(closest_point_on_triangle(x[w.surface.vertices.node[c.first]], x[n[0]], x[n[1]], x[n[2]]).distance_squared >= 0.31 * 0.31);
+    }
+}
+
+TEST_CASE("no bodies, or one alone, give no pairs", "[unit]") {
+    CollisionWorld w;
+    search(w);
+    CHECK(w.pairs.size() == 0);
+    w.add_solid(test::ball_mesh(1, 2), w.at(Vec3::Zero()), 0.02);
+    search(w);
+    CHECK(w.pairs.size() == 0);
+    CHECK_FALSE(find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.contacts));
+    CHECK(w.contacts.size() == 0);
+}

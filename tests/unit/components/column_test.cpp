@@ -1,0 +1,86 @@
+#include "components/column.h"
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+
+#include "components/types.h"
+
+using namespace skerry;
+
+namespace {
+
+Column<int> counting(int count) {
+    Column<int> column;
+    for (int i = 0; i < count; ++i) column.push_back(i);
+    return column;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a column starts on a cache line, whatever its rows and however it grew", "[unit]", std::uint8_t, int, Real, Vec3,
+                   Mat3) {
+    Column<TestType> column;
+    for (std::size_t rows = 1; rows < 3000; rows = 2 * rows + 1) {
+        column.resize(rows);
+        REQUIRE(reinterpret_cast<std::uintptr_t>(column.data()) % 64 == 0);
+    }
+}
+
+TEST_CASE("rows made by resize are zero, rows that were there stay", "[unit]") {
+    Column<int> column = counting(3);
+    column.resize(6);
+    REQUIRE(column[2] == 2);
+    for (std::size_t row = 3; row < 6; ++row) REQUIRE(column[row] == 0);
+    column.resize(2);
+    column.resize(4, 9);
+    REQUIRE(std::vector<int>(column.begin(), column.end()) == std::vector<int>{0, 1, 9, 9});
+}
+
+TEST_CASE("erase keeps the order of the rows that are left", "[unit]") {
+    Column<int> column = counting(6);
+    column.erase(1, 2);
+    REQUIRE(std::vector<int>(column.begin(), column.end()) == std::vector<int>{0, 3, 4, 5});
+    column.erase(0, 1);
+    column.erase(2, 1);  // the last row
+    REQUIRE(std::vector<int>(column.begin(), column.end()) == std::vector<int>{3, 4});
+    column.erase(1, 0);
+    REQUIRE(column.size() == 2);
+    column.erase(0, 2);
+    REQUIRE(column.empty());
+}
+
+TEST_CASE("a column that shrinks and grows again stays where it is", "[unit]") {
+    Column<Vec3> column;
+    column.resize(1000);
+    const Vec3* const before = column.data();
+    column.clear();
+    column.resize(10);
+    column.assign(1000, Vec3::Zero());
+    column.erase(0, 500);
+    REQUIRE(column.data() == before);
+}
+
+TEST_CASE("swapping columns moves no row", "[unit]") {
+    Column<int> a = counting(3), b = counting(5);
+    const int* const of_a = a.data();
+    swap(a, b);
+    REQUIRE(b.data() == of_a);
+    REQUIRE(a.size() == 5);
+    REQUIRE(b.size() == 3);
+}
+
+TEST_CASE("spans of a column show its rows", "[unit]") {
+    Column<int> column = counting(3);
+    std::span<int> rows = column;
+    rows[1] = 7;
+    const Column<int>& same = column;
+    std::span<const int> shown = same;
+    REQUIRE(shown.size() == 3);
+    REQUIRE(shown[1] == 7);
+    REQUIRE(Column<int>().span().empty());
+}
+
+// The point of const: a system that was given a column to read cannot write it.
+static_assert(!std::is_convertible_v<const Column<int>&, std::span<int>>);
+// A column of vectors is a flat array of reals, which output and snapshots rely on.
+static_assert(sizeof(Vec3) == 3 * sizeof(Real) && sizeof(Mat3) == 9 * sizeof(Real));

@@ -1,0 +1,93 @@
+#include "systems/contact/match_warm_start.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+using namespace skerry;
+
+namespace {
+
+ContactKey key(std::uint64_t feature) {
+    return {7, feature};
+}
+const std::unique_ptr<Executor> serial = make_executor(Backend::serial, 1);
+
+}  // namespace
+
+TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit][contact]") {
+    const std::vector<ContactKey> before{key(10), key(20), key(30), key(40)};
+    const std::vector<Vec3> normal(4, Vec3::UnitZ());
+    const std::vector<Vec3> impulse{{0, 0, 1}, {0, 0, 2}, {0, 1, 3}, {0, 0, 4}};
+    WarmStartTable last;
+    store_warm_start(before, normal, impulse, 0.1, last);
+
+    const std::vector<ContactKey> now{key(5), key(10), key(25), key(30), key(50)};  // 20 and 40 gone, 5, 25 and 50 new
+    std::vector<Vec3> matched(5, Vec3::Ones());
+    CHECK(match_warm_start(*serial, now, std::vector<Vec3>(5, Vec3::UnitZ()), last, 0.1, matched));
+    CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 1, 3}, {0, 0, 0}});
+}
+
+TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]") {
+    WarmStartTable last;
+    store_warm_start(std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()), std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}},
+                     1, last);
+    std::vector<Vec3> matched(3);
+    match_warm_start(*serial, std::vector<ContactKey>{{1, 3}, {2, 3}, {2, 9}}, std::vector<Vec3>(3, Vec3::UnitX()), last, 1, matched);
+    CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 0, 0}});
+}
+
+TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[unit][contact]") {
+    std::mt19937 random(4);
+    std::normal_distribution<Real> normal_number;
+    for (int trial = 0; trial < 200; ++trial) {
+        const Vec3 from = Vec3(normal_number(random), normal_number(random), normal_number(random)).normalized();
+        const Vec3 to = (from + 0.5 * Vec3(normal_number(random), normal_number(random), normal_number(random))).normalized();
+        if (from.dot(to) < -0.99) continue;
+        const Vec3 impulse(normal_number(random), normal_number(random), normal_number(random));
+        WarmStartTable last;
+        store_warm_start(std::vector{key(1)}, std::vector{from}, std::vector{impulse}, 0.2, last);
+        std::vector<Vec3> matched(1);
+        match_warm_start(*serial, std::vector{key(1)}, std::vector{to}, last, 0.1, matched);
+        const Vec3 expected = 0.5 * (Eigen::AngleAxisd(std::acos(from.dot(to)), from.cross(to).normalized()) * impulse);
+        REQUIRE((matched[0] - expected).norm() < 1e-7 * impulse.norm());  // acos loses half the digits near 0
+        REQUIRE(matched[0].dot(to) == Approx(0.5 * impulse.dot(from)).margin(1e-14));
+    }
+}
+
+TEST_CASE("a normal that flipped carries nothing over", "[unit][contact]") {
+    WarmStartTable last;
+    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, 1, last);
+    std::vector<Vec3> matched(1, Vec3::Ones());
+    match_warm_start(*serial, std::vector{key(1)}, std::vector<Vec3>{-Vec3::UnitZ()}, last, 1, matched);
+    CHECK(matched[0] == Vec3::Zero());
+}
+
+TEST_CASE("without a last step all impulses start at zero and the stage is skipped", "[unit][contact]") {
+    std::vector<Vec3> matched(2, Vec3::Ones());
+    CHECK_FALSE(match_warm_start(*serial, std::vector{key(1), key(2)}, std::vector<Vec3>(2, Vec3::UnitZ()), {}, 1, matched));
+    CHECK(matched == std::vector<Vec3>(2, Vec3::Zero()));
+    CHECK_FALSE(match_warm_start(*serial, {}, {}, {}, 1, {}));
+}
+
+TEST_CASE("matching many contacts gives the same on any number of workers", "[unit][contact][determinism]") {
+    std::vector<ContactKey> before, now;
+    for (std::uint64_t f = 0; f < 20000; ++f) {
+        if (f % 3 != 0) before.push_back(key(f));
+        if (f % 5 != 0) now.push_back(key(f));
+    }
+    std::vector<Vec3> impulse(before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) impulse[i] = Vec3(0, 0, static_cast<Real>(before[i].feature));
+    WarmStartTable last;
+    store_warm_start(before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse, 1, last);
+    for (const int workers : {1, 2, 3, 8}) {
+        std::vector<Vec3> matched(now.size());
+        const auto executor = make_executor(Backend::threads, workers);
+        match_warm_start(*executor, now, std::vector<Vec3>(now.size(), Vec3::UnitZ()), last, 1, matched);
+        for (std::size_t i = 0; i < now.size(); ++i)
+            REQUIRE(matched[i].z() == (now[i].feature % 3 == 0 ? 0 : static_cast<Real>(now[i].feature)));
+    }
+}

@@ -1,0 +1,193 @@
+#include "systems/contact/separate_regions.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+#include <vector>
+
+using namespace skerry;
+
+namespace {
+
+/// A contact that touches these nodes.
+Stencil touching(std::vector<Index> nodes) {
+    Stencil stencil{{nodes[0], nodes[0], nodes[0], nodes[0]}, {0, 0, 0, 0}};
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+        stencil.node[a] = nodes[a];
+        stencil.weight[a] = a == 0 ? 1 : -1.0 / static_cast<Real>(nodes.size() - 1);
+    }
+    return stencil;
+}
+
+struct Separated {
+    RegionTable regions;
+    std::vector<Index> region;
+    bool ran;
+};
+
+Separated separate(const std::vector<Stencil>& stencil, const std::vector<Real>& inverse_mass, ContactRegions mode) {
+    Separated result;
+    UnionFind memory;
+    result.region.resize(stencil.size());
+    result.ran = separate_regions(stencil, inverse_mass, mode, memory, result.regions, result.region);
+    return result;
+}
+
+/// Flood fill over pairs of contacts, numbered by the first contact: the definition, O(K^2).
+std::vector<Index> flood_fill(const std::vector<Stencil>& stencil, const std::vector<Real>& inverse_mass) {
+    const auto moving = [&](const Stencil& s) {
+        std::set<Index> nodes;
+        for (std::size_t a = 0; a < 4; ++a)
+            if (s.weight[a] != 0 && inverse_mass[static_cast<std::size_t>(s.node[a])] > 0) nodes.insert(s.node[a]);
+        return nodes;
+    };
+    std::vector<Index> region(stencil.size(), no_index);
+    Index count = 0;
+    for (std::size_t start = 0; start < stencil.size(); ++start) {
+        if (region[start] != no_index || moving(stencil[start]).empty()) continue;
+        std::vector<std::size_t> open{start};
+        region[start] = count;
+        while (!open.empty()) {
+            const std::set<Index> here = moving(stencil[open.back()]);
+            open.pop_back();
+            for (std::size_t j = 0; j < stencil.size(); ++j) {
+                if (region[j] != no_index) continue;
+                for (const Index node : moving(stencil[j]))
+                    if (here.count(node)) {
+                        region[j] = count;
+                        open.push_back(j);
+                        break;
+                    }
+            }
+        }
+        ++count;
+    }
+    return region;
+}
+
+std::vector<Stencil> random_stencils(std::mt19937& random, int contacts, int nodes) {
+    std::uniform_int_distribution<Index> pick(0, nodes - 1);
+    std::uniform_int_distribution<int> size(1, 4);
+    std::vector<Stencil> stencil;
+    for (int i = 0; i < contacts; ++i) {
+        std::vector<Index> chosen(static_cast<std::size_t>(size(random)));
+        for (Index& node : chosen) node = pick(random);
+        stencil.push_back(touching(chosen));
+    }
+    return stencil;
+}
+
+}  // namespace
+
+TEST_CASE("union-find finds the regions of a flood fill on random sets", "[unit][contact]") {
+    std::mt19937 random(20100301);
+    for (int trial = 0; trial < 300; ++trial) {
+        const int contacts = 1 + trial % 40;
+        const std::vector<Stencil> stencil = random_stencils(random, contacts, 10 + contacts * (1 + trial % 5));
+        std::vector<Real> inverse_mass(10 + static_cast<std::size_t>(contacts) * 5, 1);
+        for (Real& m : inverse_mass) m = random() % 4 == 0 ? 0 : 1;
+        const Separated result = separate(stencil, inverse_mass, ContactRegions::separate);
+        REQUIRE(result.region == flood_fill(stencil, inverse_mass));
+        REQUIRE(count_shared_nodes(stencil, inverse_mass, result.regions) == 0);
+        REQUIRE(result.regions.independent);
+        for (std::size_t r = 0; r < result.regions.size(); ++r) {
+            const auto rows = result.regions.contacts[r];
+            REQUIRE(std::is_sorted(rows.begin(), rows.end()));
+            for (const Index i : rows) REQUIRE(result.region[static_cast<std::size_t>(i)] == static_cast<Index>(r));
+        }
+    }
+}
+
+TEST_CASE("the memory of one step does not leak into the next", "[unit][contact]") {
+    UnionFind memory;
+    RegionTable regions;
+    const std::vector<Real> inverse_mass(8, 1);
+    std::vector<Index> region(2);
+    const std::vector<Stencil> joined{touching({1, 2}), touching({2, 3})}, apart{touching({1, 2}), touching({3, 4})};
+    separate_regions(joined, inverse_mass, ContactRegions::separate, memory, regions, region);
+    CHECK(regions.size() == 1);
+    separate_regions(apart, inverse_mass, ContactRegions::separate, memory, regions, region);
+    CHECK(region == std::vector<Index>{0, 1});
+    memory.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
+    separate_regions(apart, inverse_mass, ContactRegions::separate, memory, regions, region);
+    CHECK(region == std::vector<Index>{0, 1});
+}
+
+TEST_CASE("a pinned node does not join the contacts that touch it", "[unit][contact]") {
+    std::vector<Real> inverse_mass(10, 1);
+    const std::vector<Stencil> stencil{touching({1, 5}), touching({2, 5}), touching({3, 5})};
+    CHECK(separate(stencil, inverse_mass, ContactRegions::separate).regions.size() == 1);
+    inverse_mass[5] = 0;
+    CHECK(separate(stencil, inverse_mass, ContactRegions::separate).regions.size() == 3);
+}
+
+TEST_CASE("a node of weight zero does not join contacts", "[unit][contact]") {
+    std::vector<Stencil> stencil{touching({1, 5}), touching({2, 5})};
+    stencil[1].weight[1] = 0;
+    CHECK(separate(stencil, std::vector<Real>(6, 1), ContactRegions::separate).regions.size() == 2);
+}
+
+TEST_CASE("a contact without a moving node belongs to no region", "[unit][contact]") {
+    const std::vector<Real> inverse_mass{0, 0, 1, 1};
+    const std::vector<Stencil> stencil{touching({0, 1}), touching({2, 3}), touching({1})};
+    for (const ContactRegions mode : {ContactRegions::separate, ContactRegions::global, ContactRegions::paper_algorithm_1}) {
+        const Separated result = separate(stencil, inverse_mass, mode);
+        CHECK(result.region == std::vector<Index>{no_index, 0, no_index});
+        CHECK(result.regions.contacts.item.size() == 1);
+    }
+    const Separated none = separate({touching({0, 1})}, inverse_mass, ContactRegions::separate);
+    CHECK(none.ran);
+    CHECK(none.regions.size() == 0);
+}
+
+TEST_CASE("no contacts are no regions, and old ones go", "[unit][contact]") {
+    UnionFind memory;
+    RegionTable regions;
+    std::vector<Index> region(1);
+    separate_regions(std::vector{touching({1, 2})}, std::vector<Real>(3, 1), ContactRegions::separate, memory, regions, region);
+    REQUIRE(regions.size() == 1);
+    CHECK_FALSE(separate_regions({}, std::vector<Real>(3, 1), ContactRegions::separate, memory, regions, {}));
+    CHECK(regions.size() == 0);
+    CHECK(regions.status.size() == 0);
+}
+
+TEST_CASE("global puts all contacts into one region in contact order", "[unit][contact]") {
+    const Separated result = separate({touching({1}), touching({2}), touching({3})}, std::vector<Real>(4, 1), ContactRegions::global);
+    CHECK(result.regions.size() == 1);
+    CHECK(std::vector<Index>(result.regions.contacts[0].begin(), result.regions.contacts[0].end()) == std::vector<Index>{0, 1, 2});
+}
+
+TEST_CASE("the paper's Algorithm 1 leaves areas {1,2,5} and {5,6} apart, which share point 5", "[unit][contact]") {
+    const std::vector<Stencil> stencil{touching({1, 2}), touching({5, 6}), touching({2, 5})};
+    const std::vector<Real> inverse_mass(7, 1);
+    const Separated paper = separate(stencil, inverse_mass, ContactRegions::paper_algorithm_1);
+    CHECK(paper.region == std::vector<Index>{0, 1, 0});
+    CHECK(count_shared_nodes(stencil, inverse_mass, paper.regions) == 1);
+    CHECK_FALSE(paper.regions.independent);
+    const Separated right = separate(stencil, inverse_mass, ContactRegions::separate);
+    CHECK(right.region == std::vector<Index>{0, 0, 0});
+    CHECK(right.regions.independent);
+}
+
+TEST_CASE("the paper's Algorithm 1 is right on chains in order", "[unit][contact]") {
+    const std::vector<Stencil> stencil{touching({1, 2}), touching({2, 3}), touching({3, 4}), touching({7, 8}), touching({8, 9})};
+    const std::vector<Real> inverse_mass(10, 1);
+    const Separated paper = separate(stencil, inverse_mass, ContactRegions::paper_algorithm_1);
+    CHECK(paper.region == separate(stencil, inverse_mass, ContactRegions::separate).region);
+    CHECK(paper.regions.independent);
+}
+
+TEST_CASE("the paper's Algorithm 1 goes wrong more often the more contacts there are", "[unit][contact]") {
+    std::mt19937 random(1);
+    const auto wrong_of_100 = [&](int contacts) {
+        int wrong = 0;
+        for (int trial = 0; trial < 100; ++trial) {
+            const std::vector<Stencil> stencil = random_stencils(random, contacts, 3 * contacts);
+            wrong += !separate(stencil, std::vector<Real>(3 * static_cast<std::size_t>(contacts), 1), ContactRegions::paper_algorithm_1)
+                          .regions.independent;
+        }
+        return wrong;
+    };
+    CHECK(wrong_of_100(6) < 60);
+    CHECK(wrong_of_100(100) > 80);
+}

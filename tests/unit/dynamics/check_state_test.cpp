@@ -1,0 +1,146 @@
+#include "systems/dynamics/check_state.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/support/elastic_body.h"
+
+using namespace skerry;
+
+namespace {
+
+constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real unbounded = std::numeric_limits<Real>::infinity();
+
+/// Two bodies of 300 nodes in two blocks each; a tetrahedron for every four neighbours.
+struct State {
+    std::vector<Index> begin{0, 256, 300, 556}, end{256, 300, 556, 600}, body{0, 0, 1, 1};
+    std::vector<Range> node_blocks{{0, 2}, {2, 4}}, element_blocks{{0, 10}, {10, 20}};
+    std::vector<Real> altitude{0.1, 0.1};
+    std::vector<Vec3> velocity{600, Vec3::Zero()}, next{600, Vec3(1, 0, 0)}, push{600, Vec3::Zero()};
+    std::vector<ElementNodes> elements;
+    std::vector<Real> block_speed = std::vector<Real>(4), body_speed = std::vector<Real>(2);
+    bool with_elements = true;
+
+    State() {
+        for (Index b = 0; b < 20; ++b) {
+            ElementNodes nodes;
+            for (Index l = 0; l < 8; ++l)
+                for (Index a = 0; a < 4; ++a)
+                    nodes[static_cast<std::size_t>(a)][static_cast<std::size_t>(l)] =
+                        (b / 10) * 300 + std::min((b % 10) * 32 + 4 * l + a, 299);
+            elements.push_back(nodes);
+        }
+    }
+    StepVerdict check(int workers = 1) {
+        const auto executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
+        CheckInputs inputs{begin, end, body, node_blocks, altitude, velocity, next, push};
+        if (with_elements) {
+            inputs.element_node = elements;
+            inputs.body_blocks = element_blocks;
+        }
+        return check_state(*executor, inputs, 0.01, 0.2, block_speed, body_speed);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a sound step has no fault and its speeds are written", "[unit]") {
+    State state;
+    state.next[280] = Vec3(0, 1.5, 0);
+    state.push[400] = Vec3(0.5, 0, 0);
+    CHECK(state.check().fault == StepFault::none);
+    CHECK(state.block_speed[0] == 1);
+    CHECK(state.block_speed[1] == 2.25);
+    CHECK(state.body_speed[0] == 1.5);
+    CHECK(state.body_speed[1] == 1.5);  // with the push-out
+}
+
+TEST_CASE("what is not finite is found, the first body first", "[unit]") {
+    for (Real bad : {not_a_number, unbounded, -unbounded, 1e200}) {
+        State state;
+        state.next[570].y() = bad;
+        state.next[270].z() = bad;
+        const StepVerdict verdict = state.check();
+        CHECK(verdict.fault == StepFault::not_finite);
+        CHECK(verdict.body == 0);
+        CHECK(verdict.node == 270);
+        CHECK(std::isnan(state.block_speed[1]));
+        CHECK(std::isnan(state.body_speed[1]));  // later speeds are written, too
+        CHECK(state.block_speed[0] == 1);
+    }
+}
+
+TEST_CASE("a push-out that is not a number is found", "[unit]") {
+    State state;
+    state.push[599].x() = not_a_number;
+    const StepVerdict verdict = state.check();
+    CHECK(verdict.fault == StepFault::not_finite);
+    CHECK(verdict.node == 599);
+}
+
+TEST_CASE("a kinematic body is not judged by its speed, but must be finite", "[unit]") {
+    State state;
+    state.altitude[0] = 0;
+    state.next[5] = Vec3(1e6, 0, 0);
+    CHECK(state.check().fault == StepFault::none);
+    state.next[5].x() = not_a_number;
+    CHECK(state.check().fault == StepFault::not_finite);
+}
+
+TEST_CASE("corners that part by more than the limit are too fast, by just less they are not", "[unit]") {
+    // Limit: 0.2 * 0.1 m in 0.01 s: 2 m/s.
+    for (bool with_elements : {true, false}) {
+        State state;
+        state.with_elements = with_elements;
+        state.next[402] = Vec3(1, 1.9, 0);
+        CHECK(state.check().fault == StepFault::none);
+        state.next[402] = Vec3(1, 2.1, 0);
+        const StepVerdict verdict = state.check();
+        CHECK(verdict.fault == StepFault::too_fast);
+        CHECK(verdict.body == 1);
+        CHECK(verdict.node == 402);
+        CHECK(verdict.value == Approx(0.21).epsilon(0.01));  // 1 %: the mean moves with it
+    }
+}
+
+TEST_CASE("common motion does no harm, however fast", "[unit]") {
+    for (bool with_elements : {true, false}) {
+        State state;
+        state.with_elements = with_elements;
+        for (Vec3& v : state.next) v = Vec3(1000, 0, 0);
+        CHECK(state.check().fault == StepFault::none);
+        CHECK(state.body_speed[0] == 1000);
+    }
+}
+
+TEST_CASE("a turn that is slow for each element is allowed to a large body", "[unit]") {
+    State state;
+    for (std::size_t n = 0; n < 600; ++n) state.next[n] = Vec3(0, 0.1 * static_cast<Real>(n), 0);  // 30 m/s at the far end
+    CHECK(state.check().fault == StepFault::none);
+}
+
+TEST_CASE("the verdict is the same on any number of workers", "[unit][determinism]") {
+    for (int workers : {1, 2, 3, 4, 8}) {
+        State state;
+        state.next[100] = state.next[200] = state.next[301] = Vec3(1, 30, 0);
+        const StepVerdict verdict = state.check(workers);
+        CHECK(verdict.fault == StepFault::too_fast);
+        CHECK(verdict.body == 0);
+        CHECK(verdict.node == 101);  // a corner of the first of the equally bad elements: the base is the fast node 100
+    }
+}
+
+TEST_CASE("a world without bodies and a body without nodes are sound", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    CHECK(check_state(*executor, {}, 0.01, 0.2, {}, {}).fault == StepFault::none);
+    const std::vector<Range> none{{0, 0}};
+    const std::vector<Real> altitude{0.1};
+    std::vector<Real> speed(1, 7);
+    CheckInputs inputs;
+    inputs.body_node_blocks = none;
+    inputs.body_min_altitude = altitude;
+    CHECK(check_state(*executor, inputs, 0.01, 0.2, {}, speed).fault == StepFault::none);
+    CHECK(speed[0] == 0);
+}

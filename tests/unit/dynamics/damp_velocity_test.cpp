@@ -1,0 +1,157 @@
+#include "systems/dynamics/damp_velocity.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "tests/support/jittered_box.h"
+
+using namespace skerry;
+
+namespace {
+
+/// Bodies of loose nodes.
+struct Cloud {
+    std::vector<Index> block_begin, block_end, block_body, body_material, pinned;
+    std::vector<Range> node_blocks;
+    std::vector<Real> damping{0, 20}, mass, inverse_mass;  // material 1 is damped
+    std::vector<Vec3> position, velocity;
+    std::vector<NodeBlockSums> sums;
+
+    void add(const std::vector<Vec3>& nodes, const std::vector<Vec3>& velocities, Index material) {
+        const Index first = static_cast<Index>(position.size()), first_block = static_cast<Index>(block_begin.size());
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            position.push_back(nodes[n]);
+            velocity.push_back(velocities[n]);
+            mass.push_back(0.1 + 0.01 * static_cast<Real>(n % 7));
+            inverse_mass.push_back(1 / mass.back());
+        }
+        for (Index begin = first; begin < static_cast<Index>(position.size()); begin += nodes_per_block) {
+            block_begin.push_back(begin);
+            block_end.push_back(std::min(begin + nodes_per_block, static_cast<Index>(position.size())));
+            block_body.push_back(static_cast<Index>(node_blocks.size()));
+        }
+        node_blocks.push_back({first_block, static_cast<Index>(block_begin.size())});
+        body_material.push_back(material);
+        pinned.push_back(0);
+        sums.resize(block_begin.size());
+    }
+    bool damp(Executor& executor, Real h) {
+        return damp_velocity(
+            executor, {block_begin, block_end, block_body, node_blocks, body_material, pinned, damping, position, mass, inverse_mass}, h,
+            sums, velocity);
+    }
+};
+
+struct Momenta {
+    Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+    Real size = 0, turn = 0, kinetic = 0;
+};
+Momenta momenta(const Cloud& cloud) {
+    Momenta m;
+    for (std::size_t n = 0; n < cloud.position.size(); ++n) {
+        const Vec3 p = cloud.mass[n] * cloud.velocity[n];
+        m.linear += p;
+        m.angular += cloud.position[n].cross(p);
+        m.size += p.norm();
+        m.turn += cloud.position[n].norm() * p.norm();
+        m.kinetic += 0.5 * p.dot(cloud.velocity[n]);
+    }
+    return m;
+}
+
+std::vector<Vec3> random_vectors(std::size_t count, Real size, const Vec3& centre, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<Vec3> out(count);
+    for (Vec3& v : out) v = centre + size * test::random_vector(random);
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("damping keeps momentum and angular momentum and takes energy", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    Cloud cloud;
+    cloud.add(random_vectors(1000, 0.5, Vec3(10, -20, 5), 1), random_vectors(1000, 2, Vec3(3, 1, 0), 2), 1);
+    const Momenta before = momenta(cloud);
+    for (int step = 0; step < 20; ++step) REQUIRE(cloud.damp(*executor, 1e-3));
+    const Momenta after = momenta(cloud);
+    CHECK((after.linear - before.linear).norm() <= 1e-13 * before.size);
+    CHECK((after.angular - before.angular).norm() <= 1e-13 * before.turn);
+    CHECK(after.kinetic < 0.9 * before.kinetic);
+}
+
+TEST_CASE("rigid motion is not damped", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    Cloud cloud;
+    const std::vector<Vec3> nodes = random_vectors(700, 0.5, Vec3(1, 2, 3), 3);
+    std::vector<Vec3> velocities;
+    for (const Vec3& x : nodes) velocities.push_back(Vec3(1, 2, 3) + Vec3(3, -2, 5).cross(x));
+    cloud.add(nodes, velocities, 1);
+    cloud.damp(*executor, 0.1);
+    for (std::size_t n = 0; n < nodes.size(); ++n) CHECK((cloud.velocity[n] - velocities[n]).norm() <= 1e-12);
+}
+
+TEST_CASE("what is not rigid motion decays at the given rate", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    Cloud cloud;
+    cloud.add({Vec3(-1, 0, 0), Vec3(1, 0, 0)}, {Vec3(-1, 0, 0), Vec3(1, 0, 0)}, 1);
+    cloud.mass = {1, 1};
+    cloud.damp(*executor, 0.1);
+    CHECK(cloud.velocity[1].x() == Approx(std::exp(-2.0)).epsilon(1e-14));
+}
+
+TEST_CASE("nodes in a point and on a line are damped without a rotation they cannot have", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    Cloud cloud;
+    cloud.add({Vec3(1, 1, 1)}, {Vec3(1, 2, 3)}, 1);                                 // one node: all of it is rigid
+    cloud.add({Vec3(2, 2, 2), Vec3(2, 2, 2)}, {Vec3(1, 0, 0), Vec3(-1, 0, 0)}, 1);  // one place
+    cloud.add({Vec3(0, 0, 0), Vec3(0.1, 0.2, 0.3), Vec3(0.3, 0.6, 0.9)}, {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}, 1);  // a line
+    const Momenta before = momenta(cloud);
+    cloud.damp(*executor, 0.1);
+    const Momenta after = momenta(cloud);
+    CHECK((cloud.velocity[0] - Vec3(1, 2, 3)).norm() <= 1e-15);
+    CHECK((after.linear - before.linear).norm() <= 1e-13 * before.size);
+    CHECK((after.angular - before.angular).norm() <= 1e-13 * before.turn);
+    CHECK(after.kinetic < before.kinetic);
+}
+
+TEST_CASE("a body with pinned nodes is damped towards rest, its pinned nodes not at all", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    Cloud cloud;
+    cloud.add(random_vectors(10, 1, Vec3::Zero(), 5), std::vector<Vec3>(10, Vec3(1, 0, 0)), 1);
+    cloud.inverse_mass[4] = 0;
+    cloud.pinned[0] = 1;
+    cloud.damp(*executor, 0.1);
+    CHECK(cloud.velocity[3].x() == Approx(std::exp(-2.0)).epsilon(1e-14));
+    CHECK(cloud.velocity[4] == Vec3(1, 0, 0));
+}
+
+TEST_CASE("bodies without damping or without a material are passed over", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    Cloud cloud;
+    CHECK_FALSE(cloud.damp(*executor, 0.1));
+    const std::vector<Vec3> velocities = random_vectors(5, 1, Vec3::Zero(), 7);
+    cloud.add(random_vectors(5, 1, Vec3::Zero(), 6), velocities, 0);
+    cloud.add(random_vectors(5, 1, Vec3::Zero(), 6), velocities, no_index);
+    CHECK_FALSE(cloud.damp(*executor, 0.1));
+    cloud.add(random_vectors(5, 1, Vec3::Zero(), 6), velocities, 1);
+    CHECK(cloud.damp(*executor, 0.1));
+    for (std::size_t n = 0; n < 10; ++n) CHECK(cloud.velocity[n] == velocities[n % 5]);
+    CHECK(cloud.velocity[10] != velocities[0]);
+}
+
+TEST_CASE("damping has the same bits on any number of workers", "[unit][determinism]") {
+    std::vector<Vec3> reference;
+    for (int workers : {1, 2, 3, 4, 8}) {
+        const auto executor = make_executor(available_backends().front(), workers);
+        Cloud cloud;
+        for (std::uint64_t body = 0; body < 5; ++body)
+            cloud.add(random_vectors(3000, 0.5, Vec3(1, 2, 3), body), random_vectors(3000, 2, Vec3(3, 1, 0), body + 9), body % 2 == 0);
+        for (int step = 0; step < 3; ++step) cloud.damp(*executor, 1e-3);
+        if (workers == 1)
+            reference = cloud.velocity;
+        else
+            CHECK(std::memcmp(reference.data(), cloud.velocity.data(), reference.size() * sizeof(Vec3)) == 0);
+    }
+}

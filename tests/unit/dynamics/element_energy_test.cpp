@@ -1,0 +1,68 @@
+#include "systems/dynamics/element_energy.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/support/elastic_body.h"
+
+using namespace skerry;
+using test::ElasticBody;
+using test::jittered_box;
+
+namespace {
+
+constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean};
+
+MaterialConstants rubber(MaterialModel model) {
+    return material_constants(model, 1e5, 0.3, 1000);
+}
+
+}  // namespace
+
+TEST_CASE("elastic energy is the sum over the elements", "[unit]") {
+    for (MaterialModel model : models) {
+        ElasticBody body(jittered_box({2, 3, 2}, 0.1, 0.2, 1), rubber(model));
+        CHECK(std::abs(elastic_energy(body.inputs(), body.blocks, body.position)) <= 1e-12);
+        std::mt19937_64 random(2);
+        for (Vec3& x : body.position) x += 0.02 * test::random_vector(random);
+        Real sum = 0;
+        for (std::size_t e = 0; e < 72; ++e) sum += body.volume(e) * energy_density(body.constants[0], body.deformation(e));
+        CHECK(elastic_energy(body.inputs(), body.blocks, body.position) == Approx(sum).epsilon(1e-12));
+        CHECK(elastic_energy(body.inputs(), {0, 0}, body.position) == 0);
+    }
+}
+
+TEST_CASE("von Mises stress of uniaxial strain is 2 mu strain", "[unit]") {
+    for (MaterialModel model : models) {
+        ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
+        const Real strain = 1e-6;
+        for (Vec3& x : body.position) x.z() *= 1 + strain;
+        std::vector<Real> stress(8, -1);
+        von_mises_stress(body.inputs(), body.blocks, body.position, stress);
+        for (std::size_t e = 0; e < 6; ++e) CHECK(stress[e] == Approx(2 * body.constants[0].shear_modulus * strain).epsilon(1e-5));
+        CHECK(stress[6] == 0);  // a lane that is left over
+    }
+}
+
+TEST_CASE("von Mises stress is finite for a flat body", "[unit]") {
+    for (MaterialModel model : models) {
+        ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
+        for (Vec3& x : body.position) x.z() = 0;
+        std::vector<Real> stress(8);
+        von_mises_stress(body.inputs(), body.blocks, body.position, stress);
+        for (Real s : stress) CHECK(std::isfinite(s));
+    }
+}
+
+TEST_CASE("the worst volume ratio names the element that is pressed most", "[unit]") {
+    ElasticBody body(jittered_box({4, 1, 1}, 0.1, 0, 1), rubber(MaterialModel::linear));
+    CHECK(worst_volume_ratio(body.inputs(), body.blocks, body.position).volume_ratio == Approx(1).epsilon(1e-13));
+    body.position[0].x() += 0.15;  // through its neighbours
+    const WorstElement worst = worst_volume_ratio(body.inputs(), body.blocks, body.position);
+    CHECK(worst.volume_ratio < 0);
+    REQUIRE(worst.element >= 0);
+    CHECK(body.deformation(static_cast<std::size_t>(worst.element)).determinant() == Approx(worst.volume_ratio));
+    CHECK(worst_volume_ratio(body.inputs(), {0, 0}, body.position).element == no_index);
+    body.position[3].x() = std::numeric_limits<Real>::quiet_NaN();
+    CHECK(std::isnan(worst_volume_ratio(body.inputs(), body.blocks, body.position).volume_ratio));
+}

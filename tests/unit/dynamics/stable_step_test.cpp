@@ -1,0 +1,132 @@
+#include "systems/dynamics/stable_step.h"
+
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/support/elastic_body.h"
+
+using namespace skerry;
+using test::ElasticBody;
+using test::jittered_box;
+
+namespace {
+
+constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean};
+
+StableStep step_of(const ElasticBody& body) {
+    std::vector<Real> scratch(body.position.size(), 1e300);  // what was there before must not matter
+    return stable_step(body.inputs(), body.blocks, body.position, body.mass, scratch);
+}
+
+/// Largest eigenvalue of M^-1/2 K M^-1/2 of the whole mesh in its present shape, K by central differences of the nodal forces.
+Real exact_frequency_squared(ElasticBody& body) {
+    const auto executor = make_executor(Backend::serial, 1);
+    const Eigen::Index size = 3 * static_cast<Eigen::Index>(body.position.size());
+    Eigen::MatrixXd K(size, size);
+    constexpr Real step = 1e-6;  // m; cells are 0.1 m
+    const auto forces = [&](Eigen::Index j, Real by) {
+        Real& x = body.position[static_cast<std::size_t>(j / 3)][j % 3];
+        const Real before = x;
+        x += by;
+        body.compute_forces(*executor);
+        x = before;
+        return Eigen::Map<const Eigen::VectorXd>(body.force[0].data(), size).eval();
+    };
+    for (Eigen::Index j = 0; j < size; ++j) K.col(j) = (forces(j, -step) - forces(j, step)) / (2 * step);
+    for (Eigen::Index i = 0; i < size; ++i)
+        for (Eigen::Index j = 0; j < size; ++j)
+            K(i, j) /= std::sqrt(body.mass[static_cast<std::size_t>(i / 3)] * body.mass[static_cast<std::size_t>(j / 3)]);
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (K + K.transpose()), Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
+}
+
+}  // namespace
+
+TEST_CASE("the stable step is never above the limit and not far below it", "[unit]") {
+    // methods.md 4.2, the table: 0.68 to 0.78 of the exact limit, of which 0.9 are used here.
+    for (MaterialModel model : models) {
+        for (Real jitter : {0.0, 0.1, 0.3}) {
+            for (Real nu : {0.0, 0.3, 0.45, 0.499}) {
+                ElasticBody body(jittered_box({4, 3, 3}, 0.1, jitter, 11, 0.02), material_constants(model, 1e5, nu, 1000));
+                const Real limit = 2 / std::sqrt(exact_frequency_squared(body));
+                const Real step = step_of(body).step;
+                INFO("model " << name_of(model) << " jitter " << jitter << " nu " << nu << ": " << step / limit);
+                CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: the differences
+                CHECK(step >= 0.6 * 0.9 * limit);
+            }
+        }
+    }
+}
+
+TEST_CASE("the stable step stays below the limit under large deformation", "[unit]") {
+    for (MaterialModel model : models) {
+        for (const Vec3& stretch : {Vec3(1.6, 1.6, 1.6), Vec3(2.5, 0.7, 0.7), Vec3(0.5, 0.5, 0.5), Vec3(1, 1, 0.2), Vec3(1.3, 1, -0.5)}) {
+            ElasticBody body(jittered_box({3, 3, 2}, 0.1, 0.2, 12), material_constants(model, 1e5, 0.4, 1000));
+            std::mt19937_64 random(13);
+            const Eigen::AngleAxis<Real> turn(2.5, Vec3(1, -2, 0.5).normalized());
+            for (Vec3& x : body.position) x = turn * (stretch.cwiseProduct(x) + 0.004 * test::random_vector(random));
+            const Real limit = 2 / std::sqrt(exact_frequency_squared(body));
+            const Real step = step_of(body).step;
+            INFO("model " << name_of(model) << " stretch " << stretch.transpose() << ": " << step / limit);
+            CHECK(step <= 0.9 * limit * (1 + 1e-5));
+            CHECK(step >= 0.25 * limit);
+        }
+    }
+}
+
+TEST_CASE("a sliver does not ruin the step", "[unit]") {
+    // A free node almost in the plane of its neighbours' faces: the usual element bound drops with the altitude, the shared mass does not.
+    const MaterialConstants material = material_constants(MaterialModel::linear, 1e5, 0.3, 1000);
+    ElasticBody even(jittered_box({4, 4, 4}, 0.1, 0, 1), material), slivers(jittered_box({4, 4, 4}, 0.1, 0.35, 3, 1e-3), material);
+    const Real ratio = step_of(slivers).step / step_of(even).step;
+    const Real limit = 2 / std::sqrt(exact_frequency_squared(slivers));
+    CHECK(step_of(slivers).step <= 0.9 * limit * (1 + 1e-6));
+    CHECK(step_of(slivers).step >= 0.55 * limit);
+    CHECK(ratio > 0.02);
+}
+
+TEST_CASE("the element named is the one that bounds the step", "[unit]") {
+    test::TetMesh mesh = jittered_box({5, 3, 3}, 0.1, 0, 1);
+    for (Vec3& x : mesh.nodes)
+        if (x.x() > 0.45) x.x() -= 0.09;  // the last layer is ten times thinner
+    const ElasticBody body(mesh, material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.3, 1000));
+    const StableStep step = step_of(body);
+    REQUIRE(step.element >= 0);
+    const std::size_t e = static_cast<std::size_t>(step.element);
+    Real right = 0;
+    for (std::size_t a = 0; a < 4; ++a)
+        right = std::max(right, body.position[static_cast<std::size_t>(body.elements.node[e / 8][a][e % 8])].x());
+    CHECK(right > 0.4);
+}
+
+TEST_CASE("a body without elements has no limit, one that is not finite has no step", "[unit]") {
+    const StableStep none = stable_step({}, {0, 0}, {}, {}, {});
+    CHECK(none.step == std::numeric_limits<Real>::infinity());
+    CHECK(none.element == no_index);
+    for (MaterialModel model : models) {
+        ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0, 1), material_constants(model, 1e5, 0.3, 1000));
+        body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();
+        CHECK(step_of(body).step == 0);
+    }
+}
+
+TEST_CASE("a flat body and a point have a finite step", "[unit]") {
+    for (MaterialModel model : models) {
+        for (const Vec3& stretch : {Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0)}) {
+            ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0, 1), material_constants(model, 1e5, 0.4, 1000));
+            for (Vec3& x : body.position) x = stretch.cwiseProduct(x);
+            const Real step = step_of(body).step;
+            CHECK(std::isfinite(step));
+            CHECK(step > 0);
+        }
+    }
+}
+
+TEST_CASE("power iteration approaches the highest frequency from below", "[unit]") {
+    ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.2, 5), material_constants(MaterialModel::linear, 1e5, 0.4, 1000));
+    const Real exact = exact_frequency_squared(body);
+    const Real estimate = estimate_max_frequency_squared(body.inputs(), body.blocks, body.position, body.inverse_mass, 60);
+    CHECK(estimate <= exact * (1 + 1e-6));
+    CHECK(estimate >= 0.95 * exact);
+    CHECK(estimate_max_frequency_squared(body.inputs(), {0, 0}, body.position, body.inverse_mass, 5) == 0);
+}

@@ -1,0 +1,115 @@
+// Damaged files: cut at many lengths, bytes changed. They load or are refused; nothing else may happen.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+#include <random>
+
+#include "mesh_samples.h"
+#include "skerry/error.h"
+
+namespace {
+std::atomic<std::size_t> largest_request{0};  // bytes, since it was last set to 0
+
+void* counted(std::size_t size) {
+    if (size > largest_request) largest_request = size;
+    if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+    throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return counted(size);
+}
+void* operator new[](std::size_t size) {
+    return counted(size);
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    return std::malloc(size > 0 ? size : 1);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+    return std::malloc(size > 0 ? size : 1);
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+Mesh small_mesh() {
+    return mesh::box({0.1, 0.2, 0.3}, {1, 1, 1});
+}
+
+/// The name under which this file is to be damaged. A .node and a .ele are read together: writes a good pair of that name.
+std::string write_partners(const TestFolder& folder, const SampleFile& file) {
+    const int first_number = file.name.starts_with("one") ? 1 : 0;
+    folder.write("hit.node", node_file(small_mesh(), first_number));
+    folder.write("hit.ele", ele_file(small_mesh(), first_number));
+    return "hit" + file.name.substr(file.name.find('.'));
+}
+
+/// Reads a damaged file. True when it loads; SceneError is the only way out besides.
+bool loads(const std::string& path, std::size_t size) {
+    largest_request = 0;
+    bool loaded = false;
+    try {
+        const SurfaceMesh surface = mesh::read_surface(path);
+        for (const std::array<Index, 3>& t : surface.triangles)
+            for (const Index n : t) REQUIRE((n >= 0 && static_cast<std::size_t>(n) < surface.nodes.size()));
+        for (const Vec3& x : surface.nodes) REQUIRE(x.allFinite());
+        loaded = true;
+    } catch (const SceneError& error) {
+        REQUIRE(std::string(error.what()).size() > path.size());
+    }
+    // Nothing in a file may ask for more than rows that its bytes could hold: 24 bytes of position for 3 of text, faces of a tetrahedron.
+    REQUIRE(largest_request <= 64 * size + 65536);
+    return loaded;
+}
+
+}  // namespace
+
+TEST_CASE("a file cut anywhere loads or is refused", "[unit]") {
+    const TestFolder folder;
+    for (const SampleFile& file : all_sample_files(small_mesh())) {
+        INFO(file.name);
+        const std::string name = write_partners(folder, file);
+        CHECK(loads(folder.write(name, file.content), file.content.size()));
+        std::size_t loaded = 0, cuts = 0;
+        for (std::size_t length = 0; length < file.content.size(); length += 1 + length / 200) {
+            loaded += loads(folder.write(name, file.content.substr(0, length)), file.content.size());
+            ++cuts;
+        }
+        CHECK(loaded < cuts);
+    }
+}
+
+TEST_CASE("a file with changed bytes loads or is refused", "[unit]") {
+    const TestFolder folder;
+    std::mt19937 random(12345);
+    for (const SampleFile& file : all_sample_files(small_mesh())) {
+        INFO(file.name << ", seed 12345");
+        const std::string name = write_partners(folder, file);
+        for (int round = 0; round < 400; ++round) {
+            std::string content = file.content;
+            const int hits = 1 + static_cast<int>(random() % 4);
+            for (int h = 0; h < hits; ++h) {
+                const std::size_t at = random() % content.size();
+                // Digits and signs every other time: they survive the parser and reach the checks behind it.
+                content[at] = round % 2 == 0 ? static_cast<char>(random() % 256) : "0123456789-. \n\xff"[random() % 15];
+            }
+            loads(folder.write(name, content), content.size());
+        }
+    }
+}

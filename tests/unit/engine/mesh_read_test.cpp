@@ -1,0 +1,247 @@
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "mesh_samples.h"
+#include "skerry/error.h"
+
+using namespace skerry;
+using namespace skerry::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Two cells: 12 tetrahedra, 12 nodes.
+Mesh sample() {
+    return mesh::box({0.1, 0.2, 0.3}, {1, 1, 2});
+}
+
+Mesh one_tetrahedron() {
+    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+/// What reading this text is refused with.
+std::string refusal(const std::string& name, const std::string& content) {
+    const TestFolder folder;
+    const std::string path = folder.write(name, content);
+    try {
+        mesh::read(path);
+    } catch (const SceneError& error) {
+        CHECK_THAT(error.what(), Contains(path));
+        return error.what();
+    }
+    return "nothing refused";
+}
+
+bool is_surface_file(const std::string& name) {
+    return name.ends_with(".obj") || name.ends_with(".stl");
+}
+
+std::filesystem::path shared_meshes() {
+    if (const char* folder = std::getenv("SKERRY_SHARED_DATA")) return std::filesystem::path(folder) / "meshes";
+    return std::filesystem::path(SKERRY_SOURCE_DIR) / "../shared/data/meshes";
+}
+
+}  // namespace
+
+TEST_CASE("every format gives back the tetrahedra that were written, without the unused node", "[unit]") {
+    const Mesh mesh = sample();
+    const TestFolder folder;
+    for (const SampleFile& file : all_sample_files(mesh)) {
+        INFO(file.name);
+        const std::string path = folder.write(file.name, file.content);
+        if (is_surface_file(file.name) || file.name.ends_with(".node")) continue;
+        const Mesh found = mesh::read(path);
+        CHECK(found.tetrahedra == mesh.tetrahedra);
+        REQUIRE(found.nodes.size() == mesh.nodes.size());
+        for (std::size_t n = 0; n < mesh.nodes.size(); ++n) CHECK(found.nodes[n] == mesh.nodes[n]);
+    }
+}
+
+TEST_CASE("every format gives the boundary as a surface", "[unit]") {
+    const Mesh mesh = sample();
+    const SurfaceMesh boundary = mesh::boundary(mesh);
+    const TestFolder folder;
+    for (const SampleFile& file : all_sample_files(mesh)) {
+        INFO(file.name);
+        const std::string path = folder.write(file.name, file.content);
+        if (file.name.ends_with(".node")) continue;
+        const SurfaceMesh surface = mesh::read_surface(path);
+        CHECK(surface.nodes.size() == boundary.nodes.size());
+        REQUIRE(surface.triangles.size() == boundary.triangles.size());
+        for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+            for (std::size_t a = 0; a < 3; ++a) {  // STL numbers its nodes anew, and keeps floats only in binary
+                const Vec3& x = surface.nodes[static_cast<std::size_t>(surface.triangles[t][a])];
+                CHECK((x - boundary.nodes[static_cast<std::size_t>(boundary.triangles[t][a])]).norm() < 1e-7);
+            }
+    }
+}
+
+TEST_CASE("either name of a TetGen pair reads both", "[unit]") {
+    const TestFolder folder;
+    const std::string nodes = folder.write("m.node", node_file(sample(), 0)), elements = folder.write("m.ele", ele_file(sample(), 0));
+    CHECK(mesh::read(nodes).tetrahedra == sample().tetrahedra);
+    CHECK(mesh::read(elements).tetrahedra == sample().tetrahedra);
+}
+
+TEST_CASE("a file whose tetrahedra all count the other way round is turned over", "[unit]") {
+    Mesh mesh = sample();
+    for (auto& t : mesh.tetrahedra) std::swap(t[0], t[1]);
+    const TestFolder folder;
+    const MeshReport report = inspect(mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text))));
+    CHECK(report.inverted == 0);
+    CHECK(report.volume == Approx(0.006));
+}
+
+TEST_CASE("a file with some inverted tetrahedra is read as it is", "[unit]") {
+    Mesh mesh = sample();
+    std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);
+    const TestFolder folder;
+    const Mesh found = mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text)));
+    CHECK(found.tetrahedra == mesh.tetrahedra);
+    CHECK(inspect(found).inverted == 1);
+}
+
+TEST_CASE("a bad Gmsh file is refused with the place and the reason", "[unit]") {
+    const std::string good = gmsh2_file(one_tetrahedron(), Bytes::text), new_good = gmsh41_file(one_tetrahedron(), Bytes::text);
+    const std::string element = "2 4 2 1 1 1 2 3 4";
+    CHECK(refusal("a.msh", good) == "nothing refused");
+    CHECK(refusal("a.msh", new_good) == "nothing refused");
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3 5")),
+               Contains("$Elements, element 2 of 2, line 20: node: found 5, expected the number of a node"));
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3 3")), Contains("the same node twice"));
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3")), Contains("found 8 numbers, expected 9"));
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 11 2 1 1 1 2 3 4 1 2 3 4 1 2")), Contains("second or higher order"));
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 77 2 1 1 1 2 3 4")), Contains("type: found 77"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "1 1 0 0")), Contains("$Nodes, node 2 of 5") && Contains("1 a second time"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 nan 0 0")), Contains("position: found nan, expected a finite number"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 1e999 0 0")), Contains("not finite"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 1,0 0 0")), Contains("found \"1,0\", expected a number"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0\n", "")), Contains("node 5 of 5") && Contains("fewer rows"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n4")), Contains("expected $EndNodes"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n-5")), Contains("found -5"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n500000000")), Contains("count: found 500000000, expected at most"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2.2 0 8", "3 0 8")), Contains("version: found \"3\""));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2.2 0 8", "2.2 7 8")), Contains("file type: found 7"));
+    CHECK_THAT(refusal("a.msh", replaced(new_good, "2 5 1 999", "2 5 1 1000")), Contains("node numbers 1 to 1000, expected 1 to 999"));
+    CHECK_THAT(refusal("a.msh", replaced(new_good, "2 5 1 999", "2 6 1 999")), Contains("6 in the header, expected 5"));
+    CHECK_THAT(refusal("a.msh", "hello"), Contains("$MeshFormat or $NOD"));
+    CHECK_THAT(refusal("a.msh", ""), Contains("the end of the file"));
+}
+
+TEST_CASE("a binary Gmsh file with a wrong byte order mark or a cut end is refused", "[unit]") {
+    const std::string good = gmsh2_file(one_tetrahedron(), Bytes::native);
+    CHECK_THAT(refusal("a.msh", replaced(good, "\x01\0\0\0", "\x02")), Contains("byte order"));
+    CHECK_THAT(refusal("a.msh", good.substr(0, good.size() - 20)), Contains("the end of the file"));
+}
+
+TEST_CASE("a bad VTK file is refused with the place and the reason", "[unit]") {
+    const std::string good = vtk_file(one_tetrahedron(), false, false), new_good = vtk_file(one_tetrahedron(), true, false);
+    CHECK(refusal("a.vtk", good) == "nothing refused");
+    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "4 0 1 2 9")), Contains("CELLS, cell 2 of 2") && Contains("node: found 9"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "3 0 1 2")), Contains("size: found 9 in the header, expected 8"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "5 10", "5 24")), Contains("second or higher order"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "CELL_TYPES 2", "CELL_TYPES 1")), Contains("count: found 1, expected 2, the cells"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "POINTS 5", "POINTS 6")), Contains("point 6 of 6") && Contains("METADATA"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "double\n0 0 0", "double\n0 x 0")), Contains("found \"x\""));
+    CHECK_THAT(refusal("a.vtk", replaced(new_good, "0 3 7", "0 8 7")), Contains("offset: found 8"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "ASCII", "ascii art")), Contains("expected ASCII or BINARY"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "UNSTRUCTURED_GRID", "STRUCTURED_POINTS")), Contains("UNSTRUCTURED_GRID or POLYDATA"));
+}
+
+TEST_CASE("a bad TetGen file is refused with the place and the reason", "[unit]") {
+    const auto refused = [](const std::string& nodes, const std::string& elements) {
+        const TestFolder folder;
+        folder.write("a.node", nodes);
+        try {
+            mesh::read(folder.write("a.ele", elements));
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing refused");
+    };
+    const Mesh mesh = one_tetrahedron();
+    const std::string nodes = node_file(mesh, 1), elements = ele_file(mesh, 1);
+    CHECK(refused(nodes, elements) == "nothing refused");
+    CHECK_THAT(refused(nodes, ele_file(mesh, 0)), Contains("a.ele: tetrahedra, tetrahedron 1 of 1, line 2: node: found 0"));
+    CHECK_THAT(refused(nodes, replaced(elements, "1 4 1", "1 10 1")), Contains("second order"));
+    CHECK_THAT(refused(nodes, replaced(elements, "1 4 1", "2 4 1")), Contains("end of the file"));
+    CHECK_THAT(refused(nodes, elements + "2 1 2 3 4 7\n"), Contains("more tetrahedra than the header announces"));
+    CHECK_THAT(refused(replaced(nodes, "2 1 0 0", "1 1 0 0"), elements), Contains("1 a second time"));
+    const TestFolder folder;
+    CHECK_THROWS_WITH(mesh::read(folder.write("lonely.node", nodes)), Contains("lonely.ele: found no such file"));
+}
+
+TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are refused", "[unit]") {
+    const TestFolder folder;
+    const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    CHECK(mesh::read_surface(folder.write("a.obj", square + "f 1 2 3 4\n")).triangles ==
+          std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}});
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.obj", square + "f 1 2 5\n")), Contains("line 5: node: found 5, expected 1 to 4"));
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("c.obj", square + "f 1 2 0\n")), Contains("node: found 0"));
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("d.obj", square)), Contains("no triangles"));
+    CHECK_THROWS_WITH(mesh::read(folder.write("e.obj", square)), Contains("expected .msh, .vtk, .node or .ele"));
+}
+
+TEST_CASE("equal corners of an STL are one node, and triangles without three are dropped", "[unit]") {
+    const std::string file =
+        "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+        "facet normal 0 0 1\nouter loop\nvertex 1 0 -0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+    const TestFolder folder;
+    const SurfaceMesh surface = mesh::read_surface(folder.write("a.stl", file));
+    CHECK(surface.nodes.size() == 3);
+    CHECK(surface.triangles.size() == 1);
+}
+
+TEST_CASE("a file that is not there, or is a folder, is refused", "[unit]") {
+    CHECK_THROWS_WITH(mesh::read("/nowhere/at/all.msh"), Contains("/nowhere/at/all.msh: found no such file"));
+    const TestFolder folder;
+    const std::string inner = folder.write("x", "") + ".msh";
+    std::filesystem::create_directory(inner);
+    CHECK_THROWS_WITH(mesh::read(inner), Contains("not a regular file"));
+}
+
+TEST_CASE("meshes of other programs load, and malformed ones are refused for what is wrong with them", "[unit]") {
+    const std::filesystem::path folder = shared_meshes();
+    if (!std::filesystem::exists(folder)) return;  // needs no such folder
+    struct Known {
+        const char* name;
+        std::size_t nodes, tetrahedra;
+    };
+    for (const Known& known : {Known{"cube_41_ascii.msh", 14, 24},
+                               {"cube_41_binary.msh", 14, 24},
+                               {"liver.msh", 181, 596},
+                               {"msh4_cube.msh", 14, 24},
+                               {"shark_22_ascii.msh", 425, 1070},
+                               {"shark_22_binary.msh", 429, 1073},
+                               {"torus_low_res.msh", 264, 862},
+                               {"truthcylinder1.msh", 642, 2524},
+                               {"teddy.vtk", 410, 1207},
+                               {"torus.vtk", 115, 286},
+                               {"armadillo_4k.ele", 1180, 3717}}) {
+        INFO(known.name);
+        const MeshReport report = inspect(mesh::read((folder / known.name).string()));
+        CHECK(report.nodes == known.nodes);
+        CHECK(report.tetrahedra == known.tetrahedra);
+        CHECK(report.inverted + report.flat == 0);
+    }
+    CHECK(inspect(mesh::read((folder / "six_tetra_bad.msh").string())).inverted == 1);
+    const auto refused = [&](const char* name) {
+        try {
+            mesh::read((folder / "malformed" / (std::string("malformed_cube_") + name + ".msh")).string());
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing refused");
+    };
+    CHECK_THAT(refused("22_ascii_missing_element"), Contains("element 24 of 24") && Contains("fewer rows"));
+    CHECK_THAT(refused("41_ascii_mismatch_between_max_nodes_and_nodes_in_block"), Contains("node numbers 1 to 100, expected 1 to 14"));
+    CHECK_THAT(refused("41_ascii_missing_element_header"), Contains("$Elements, line 41: header"));
+    CHECK_THAT(refused("41_ascii_missing_node"), Contains("position of node 14 of 14") && Contains("$EndNodes"));
+}

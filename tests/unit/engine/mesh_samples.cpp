@@ -1,0 +1,259 @@
+#include "mesh_samples.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <unistd.h>
+
+namespace skerry::test {
+namespace {
+
+template <class T>
+void put(std::string& file, T value, bool swap) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    if (swap) std::reverse(bytes, bytes + sizeof(T));
+    file.append(bytes, sizeof(T));
+}
+
+std::string text(const Vec3& x) {
+    std::ostringstream out;
+    out.precision(17);
+    out << x[0] << ' ' << x[1] << ' ' << x[2];
+    return out.str();
+}
+
+template <std::size_t N>
+std::string text(const std::array<Index, N>& nodes, int first_number) {
+    std::string line;
+    for (const Index n : nodes) line += ' ' + std::to_string(n + first_number);
+    return line;
+}
+
+}  // namespace
+
+std::string gmsh1_file(const Mesh& mesh) {
+    std::ostringstream out;
+    out << "$NOD\n" << mesh.nodes.size() + 1 << '\n';
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) out << n + 1 << ' ' << text(mesh.nodes[n]) << '\n';
+    out << "999 9 9 9\n$ENDNOD\n$ELM\n" << mesh.tetrahedra.size() + 2 << '\n';
+    out << "1 15 1 1 1 1\n2 2 1 1 3 1 2 3\n";
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) out << e + 3 << " 4 1 1 4" << text(mesh.tetrahedra[e], 1) << '\n';
+    out << "$ENDELM\n";
+    return out.str();
+}
+
+std::string gmsh2_file(const Mesh& mesh, Bytes bytes) {
+    const bool binary = bytes != Bytes::text, swap = bytes == Bytes::foreign;
+    std::string file = binary ? "$MeshFormat\n2.2 1 8\n" : "$MeshFormat\n2.2 0 8\n";
+    if (binary) put<std::int32_t>(file, 1, swap);
+    if (binary) file += "\n";
+    file +=
+        "$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body $1\"\n$EndPhysicalNames\n$Nodes\n" + std::to_string(mesh.nodes.size() + 1) + "\n";
+    for (std::size_t n = 0; n <= mesh.nodes.size(); ++n) {
+        const int number = n < mesh.nodes.size() ? static_cast<int>(n) + 1 : 999;
+        const Vec3 x = n < mesh.nodes.size() ? mesh.nodes[n] : Vec3(9, 9, 9);
+        if (binary) {
+            put<std::int32_t>(file, number, swap);
+            for (const Real value : x) put<double>(file, value, swap);
+        } else {
+            file += std::to_string(number) + ' ' + text(x) + '\n';
+        }
+    }
+    file += "\n$EndNodes\n$Elements\n" + std::to_string(mesh.tetrahedra.size() + 1) + "\n";
+    if (binary) {
+        for (const int value : {2, 1, 2, 1, 1, 1, 1, 2, 3}) put<std::int32_t>(file, value, swap);
+        for (const int value : {4, static_cast<int>(mesh.tetrahedra.size()), 2}) put<std::int32_t>(file, value, swap);
+    } else {
+        file += "1 2 2 1 1 1 2 3\n";
+    }
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+        if (binary) {
+            for (const int value : {static_cast<int>(e) + 2, 1, 1}) put<std::int32_t>(file, value, swap);
+            for (const Index n : mesh.tetrahedra[e]) put<std::int32_t>(file, n + 1, swap);
+        } else {
+            file += std::to_string(e + 2) + " 4 2 1 1" + text(mesh.tetrahedra[e], 1) + '\n';
+        }
+    }
+    return file + (binary ? "\n" : "") + "$EndElements\n";
+}
+
+std::string gmsh41_file(const Mesh& mesh, Bytes bytes) {
+    const bool binary = bytes != Bytes::text, swap = bytes == Bytes::foreign;
+    std::string file = binary ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4.1 0 8\n";
+    const auto ints = [&](std::initializer_list<std::int32_t> values) {
+        for (const std::int32_t value : values) binary ? put(file, value, swap) : void(file += std::to_string(value) + ' ');
+    };
+    const auto sizes = [&](std::initializer_list<std::uint64_t> values) {
+        for (const std::uint64_t value : values) binary ? put(file, value, swap) : void(file += std::to_string(value) + ' ');
+    };
+    const auto end_line = [&] { binary ? void() : void(file += '\n'); };
+    if (binary) put<std::int32_t>(file, 1, swap);
+    file += binary ? "\n$EndMeshFormat\n$Nodes\n" : "$EndMeshFormat\n$Nodes\n";
+    const std::uint64_t nodes = mesh.nodes.size(), tetrahedra = mesh.tetrahedra.size();
+    sizes({2, nodes + 1, 1, 999});
+    end_line();
+    ints({3, 1, 0}), sizes({nodes}), end_line();
+    for (std::uint64_t n = 0; n < nodes; ++n) sizes({n + 1}), end_line();
+    for (const Vec3& x : mesh.nodes) {
+        if (binary)
+            for (const Real value : x) put<double>(file, value, swap);
+        else
+            file += text(x) + '\n';
+    }
+    ints({1, 2, 1}), sizes({1}), end_line();  // parametric: one more number
+    sizes({999}), end_line();
+    if (binary)
+        for (const double value : {9.0, 9.0, 9.0, 0.5}) put(file, value, swap);
+    else
+        file += "9 9 9 0.5\n";
+    file += binary ? "\n$EndNodes\n$Elements\n" : "$EndNodes\n$Elements\n";
+    sizes({2, tetrahedra + 1, 1, tetrahedra + 1}), end_line();
+    ints({2, 1, 2}), sizes({1}), end_line(), sizes({1, 1, 2, 3}), end_line();
+    ints({3, 1, 4}), sizes({tetrahedra}), end_line();
+    for (std::uint64_t e = 0; e < tetrahedra; ++e) {
+        sizes({e + 2});
+        for (const Index n : mesh.tetrahedra[e]) sizes({static_cast<std::uint64_t>(n) + 1});
+        end_line();
+    }
+    return file + (binary ? "\n" : "") + "$EndElements\n";
+}
+
+std::string vtk_file(const Mesh& mesh, bool offsets, bool binary) {
+    constexpr bool swap = std::endian::native == std::endian::little;
+    const std::size_t cells = mesh.tetrahedra.size() + 1;  // and a triangle
+    std::string file = std::string("# vtk DataFile Version ") + (offsets ? "5.1" : "3.0") + "\na title\n" + (binary ? "BINARY" : "ASCII") +
+                       "\nDATASET UNSTRUCTURED_GRID\n";
+    const auto reals = [&](const Vec3& x) {
+        if (!binary)
+            file += text(x) + '\n';
+        else
+            for (const Real value : x) put<double>(file, value, swap);
+    };
+    const auto integer = [&](std::int64_t value, bool wide) {
+        if (!binary)
+            file += std::to_string(value) + ' ';
+        else if (wide)
+            put<std::int64_t>(file, value, swap);
+        else
+            put<std::int32_t>(file, static_cast<std::int32_t>(value), swap);
+    };
+    file += "FIELD FieldData 1\nTIME 1 1 double\n";
+    binary ? put<double>(file, 0.5, swap) : void(file += "0.5");
+    file += "\nPOINTS " + std::to_string(mesh.nodes.size() + 1) + " double\n";
+    for (const Vec3& x : mesh.nodes) reals(x);
+    reals({9, 9, 9});
+    file += "\nMETADATA\nINFORMATION 0\n\n";
+    if (offsets) {
+        file += "CELLS " + std::to_string(cells + 1) + ' ' + std::to_string(4 * cells - 1) + "\nOFFSETS vtktypeint64\n";
+        integer(0, true);
+        for (std::size_t c = 0; c < cells; ++c) integer(static_cast<std::int64_t>(4 * c + 3), true);
+        file += "\nCONNECTIVITY vtktypeint64\n";
+    } else {
+        file += "CELLS " + std::to_string(cells) + ' ' + std::to_string(5 * cells - 1) + "\n";
+        integer(3, false);
+    }
+    for (const int n : {0, 1, 2}) integer(n, offsets);
+    for (const std::array<Index, 4>& t : mesh.tetrahedra) {
+        if (!offsets) integer(4, false);
+        for (const Index n : t) integer(n, offsets);
+    }
+    file += "\nCELL_TYPES " + std::to_string(cells) + "\n";
+    integer(5, false);
+    for (std::size_t c = 1; c < cells; ++c) integer(10, false);
+    return file + "\nPOINT_DATA 1\nSCALARS nothing float 1\n";
+}
+
+std::string node_file(const Mesh& mesh, int first_number) {
+    std::string file = "# nodes\n" + std::to_string(mesh.nodes.size() + 1) + " 3 1 1\n";
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        file += "  " + std::to_string(static_cast<int>(n) + first_number) + ' ' + text(mesh.nodes[n]) + " 0.5 1\n";
+    return file + "999 9 9 9 0.5 0  # unused\n# by hand\n";
+}
+
+std::string ele_file(const Mesh& mesh, int first_number) {
+    std::string file = std::to_string(mesh.tetrahedra.size()) + " 4 1\n";
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
+        file += std::to_string(static_cast<int>(e) + first_number) + text(mesh.tetrahedra[e], first_number) + " 7\n\n";
+    return file;
+}
+
+std::string obj_file(const SurfaceMesh& surface) {
+    std::string file = "# a surface\no body\n";
+    for (const Vec3& x : surface.nodes) file += "v " + text(x) + "\n";
+    file += "vn 0 0 1\n";
+    for (const std::array<Index, 3>& t : surface.triangles)
+        file += "f " + std::to_string(t[0] + 1) + "//1 " + std::to_string(t[1] + 1) + "/1/1 " +
+                std::to_string(t[2] - static_cast<int>(surface.nodes.size())) + "\n";
+    return file;
+}
+
+std::string stl_file(const SurfaceMesh& surface, bool binary) {
+    constexpr bool swap = std::endian::native == std::endian::big;
+    std::string file = binary ? "solid in name only" : "solid body\n";
+    if (binary) {
+        file.resize(80, ' ');
+        put<std::uint32_t>(file, static_cast<std::uint32_t>(surface.triangles.size()), swap);
+    }
+    for (const std::array<Index, 3>& t : surface.triangles) {
+        if (binary)
+            for (int a = 0; a < 3; ++a) put<float>(file, 0, swap);
+        else
+            file += "facet normal 0 0 0\nouter loop\n";
+        for (const Index n : t) {
+            const Vec3& x = surface.nodes[static_cast<std::size_t>(n)];
+            if (binary)
+                for (const Real value : x) put<float>(file, static_cast<float>(value), swap);
+            else
+                file += "vertex " + text(x) + "\n";
+        }
+        binary ? put<std::uint16_t>(file, 0, swap) : void(file += "endloop\nendfacet\n");
+    }
+    return binary ? file : file + "endsolid body\n";
+}
+
+std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
+    const SurfaceMesh surface = mesh::boundary(mesh);
+    return {{"1.msh", gmsh1_file(mesh)},
+            {"22.msh", gmsh2_file(mesh, Bytes::text)},
+            {"22b.msh", gmsh2_file(mesh, Bytes::native)},
+            {"22f.msh", gmsh2_file(mesh, Bytes::foreign)},
+            {"41.msh", gmsh41_file(mesh, Bytes::text)},
+            {"41b.msh", gmsh41_file(mesh, Bytes::native)},
+            {"41f.msh", gmsh41_file(mesh, Bytes::foreign)},
+            {"old.vtk", vtk_file(mesh, false, false)},
+            {"oldb.vtk", vtk_file(mesh, false, true)},
+            {"new.vtk", vtk_file(mesh, true, false)},
+            {"newb.vtk", vtk_file(mesh, true, true)},
+            {"zero.node", node_file(mesh, 0)},
+            {"zero.ele", ele_file(mesh, 0)},
+            {"one.node", node_file(mesh, 1)},
+            {"one.ele", ele_file(mesh, 1)},
+            {"a.obj", obj_file(surface)},
+            {"a.stl", stl_file(surface, false)},
+            {"b.stl", stl_file(surface, true)}};
+}
+
+TestFolder::TestFolder() {
+    static int count = 0;
+    path_ = (std::filesystem::temp_directory_path() / ("skerry_mesh_" + std::to_string(getpid()) + "_" + std::to_string(count++))).string();
+    std::filesystem::create_directories(path_);
+}
+
+TestFolder::~TestFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+std::string TestFolder::write(const std::string& name, const std::string& content) const {
+    const std::string file = path_ + "/" + name;
+    std::ofstream(file, std::ios::binary) << content;
+    return file;
+}
+
+}  // namespace skerry::test

@@ -1,0 +1,80 @@
+// Writes the made-up run as files, and beside them what they must say, for tests that read them with other programs:
+//   output_sample_files FOLDER
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "engine/output/vtk/vtk_series.h"
+#include "output_sample.h"
+
+namespace {
+
+using namespace skerry;
+using Json = nlohmann::json;
+
+Json json_of(const Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+Json expected(const Frame& frame) {
+    Json json = {{"time", frame.time},        {"points", 0},
+                 {"position", Json::array()}, {"velocity", Json::array()},
+                 {"cells", Json::array()},    {"von_mises", Json::array()},
+                 {"body", Json::array()}};
+    Index first = 0;
+    for (const BodyFrame& body : frame.bodies) {
+        for (const Vec3& p : body.position) json["position"].push_back(json_of(p));
+        for (const Vec3& v : body.velocity) json["velocity"].push_back(json_of(v));
+        for (const auto& [a, b, c, d] : body.tetrahedra) json["cells"].push_back({first + a, first + b, first + c, first + d});
+        for (const Real stress : body.von_mises) {
+            json["von_mises"].push_back(stress);
+            json["body"].push_back(body.handle.slot);
+        }
+        first += static_cast<Index>(body.position.size());
+    }
+    Json& contacts = json["contacts"] = Json::array();
+    for (const Contact& c : frame.contacts)
+        contacts.push_back({{"point", json_of(c.point)},
+                            {"normal", json_of(c.normal)},
+                            {"impulse", json_of(c.impulse)},
+                            {"force", json_of(c.impulse * 1200)},
+                            {"slip", json_of(c.slip)},
+                            {"gap", c.gap},
+                            {"state", static_cast<int>(c.motion)},
+                            {"region", c.region},
+                            {"first_body", c.first.slot}});
+    return json;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) return 2;
+    const std::filesystem::path folder = argv[1];
+    std::filesystem::remove_all(folder);
+
+    // Few nodes for what is compared number by number. The first ball is number 0 although it goes; the second comes late.
+    OutputSample small(3, 1, 45);
+    VtkSeries series(folder / "vtk", "drop & bounce");
+    Json frames = Json::array();
+    std::map<std::uint32_t, int> number;
+    for (int i = 0; i < small.frame_count(); ++i) {
+        const Frame& frame = small.frame(i);
+        series.write_frame(frame);
+        for (const BodyFrame& body : frame.bodies) number.try_emplace(body.handle.slot, static_cast<int>(number.size()));
+        Json json = expected(frame);
+        for (Json& slot : json["body"]) slot = number.at(slot.get<std::uint32_t>());
+        for (Json& contact : json["contacts"]) contact["first_body"] = number.at(contact["first_body"].get<std::uint32_t>());
+        frames.push_back(json);
+    }
+    series.write_index();
+    std::ofstream(folder / "vtk" / "expected.json") << Json{{"name", "drop & bounce"}, {"frames", frames}};
+
+    // The size that a page is allowed 10 MB for: 120 frames of 5,136 vertices.
+    OutputSample large(8, 3, 120);
+    PageData data;
+    for (int i = 0; i < large.frame_count(); ++i) data.add(large.frame(i));
+    write_page(folder / "page.html", data, large.summary());
+    write_page(folder / "empty.html", PageData{}, {.title = "Nothing", .report = {}, .state_hash = 0});
+}

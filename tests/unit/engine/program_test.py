@@ -1,0 +1,224 @@
+"""The program from outside: exit codes, messages, files that are complete or absent, JSON that parses.
+
+Called as: program_test.py PROGRAM SOURCE_FOLDER
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
+
+SCENE = {
+    "name": "drop",
+    "seconds": 0.2,
+    "materials": {"rubber": {"E": 2e4, "nu": 0.3, "rho": 500, "mu": 0.5}},
+    "bodies": [{"name": "block", "mesh": {"box": {"size": [0.2, 0.2, 0.2], "cells": [2, 2, 2]}}, "material": "rubber", "position": [0, 0, 0.11]}],
+    "colliders": [{"name": "floor", "shape": {"plane": {}}}],
+    "probes": [{"name": "base", "body": "block", "box": {"lower": [-1, -1, -1], "upper": [1, 1, -0.09]}}],
+    "probe_step": 0.005,
+}
+
+STATS_KEYS = {
+    "": "schema scene seconds_simulated steps seconds_wall threads bodies nodes elements stable_dt contacts regions stages solver energy momentum "
+        "max_penetration status state_hash",
+    "contacts": "mean max",
+    "regions": "mean max largest_contacts",
+    "solver": "method iterations_mean worst_error unconverged",
+    "energy": "kinetic elastic potential dissipated",
+}
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        self.scene = self.write("drop.json", SCENE)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+        return path
+
+    def skerry(self, *arguments, code=0):
+        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def assert_refused(self, *arguments, said):
+        """Exit code 2, one line on standard error, nothing on standard output, no file that was not there."""
+        before = sorted(self.folder.rglob("*"))
+        done = self.skerry(*arguments, code=2)
+        for part in said:
+            self.assertIn(part, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+        return done
+
+    def test_a_run_writes_statistics_with_every_promised_key(self):
+        stats = self.folder / "deep" / "stats.json"
+        done = self.skerry("run", self.scene, "--threads", 1, "--stats", stats)
+        found = json.loads(stats.read_text())
+        for group, keys in STATS_KEYS.items():
+            for key in keys.split():
+                self.assertIn(key, found[group] if group else found)
+        for stage in found["stages"].values():
+            self.assertEqual(set(stage), {"seconds", "runs", "skipped"})
+        self.assertEqual(found["status"], "ok")
+        self.assertEqual(found["threads"], 1)
+        self.assertAlmostEqual(found["seconds_simulated"], 0.2, places=12)
+        self.assertEqual(found["elements"] % 5 * (found["elements"] % 6), 0)  # cells of five or six tetrahedra
+        self.assertGreater(found["contacts"]["max"], 0)
+        self.assertEqual(done.stderr, "")
+        for word in ("real time", "steps", "contacts", "penetration", "state hash", found["state_hash"]):
+            self.assertIn(word, done.stdout)
+        self.assertEqual([p.name for p in stats.parent.iterdir()], ["stats.json"])  # no temporary file is left
+
+    def test_probes_add_up_to_the_time_of_the_run(self):
+        stats = self.folder / "stats.json"
+        self.skerry("run", self.scene, "--stats", stats, "--quiet")
+        base = json.loads(stats.read_text())["probes"]["base"]
+        self.assertAlmostEqual(base["stick_time"] + base["slide_time"] + base["open_time"], 0.2, places=9)
+        self.assertGreater(base["stick_time"] + base["slide_time"], 0)
+        lengths = {len(series) for series in base["series"].values()}
+        self.assertEqual(len(lengths), 1)
+        self.assertGreaterEqual(lengths.pop(), 36)  # 0.2 s of 5 ms, rounded to whole samples in a frame
+
+    def test_quiet_says_nothing(self):
+        done = self.skerry("run", self.scene, "--quiet")
+        self.assertEqual(done.stdout + done.stderr, "")
+
+    def test_the_same_run_gives_the_same_hash_and_the_flags_count(self):
+        hashes = []
+        for flags in (["--threads", 1], ["--threads", 2], ["--backend", "serial"]):
+            stats = self.folder / "stats.json"
+            self.skerry("run", self.scene, "--quiet", "--stats", stats, *flags)
+            hashes.append(json.loads(stats.read_text())["state_hash"])
+        self.assertEqual(len(set(hashes)), 1)
+        stats = self.folder / "other.json"
+        self.skerry("run", self.scene, "--quiet", "--stats", stats, "--seconds", 0.1, "--contact-regions", "global", "--method", "pgs", "--tolerance", 1e-6,
+                    "--friction", "pyramid", "--step", 1e-4, "--frames-per-second", 20)
+        found = json.loads(stats.read_text())
+        self.assertEqual(found["solver"]["contact_regions"], "global")
+        self.assertEqual(found["solver"]["friction"], "pyramid")
+        self.assertEqual(found["solver"]["tolerance"], 1e-6)
+        self.assertEqual(found["frames"], 3)
+        self.assertEqual(found["steps"], 1000)
+        self.assertNotEqual(found["state_hash"], hashes[0])
+
+    def test_frames_a_page_and_a_trace_are_written(self):
+        out, page, trace = self.folder / "out", self.folder / "page.html", self.folder / "trace.json"
+        self.skerry("run", self.scene, "--seconds", 0.05, "--out", out, "--page", page, "--trace", trace, "--quiet")
+        self.assertTrue((out / "drop.pvd").exists())
+        self.assertIn("<html", page.read_text()[:2000].lower())
+        self.assertTrue(json.loads(trace.read_text()))
+
+    def test_bad_scenes_are_refused_without_output(self):
+        outputs = ["--stats", self.folder / "s.json", "--out", self.folder / "out", "--page", self.folder / "p.html"]
+        bad = self.write("bad.json", {**SCENE, "secnods": 1})
+        self.assert_refused("run", bad, *outputs, said=["bad.json", "secnods", '"seconds"'])
+        self.assert_refused("run", self.write("syntax.json", '{"name": "x",\n}'), *outputs, said=["line 2, column"])
+        self.assert_refused("run", self.folder / "none.json", *outputs, said=["none.json", "no such file"])
+        self.assert_refused("inspect", bad, said=["secnods"])
+
+    def test_output_that_cannot_be_written_is_refused_before_the_run(self):
+        blocked = self.write("file", "") / "inside"
+        endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
+        for flag in ("--stats", "--out", "--page", "--trace"):
+            self.assert_refused("run", endless, flag, blocked, said=["file", "no folder"])
+        self.assert_refused("run", endless, "--stats", self.folder, said=["a folder"])
+        # One bad output among good ones: the good ones do not appear either.
+        self.assert_refused("run", endless, "--out", self.folder / "out", "--stats", blocked, said=["no folder"])
+
+    def test_bad_command_lines_are_refused(self):
+        for arguments in (["run"], ["fly"], [], ["run", self.scene, "--seconds", "-1"], ["run", self.scene, "--seconds", "nan"],
+                          ["run", self.scene, "--seconds", "inf"], ["run", self.scene, "--threads", "x"], ["run", self.scene, "--backend", "cuda"],
+                          ["run", self.scene, "--step", "0"], ["run", self.scene, "--nonsense"], ["solve", "x", "--max-iterations", "0"]):
+            done = self.skerry(*arguments, code=2)
+            self.assertNotEqual(done.stderr, "")
+
+    def test_a_mesh_that_is_not_one_is_refused(self):
+        self.assert_refused("inspect", self.write("broken.msh", "nonsense"), said=["broken.msh"])
+        self.assert_refused("inspect", self.folder / "none.msh", said=["none.msh"])
+
+    def test_inspect_says_what_is_there(self):
+        mesh = json.loads(self.skerry("inspect", ROOT / "scenes/meshes/torus.msh", "--json").stdout)
+        self.assertEqual(mesh["tetrahedra"], 972)
+        self.assertEqual(mesh["components"], 1)
+        self.assertEqual(mesh["problems"], [])
+        self.assertIn("972 tetrahedra", self.skerry("inspect", ROOT / "scenes/meshes/torus.msh").stdout)
+        scene = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
+        self.assertEqual(scene["bodies"], 1)
+        self.assertGreater(scene["stable_dt"], 0)
+        self.assertAlmostEqual(scene["body_kinds"][0]["stable_dt"], scene["stable_dt"], delta=1e-9 * scene["stable_dt"])
+        self.assertIn("stable step", self.skerry("inspect", self.scene).stdout)
+
+    def test_inspect_finds_an_overlap(self):
+        sunk = json.loads(json.dumps(SCENE))
+        sunk["bodies"][0]["position"][2] = 0.09
+        problems = json.loads(self.skerry("inspect", self.write("sunk.json", sunk), "--json").stdout)["problems"]
+        self.assertTrue(any("overlap by 10 mm" in problem for problem in problems), problems)
+
+    def test_a_step_that_fails_ends_with_one_and_keeps_the_figures(self):
+        fast = json.loads(json.dumps(SCENE))
+        fast["bodies"][0]["velocity"] = [0, 0, -1e5]
+        stats = self.folder / "stats.json"
+        done = self.skerry("run", self.write("fast.json", fast), "--stats", stats, code=1)
+        self.assertIn("block", done.stderr)
+        self.assertIn("try", done.stderr)
+        self.assertNotEqual(json.loads(stats.read_text())["status"], "ok")
+
+    def test_an_interrupt_writes_what_there_is(self):
+        stats = self.folder / "stats.json"
+        with subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "1e6", "--stats", stats], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(1.5)
+            process.send_signal(signal.SIGINT)
+            _, stderr = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130, stderr)
+        self.assertIn("stopped by a signal", stderr)
+        self.assertIn("stopped by a signal", json.loads(stats.read_text())["status"])
+
+    def test_a_drop_file_runs(self):
+        rows = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+        drop = {"mesh": str(ROOT / "scenes/meshes/cross.vtk"), "material": {"young_modulus": 2e4, "poisson_ratio": 0.3, "density": 1000, "friction": 0.5},
+                "gravity": [0, -9.81, 0], "bucket": {"floor_y": 0, "wall_x": 0.3, "wall_z": 0.3}, "seconds": 0.05,
+                "bodies": [{"position": [0, 0.2, 0], "rotation_rows": rows}, {"position": [0, 0.5, 0], "rotation_rows": rows}]}
+        stats = self.folder / "stats.json"
+        self.skerry("run", self.write("drop_2.json", drop), "--quiet", "--stats", stats)
+        found = json.loads(stats.read_text())
+        self.assertEqual((found["bodies"], found["colliders"], found["scene"]), (2, 5, "drop_2"))
+
+    def test_help_teaches_and_the_version_is_said(self):
+        self.assertIn("Examples", self.skerry("--help").stdout)
+        self.assertIn("--contact-regions", self.skerry("run", "--help").stdout)
+        self.assertRegex(self.skerry("--version").stdout, r"^skerry \d+\.\d+\.\d+")
+
+    def test_the_schema_is_the_published_one(self):
+        self.assertEqual(self.skerry("schema").stdout, (ROOT / "docs/scene.schema.json").read_text())
+
+    def test_solve_refuses_what_is_not_a_problem(self):
+        self.assert_refused("solve", self.write("not.hdf5", "text"), said=["not.hdf5"])
+        self.assert_refused("solve", self.folder / "none.hdf5", said=["none.hdf5"])
+
+    @unittest.skipUnless(os.environ.get("SKERRY_PROBLEMS"), "SKERRY_PROBLEMS names no folder of FCLIB problems")
+    def test_solve_writes_reactions_and_json(self):
+        problem = sorted(pathlib.Path(os.environ["SKERRY_PROBLEMS"]).glob("*1c*.hdf5"))[0]
+        reactions = self.folder / "reactions.txt"
+        found = json.loads(self.skerry("solve", problem, "--json", "--reactions", reactions).stdout)
+        for key in "problem contacts regions method tolerance iterations seconds error converged".split():
+            self.assertIn(key, found)
+        lines = reactions.read_text().splitlines()
+        self.assertEqual(len(lines), found["contacts"])
+        self.assertTrue(all(len(line.split()) == 3 for line in lines))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

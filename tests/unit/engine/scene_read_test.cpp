@@ -1,0 +1,256 @@
+// Reading scene files: what is understood, and for each kind of mistake a message that names the place.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "engine/scene/parse_json.h"
+#include "engine/scene/scene_file.h"
+#include "skerry/scene.h"
+#include "tests/unit/engine/scene_files.h"
+
+using namespace skerry;
+
+namespace {
+
+/// The message that reading a scene ends with; empty when it is understood.
+std::string complaint_about(const std::string& text) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("scene.json", text);
+    try {
+        read_scene_file(file);
+    } catch (const SceneError& error) {
+        std::string message = error.what();
+        REQUIRE(message.rfind(file.string(), 0) == 0);  // names the file first
+        return message.substr(file.string().size());
+    }
+    return {};
+}
+
+struct Mistake {
+    std::string name, text;
+    std::vector<std::string> said;
+};
+
+void check_messages(const std::vector<Mistake>& mistakes) {
+    for (const Mistake& mistake : mistakes) {
+        INFO(mistake.name << ": " << mistake.text);
+        const std::string message = complaint_about(mistake.text);
+        INFO("message: " << message);
+        REQUIRE_FALSE(message.empty());
+        for (const std::string& part : mistake.said) CHECK_THAT(message, Catch::Contains(part));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("text that is not JSON is refused with its line and column", "[unit]") {
+    check_messages({
+        {"missing brace", "{\n  \"name\": \"a\",\n  \"seconds\": 2\n", {"line 4, column 1", "not valid JSON"}},
+        {"missing comma", "{\n  \"name\": \"a\"\n  \"seconds\": 2}", {"line 3, column", "not valid JSON"}},
+        {"trailing comma", "{\"name\": \"a\",}", {"line 1, column 14", "not valid JSON"}},
+        {"comment", "{\n// a comment\n}", {"line 2", "comments are not JSON"}},
+        {"NaN", "{\"seconds\": NaN}", {"line 1, column", "JSON has no NaN"}},
+        {"infinity", "{\"seconds\": 1e999}", {"seconds: found the number 1e999", "expected a finite number"}},
+        {"infinity in a list", R"({"bodies": [{}, {"position": [0, 1e999, 0]}]})", {"bodies[1].position[1]: found the number 1e999"}},
+        {"bad UTF-8", "{\"name\": \"\xff\"}", {"line 1", "not valid JSON"}},
+        {"two documents", "{} {}", {"line 1, column 4", "not valid JSON"}},
+        {"empty", "", {"found an empty file"}},
+        {"only spaces", " \n ", {"found an empty file"}},
+        {"a list", "[1, 2]", {"found the list [1,2]", "expected an object"}},
+    });
+}
+
+TEST_CASE("a key given twice is refused where it stands", "[unit]") {
+    check_messages({
+        {"top", R"({"name": "a", "name": "b"})", {"name\" twice", "every key once"}},
+        {"inside", R"({"bodies": [{"name": "a"}, {"mesh": {}, "mesh": {}}]})", {"bodies[1]", "the key \"mesh\" twice"}},
+        {"two names for one",
+         material_with(R"("E": 1, "young_modulus": 2)"),
+         {"materials.rubber", "\"young_modulus\"", "\"E\"", "they mean the same"}},
+    });
+}
+
+TEST_CASE("unknown keys are named with their place and the nearest known key", "[unit]") {
+    check_messages({
+        {"top", scene_with(R"("colider": [])"), {"colider: found an unknown key", "nearest known one is \"colliders\""}},
+        {"body",
+         body_with(R"("postion": [0, 0, 0])"),
+         {"body \"block\": bodies[0].postion: found an unknown key", "nearest known one is \"position\""}},
+        {"swapped letters", body_with(R"("masterial": "x")"), {"bodies[0].masterial", "nearest known one is \"material\""}},
+        {"material",
+         material_with(R"("youngs_modulus": 1e5)"),
+         {"materials.rubber.youngs_modulus", "nearest known one is \"young_modulus\""}},
+        {"settings", scene_with(R"("settings": {"stepsize": 1})"), {"settings.stepsize", "nearest known one is \"step_size\""}},
+        {"mesh", R"({"bodies": [{"mesh": {"bal": {}}, "material": "m"}]})", {"bodies[0].mesh.bal", "nearest known one is \"ball\""}},
+        {"deep",
+         scene_with(R"("colliders": [{"shape": {"sphere": {"radius": 1, "heigth": 2}}}])"),
+         {"colliders[0].shape.sphere.heigth", "one of \"radius\""}},
+    });
+}
+
+TEST_CASE("values of the wrong kind or out of range are refused with unit and range", "[unit]") {
+    check_messages({
+        {"text for a number", scene_with(R"("seconds": "2")"), {"seconds: found the text \"2\"", "expected a number above 0 [s]"}},
+        {"number for text", scene_with(R"("name": 3)"), {"name: found the number 3", "expected a text"}},
+        {"null", scene_with(R"("seconds": null)"), {"seconds: found null"}},
+        {"two numbers for a vector",
+         body_with(R"("position": [1, 2])"),
+         {"bodies[0].position: found the list [1,2]", "expected a list of 3 numbers"}},
+        {"text in a vector", body_with(R"("position": [1, 2, "x"])"), {"bodies[0].position[2]: found the text \"x\"", "a number [m]"}},
+        {"fraction for a count",
+         R"({"bodies": [{"mesh": {"ball": {"radius": 1, "resolution": 2.5}}, "material": "m"}]})",
+         {"bodies[0].mesh.ball.resolution", "2.5", "whole number"}},
+        {"true for a number", scene_with(R"("seconds": true)"), {"seconds: found true"}},
+        {"one for true", body_with(R"("self_contact": 1)"), {"bodies[0].self_contact", "expected true or false"}},
+        {"unknown choice",
+         scene_with(R"("settings": {"method": "pcg_psg"})"),
+         {"settings.method: found \"pcg_psg\"", "\"pgs\", \"pcg_pgs\"", "nearest known one is \"pcg_pgs\""}},
+        {"negative modulus",
+         material_with(R"("young_modulus": -1)"),
+         {"materials.rubber.young_modulus: found -1", "a number above 0 [Pa]"}},
+        {"zero density", material_with(R"("rho": 0)"), {"materials.rubber.rho: found 0", "above 0 [kg/m^3]"}},
+        {"incompressible", material_with(R"("nu": 0.5)"), {"materials.rubber.nu: found 0.5", "above -1 and below 0.5"}},
+        {"negative friction", material_with(R"("mu": -0.1)"), {"materials.rubber.mu: found -0.1", "of at least 0"}},
+        {"restitution above one",
+         material_with(R"("restitution": 1.5)"),
+         {"materials.rubber.restitution", "of at least 0 and of at most 1"}},
+        {"dynamic above static",
+         material_with(R"("static_friction": 0.3, "dynamic_friction": 0.5)"),
+         {"materials.rubber.dynamic_friction", "at most static_friction, 0.3"}},
+        {"only static", material_with(R"("static_friction": 0.3)"), {"only \"static_friction\"", "\"dynamic_friction\""}},
+        {"zero axis", body_with(R"("rotation": {"axis": [0, 0, 0], "degrees": 3})"), {"bodies[0].rotation.axis", "length 0"}},
+        {"two angles",
+         body_with(R"("rotation": {"axis": [0, 0, 1], "degrees": 3, "radians": 1})"),
+         {"bodies[0].rotation", "exactly one of"}},
+        {"skewed rotation",
+         body_with(R"("rotation": [[1, 0, 0], [0, 1, 0.001], [0, 0, 1]])"),
+         {"bodies[0].rotation", "not orthonormal", "to 1e-6"}},
+        {"reflection", body_with(R"("rotation": [[1, 0, 0], [0, 1, 0], [0, 0, -1]])"), {"bodies[0].rotation", "a reflection"}},
+        {"keys out of order",
+         scene_with(R"("colliders": [{"name": "lid", "shape": {"plane": {}}, "motion": {"keys": [{"time": 1}, {"time": 1}]}}])"),
+         {"collider \"lid\": colliders[0].motion.keys[1].time: found 1", "after"}},
+        {"velocity and keys",
+         scene_with(R"("colliders": [{"shape": {"plane": {}}, "motion": {"velocity": [1, 0, 0], "keys": []}}])"),
+         {"colliders[0].motion", "at most one of"}},
+        {"flat normal",
+         scene_with(R"("colliders": [{"shape": {"plane": {"normal": [0, 0, 0]}}}])"),
+         {"colliders[0].shape.plane.normal", "length 0"}},
+        {"turned box",
+         scene_with(R"("probes": [{"name": "p", "body": "ball", "box": {"lower": [1, 0, 0], "upper": [0, 1, 1]}}])"),
+         {"probe \"p\": probes[0].box", "lower <= upper"}},
+    });
+}
+
+TEST_CASE("what is missing, or there twice, is named", "[unit]") {
+    check_messages({
+        {"no mesh", R"({"bodies": [{"name": "b", "material": "m"}]})", {"body \"b\": bodies[0]: found no key \"mesh\""}},
+        {"no material", R"({"bodies": [{"mesh": {"ball": {"radius": 1, "resolution": 3}}}]})", {"bodies[0]: found no key \"material\""}},
+        {"no shape",
+         R"({"bodies": [{"mesh": {}, "material": "m"}]})",
+         {"bodies[0].mesh: found none of these keys", "exactly one of \"box\", \"ball\""}},
+        {"two shapes",
+         R"({"bodies": [{"mesh": {"ball": {"radius": 1, "resolution": 3}, "file": "x"}, "material": "m"}]})",
+         {"bodies[0].mesh: found the keys \"ball\", \"file\""}},
+        {"no radius",
+         R"({"bodies": [{"mesh": {"ball": {"resolution": 3}}, "material": "m"}]})",
+         {"bodies[0].mesh.ball: found no key \"radius\""}},
+        {"no body", R"({"materials": {}})", {"bodies: found no body"}},
+        {"no mesh file",
+         R"({"bodies": [{"mesh": {"file": "none.msh"}, "material": "m"}]})",
+         {"bodies[0].mesh.file: found no file", "none.msh"}},
+        {"a folder for a file", R"({"bodies": [{"mesh": {"file": "."}, "material": "m"}]})", {"bodies[0].mesh.file: found a folder"}},
+    });
+}
+
+TEST_CASE("a file that is not there, or a folder, is refused", "[unit]") {
+    const TemporaryFolder folder;
+    CHECK_THROWS_WITH(read_scene_file(folder.path() / "none.json"), Catch::Contains("none.json: found no such file"));
+    CHECK_THROWS_WITH(read_scene_file(folder.path()), Catch::Contains("found a folder"));
+}
+
+TEST_CASE("short names of parameters mean the same as long ones", "[unit]") {
+    const TemporaryFolder folder;
+    const SceneFile scene = read_scene_file(folder.write("a.json", material_with(R"("E": 2e4, "nu": 0.3, "rho": 700, "mu": 0.25)")));
+    const MaterialSettings& m = scene.materials.items.at(0).second;
+    CHECK(m.young_modulus == 2e4);
+    CHECK(m.poisson_ratio == 0.3);
+    CHECK(m.density == 700);
+    CHECK(m.friction == 0.25);
+    CHECK(scene.name == "a");  // by default that of the file
+}
+
+TEST_CASE("the three spellings of a rotation agree", "[unit]") {
+    const TemporaryFolder folder;
+    const auto rotation = [&](const std::string& text) {
+        return read_scene_file(folder.write("r.json", body_with("\"rotation\": " + text))).bodies[0].rotation.value;
+    };
+    const Vec3 quarter = std::numbers::pi / 2 * Vec3::UnitZ();
+    // The arithmetic of a handful of roundings.
+    CHECK((rotation(R"({"axis": [0, 0, 2], "degrees": 90})") - quarter).norm() < 1e-14);
+    CHECK((rotation(R"({"axis": [0, 0, 1], "radians": 1.5707963267948966})") - quarter).norm() < 1e-14);
+    CHECK((rotation("[[0, -1, 0], [1, 0, 0], [0, 0, 1]]") - quarter).norm() < 1e-14);
+    CHECK(rotation("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]").norm() == 0);
+    // Half a turn: the angle where logarithms of rotations are ill-conditioned.
+    CHECK(rotation("[[-1, 0, 0], [0, -1, 0], [0, 0, 1]]").norm() == Approx(std::numbers::pi));
+}
+
+TEST_CASE("included scenes come first and single values are replaced", "[unit]") {
+    const TemporaryFolder folder;
+    folder.write("base.json",
+                 scene_with(R"("seconds": 5, "settings": {"threads": 3, "tolerance": 0.5}, "colliders": [{"shape": {"plane": {}}}])"));
+    const SceneFile scene = read_scene_file(folder.write("top.json", R"({"include": "base.json", "seconds": 1, "settings": {"threads": 2},
+        "bodies": [{"name": "second", "mesh": {"ball": {"radius": 1, "resolution": 3}}, "material": "rubber"}]})"));
+    REQUIRE(scene.bodies.size() == 2);
+    CHECK(scene.bodies[0].name == "ball");
+    CHECK(scene.bodies[1].name == "second");
+    CHECK(scene.colliders.size() == 1);
+    CHECK(scene.seconds == 1);
+    CHECK(scene.settings.threads == 2);
+    CHECK(scene.settings.tolerance == 0.5);
+}
+
+TEST_CASE("mistakes of included scenes name the included file, circles are refused", "[unit]") {
+    const TemporaryFolder folder;
+    folder.write("base.json", R"({"bodys": []})");
+    CHECK_THROWS_WITH(read_scene_file(folder.write("top.json", R"({"include": ["base.json"]})")),
+                      Catch::Contains("base.json: bodys: found an unknown key"));
+    folder.write("a.json", R"({"include": "b.json"})");
+    folder.write("b.json", R"({"include": "a.json"})");
+    CHECK_THROWS_WITH(read_scene_file(folder.path() / "a.json"),
+                      Catch::Contains("b.json: include: found") && Catch::Contains("in a circle"));
+    folder.write("same.json", scene_with(""));
+    CHECK_THROWS_WITH(read_scene_file(folder.write("twice.json", R"({"include": "same.json", "materials": {"rubber": {}}})")),
+                      Catch::Contains("twice.json: materials.rubber: found the name \"rubber\" again"));
+}
+
+TEST_CASE("a drop file becomes copies of one mesh in a box of five planes", "[unit]") {
+    const TemporaryFolder folder;
+    folder.write("ball.msh", "");
+    const std::string start =
+        R"({"mesh": "ball.msh", "material": {"E": 5e5}, "gravity": [0, -9.81, 0], "seconds": 3, "bucket": {"floor_y": -1, "wall_x": 2, "wall_z": 3}, )";
+    const SceneFile scene = read_scene_file(folder.write("drop.json", start + R"("bodies": [
+        {"position": [1, 2, 3], "rotation_rows": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}, {"position": [4, 5, 6], "rotation_rows": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}]})"));
+    REQUIRE(scene.bodies.size() == 1);
+    REQUIRE(scene.bodies[0].placements.size() == 2);
+    CHECK(scene.bodies[0].placements[0].position == Vec3(1, 2, 3));
+    CHECK(scene.bodies[0].placements[0].rotation.value.z() == Approx(std::numbers::pi / 2));
+    CHECK(scene.seconds == 3);
+    CHECK(scene.settings.gravity == Vec3(0, -9.81, 0));
+    REQUIRE(scene.colliders.size() == 5);
+    CHECK(scene.colliders[0].shape.plane->point == Vec3(0, -1, 0));
+    for (const ColliderEntry& wall : scene.colliders)
+        CHECK(wall.shape.plane->normal.dot(Vec3(0, 0, 0) - wall.shape.plane->point) > 0);  // the origin is inside
+
+    const auto broken = folder.write("broken.json", start + R"("bodies": [{"position": [1, 2, 3], "rotation": []}]})");
+    CHECK_THROWS_WITH(read_scene_file(broken),
+                      Catch::Contains("bodies[0].rotation: found an unknown key") && Catch::Contains("rotation_rows"));
+}
+
+TEST_CASE("the published schema is the one that this reader has", "[unit][contract]") {
+    std::ifstream file(std::filesystem::path(SKERRY_SOURCE_DIR) / "docs/scene.schema.json");
+    std::ostringstream text;
+    text << file.rdbuf();
+    INFO("renew it with: skerry schema > docs/scene.schema.json");
+    CHECK(text.str() == scene_schema());
+}

@@ -1,0 +1,111 @@
+// Counts what operator new hands out: a graph that has run before must not ask for memory.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <new>
+#include <thread>
+
+#include "components/types.h"
+#include "jobs/reduce.h"
+#include "jobs/task_graph.h"
+#include "tests/unit/jobs/executors.h"
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+    ++allocations;
+    void* const memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return counted(size + (size == 0), alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return counted(size + (size == 0), static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
+
+using namespace skerry;
+
+namespace {
+
+// A thread that a library starts late asks for memory when it comes, which is not ours to avoid: every worker takes one block here, and
+// waits for the others.
+void wait_for_all_workers(Executor& executor) {
+    std::atomic<int> here{0};
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    executor.run_blocks(executor.worker_count(), [&](Index) {
+        ++here;
+        while (here < executor.worker_count() && std::chrono::steady_clock::now() < patience) std::this_thread::yield();
+    });
+}
+
+}  // namespace
+
+TEST_CASE("the counter of this test counts", "[unit]") {
+    const long before = allocations;
+    Column<Real> column;
+    column.resize(10);
+    REQUIRE(allocations == before + 1);
+}
+
+TEST_CASE("a graph with blocks and sums inside allocates nothing once it has run", "[unit]") {
+    Column<Real> rows, sums, partial, others, results;
+    rows.resize(1000);
+    others.resize(1000);
+    results.resize(1);
+    Real h = 0.5;
+    TaskGraph graph;
+    const auto fill = [](Executor& executor, Real value_of_row, std::span<Real> out) {
+        parallel_for(executor, out.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t row = begin; row < end; ++row) out[row] = value_of_row;
+        });
+    };
+    graph.stage("one", fill, value(h), write(rows));
+    graph.stage("two", fill, value(h), write(others));
+    graph.stage(
+        "sum",
+        [&partial](Executor& executor, std::span<const Real> in, std::span<Real> out) {
+            out[0] = reduce(
+                executor, in.size(), 16, partial, 0.0,
+                [&](std::size_t begin, std::size_t end) { return in[begin] * static_cast<Real>(end - begin); },
+                [](Real a, Real b) { return a + b; });
+        },
+        read(rows), write(results));
+    graph.stage("never", fill, value(h), write(rows), only_if([&h] { return h > 1; }, reads(h)));
+    graph.compile();
+
+    for (const ExecutorChoice& choice : executor_choices()) {
+        CAPTURE(choice.text());
+        const auto executor = choice.make();
+        wait_for_all_workers(*executor);
+        for (int run = 0; run < 20; ++run) graph.run(*executor);
+        const long before = allocations;
+        for (int run = 0; run < 200; ++run) graph.run(*executor);
+        const long asked = allocations - before;
+        REQUIRE(asked == 0);
+    }
+    graph.run_inline();
+    const long before = allocations;
+    graph.run_inline();
+    REQUIRE(allocations == before);
+    REQUIRE(results[0] == 500);
+}

@@ -1,0 +1,80 @@
+#include "systems/solver/solve_block.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "systems/solver/block_operator.h"
+
+using namespace skerry;
+
+namespace {
+
+struct Draw {
+    std::mt19937 random{23};
+    std::normal_distribution<Real> number;
+
+    Real operator()() { return number(random); }
+    /// Symmetric positive definite; `spread` is the standard deviation of the logarithm of its column scales.
+    Mat3 block(Real spread) {
+        Mat3 factor;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) factor(i, j) = (*this)();
+        for (int j = 0; j < 3; ++j) factor.col(j) *= std::exp(spread * (*this)());
+        return factor * factor.transpose() + 1e-3 * Mat3::Identity();
+    }
+};
+
+/// |F| with the block's own step, relative: what the answer lacks of being the answer.
+Real lack(const Mat3& w, const Vec3& b, Real mu, const Vec3& r) {
+    const Real step = 1 / w.trace();
+    const Vec3 u = w * r + b;
+    return natural_map(r, Vec3(step * u), mu, Friction::cone).norm() / (r.norm() + step * b.norm());
+}
+
+}  // namespace
+
+TEST_CASE("the local solution of 100000 random blocks solves Coulomb's law", "[property][solver]") {
+    Draw draw;
+    Real worst = 0;
+    for (int trial = 0; trial < 100000; ++trial) {
+        const Mat3 w = draw.block(0.3);
+        const Vec3 b(draw(), 3 * draw(), 3 * draw());
+        const Real mu = std::exp(draw()) * 0.5;
+        const Vec3 r = solve_block(prepare_block(w), b, mu);
+        worst = std::max(worst, lack(w, b, mu, r));
+        if (b[0] < 0) REQUIRE(r[0] > 0);
+        REQUIRE(std::hypot(r[1], r[2]) <= mu * r[0] * (1 + 1e-14));
+    }
+    CHECK(worst < 1e-10);  // rounding times the condition of a block, up to 1e5
+}
+
+TEST_CASE("the local solution holds for ill-conditioned blocks", "[property][solver]") {
+    Draw draw;
+    for (int trial = 0; trial < 20000; ++trial) {
+        const Mat3 w = draw.block(3);
+        const Vec3 b(-std::abs(draw()), draw(), draw());
+        REQUIRE(lack(w, b, 0.7, solve_block(prepare_block(w), b, 0.7)) < 1e-6);
+    }
+}
+
+TEST_CASE("an isotropic block gives the closed form", "[unit][solver]") {
+    const LocalBlock block = prepare_block(2 * Mat3::Identity());
+    CHECK(solve_block(block, Vec3(1, 5, 5), 0.5) == Vec3::Zero());
+    CHECK((solve_block(block, Vec3(-4, 0.6, 0.8), 0.5) - Vec3(2, -0.3, -0.4)).norm() < 1e-15);
+    CHECK((solve_block(block, Vec3(-4, 6, 8), 0.5) - Vec3(2, -0.6, -0.8)).norm() < 1e-14);
+    CHECK((solve_block(block, Vec3(-4, 6, 8), 0) - Vec3(2, 0, 0)).norm() == 0);
+}
+
+TEST_CASE("a block without mobility along the normal gives no impulse", "[unit][solver]") {
+    CHECK(solve_block(prepare_block(Mat3::Zero()), Vec3(-1, 1, 0), 0.5) == Vec3::Zero());
+}
+
+TEST_CASE("a block of rank one is solved where that is possible", "[unit][solver]") {
+    Mat3 w = Mat3::Zero();
+    w(0, 0) = 4;
+    const Vec3 r = solve_block(prepare_block(w), Vec3(-2, 0, 0), 0.5);
+    CHECK((r - Vec3(0.5, 0, 0)).norm() < 1e-15);
+    const Vec3 sliding = solve_block(prepare_block(w), Vec3(-2, 1, 0), 0.5);  // nothing stops the tangent: full friction against it
+    CHECK((sliding - Vec3(0.5, -0.25, 0)).norm() < 1e-10);
+}
