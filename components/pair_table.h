@@ -59,14 +59,21 @@ struct FoundPair {
     Real valid_until;  // m
 };
 
+/// No point of a body's surface is further than `radius` from `centre`.
+struct BoundingSphere {
+    Vec3 centre;  // m
+    Real radius;  // m
+};
+
 /// Working memory of the searches, kept between steps so that a steady state allocates nothing.
 struct SearchMemory {
-    Column<Real> body_front;       // m: travel and what this step may close, by body
-    Column<Real> collider_front;   // m, the same by collider
-    Column<Real> collider_extent;  // m: no point of it near a body is further from its origin, until the next broad search
-    Column<Real> collider_margin;  // m: how far a box may be and still make a pair with the collider
-    Column<Aabb> box;              // m, grown by what may happen until the next broad search: bodies, then colliders
-    Column<Index> order;           // rows of `box`, by their lower end
+    Column<Real> body_front;        // m: travel and what this step may close, by body
+    Column<Real> collider_front;    // m, the same by collider
+    Column<Real> collider_extent;   // m: no point of it near a body is further from its origin, until the next broad search
+    Column<Real> collider_margin;   // m: how far a box may be and still make a pair with the collider
+    Column<Aabb> box;               // m, grown by what may happen until the next broad search: bodies, then colliders
+    Column<BoundingSphere> sphere;  // by body, as of the last broad search or refit: for round bodies nearer the truth than a box
+    Column<Index> order;            // rows of `box`, by their lower end
     Column<FoundPair> pairs;
     Column<std::uint8_t> moved;                 // by list: bit 0 it was given away, bit 1 it was received
     std::vector<Column<Candidate>> candidates;  // on their way to the new order of pairs

@@ -93,6 +93,7 @@ void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool sh
     constexpr double slack = 1e-9;  // of a frame: 0.1 s are six frames of 1/60 s, not seven
     const auto frame_count = static_cast<long>(std::ceil(course.seconds / course.frame_step - slack));
     output.add_frame(world);
+    result.peak_kinetic_energy = world.energy().kinetic;
     for (long frame = 0; frame < frame_count && result.status == "ok"; ++frame) {
         const double begin = static_cast<double>(frame) * course.frame_step;
         const double length = std::min(course.frame_step, course.seconds - begin);
@@ -108,6 +109,7 @@ void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool sh
             probes.sample(world, duration);
         }
         output.add_frame(world);
+        result.peak_kinetic_energy = std::max(result.peak_kinetic_energy, world.energy().kinetic);
         progress.show(world.time());
         if (caught_signal != 0) result.status = "stopped by a signal at " + std::to_string(world.time()) + " s";
     }

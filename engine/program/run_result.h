@@ -19,7 +19,8 @@ struct RunResult {
     double seconds_load = 0;    // reading and building
     double seconds_output = 0;  // writing frames
     int frames = 0;
-    Real mean_edge = 0;  // m, mean over the bodies' surfaces
+    Real peak_kinetic_energy = 0;  // J, of all frames
+    Real mean_edge = 0;            // m, mean over the bodies' surfaces
     WorldReport report;
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;

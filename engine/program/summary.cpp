@@ -46,8 +46,8 @@ std::string stage_table(const RunResult& result) {
     std::string text;
     for (const StageReport& stage : result.report.stages) {
         char numbers[96];
-        std::snprintf(numbers, sizeof numbers, "%6.1f %%  %9.4f s  %9" PRIu64 " runs  %9" PRIu64 " skipped",
-                      total > 0 ? 100 * stage.seconds / total : 0, stage.seconds, stage.runs, stage.skipped);
+        std::snprintf(numbers, sizeof numbers, "%6.1f %%  %10s  %9" PRIu64 " runs  %9" PRIu64 " skipped",
+                      total > 0 ? 100 * stage.seconds / total : 0, with_unit(stage.seconds, "s").c_str(), stage.runs, stage.skipped);
         text += "    " + stage.name + std::string(width - stage.name.size() + 2, ' ') + numbers + "\n";
     }
     return text;
@@ -80,8 +80,9 @@ std::string summary_of(const RunResult& result) {
         text += line("steps", grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                   ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")");
     text += solver_lines(result);
-    text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + ", elastic " + with_unit(r.energy.elastic, "J") +
-                               ", potential " + with_unit(r.energy.potential, "J") + ", dissipated " + with_unit(r.energy.dissipated, "J"));
+    text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " + with_unit(result.peak_kinetic_energy, "J") +
+                               "), elastic " + with_unit(r.energy.elastic, "J") + ", potential " + with_unit(r.energy.potential, "J") +
+                               ", dissipated " + with_unit(r.energy.dissipated, "J"));
     text +=
         line("penetration", short_number(1e3 * r.max_penetration) + " mm" +
                                 (result.mean_edge > 0 ? " (" + percent(r.max_penetration / result.mean_edge) + " of the mean edge)" : "") +

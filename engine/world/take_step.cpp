@@ -16,6 +16,10 @@ constexpr std::size_t inline_work = 1024;
 /// Steps between two looks at the stable step: it changes with deformation, over many steps.
 constexpr std::uint64_t steps_per_watch = 256;
 
+/// A step that a body is too fast for is tried again at half its length, down to this fraction of the stable step; then steps grow back.
+constexpr Real most_shortening = 64;
+constexpr Real step_growth = 1.1;
+
 /// Velocities that drive_nodes overwrites, so that a step that is not committed leaves them as they were.
 void keep_driven_velocities(WorldState& world) {
     world.velocity_before_drive.resize(world.attachments.node.size());
@@ -153,16 +157,25 @@ StepReport World::advance(Real dt) {
     StepReport report;
     const Real end = world.step.time + dt;
     Real left = dt;
+    Real fast_limit = std::numeric_limits<Real>::infinity();  // s, while a body moves too fast for longer steps
     while (left > 0) {
-        const Real longest = world.settings.step_size.value_or(skerry::stable_step(world) * world.settings.step_safety);
+        const Real stable = world.settings.step_size.value_or(skerry::stable_step(world) * world.settings.step_safety);
+        const Real longest = std::min(stable, fast_limit);
         // A remainder of rounding size joins the last step.
         const Real steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
         const Real h = left / steps;
         take_step(world, h);
+        if (world.step.verdict.fault == StepFault::too_fast && h > stable / most_shortening) {
+            fast_limit = h / 2;
+            ++report.shortened;
+            ++world.counters.shortened;
+            continue;
+        }
         if (world.step.verdict.fault != StepFault::none) {
             blame(world, report);
             break;
         }
+        fast_limit *= step_growth;
         report.step_size = h;
         add_to_report(world, report);
         left = steps > 1 ? left - h : 0;

@@ -75,7 +75,7 @@ std::string StepReport::message() const {
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
         case StepStatus::too_fast:
             return "the step was not taken: " + who + where + " would move by " + std::to_string(value) +
-                   " of its smallest element altitude in one step; use a smaller step_size, a finer look at its velocities, or a larger "
+                   " of its smallest element altitude in one step; in a sixty-fourth of the stable step, too; lower its velocities and loads, or raise "
                    "max_strain_step";
     }
     return {};
@@ -118,6 +118,7 @@ WorldReport World::report() const {
     report.pair_searches = world.search.pair_searches;
     report.candidates = world.search.candidate_count;
     report.inline_steps = counters.inline_steps;
+    report.shortened = counters.shortened;
     report.energy = energy_of(world);
     for (std::size_t n = 0; n < world.nodes.position.size(); ++n) {
         const Vec3 momentum = world.nodes.mass[n] * world.nodes.velocity[n];

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "components/bvh_table.h"
+#include "components/pair_table.h"
 
 namespace skerry {
 
@@ -45,6 +47,24 @@ inline Real distance_squared(const Aabb& box, const Vec3& point) {
         sum += gap * gap;
     }
     return sum;
+}
+
+/// About the middle of the points' own box. Points that are not numbers do not count.
+template <class PointOf>
+BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& point_of) {
+    const Vec3 centre = 0.5 * (box.lower + box.upper);
+    Real squared = 0;
+    for (Index i = begin; i < end; ++i) {
+        const Real candidate = (point_of(i) - centre).squaredNorm();
+        squared = candidate > squared ? candidate : squared;
+    }
+    return {centre, std::sqrt(squared)};
+}
+
+/// m, lower bound of the distance of what they hold. Not above 0 when they overlap or are not finite.
+inline Real gap_between(const BoundingSphere& a, const BoundingSphere& b) {
+    const Real gap = (a.centre - b.centre).norm() - a.radius - b.radius;
+    return gap > 0 && gap < std::numeric_limits<Real>::infinity() ? gap : 0;
 }
 
 }  // namespace skerry

@@ -9,8 +9,6 @@ namespace skerry {
 
 namespace {
 
-constexpr Index leaf_triangles = 4;
-
 struct Build {
     std::span<const std::array<Index, 3>> triangle_node;
     std::span<const Vec3> position;
@@ -26,7 +24,7 @@ struct Build {
         const Index row = static_cast<Index>(bvh.node.size());
         bvh.node.push_back({row + 1, no_index, first, end - first});
         bvh.box.push_back(empty_box());
-        if (end - first <= leaf_triangles) return;
+        if (end - first == 1) return;
 
         Aabb box = empty_box();
         for (Index i = first; i < end; ++i) grow(box, centre(bvh.triangle[i]));
@@ -66,8 +64,7 @@ void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const I
     for (Index row = bvh_nodes.end - 1; row >= bvh_nodes.begin; --row) {
         Aabb fitted = empty_box();
         if (node[row].count > 0) {
-            for (Index i = node[row].first; i < node[row].first + node[row].count; ++i)
-                for (Index n : triangle_node[leaf_triangle[i]]) grow(fitted, position[n]);
+            for (Index n : triangle_node[leaf_triangle[node[row].first]]) grow(fitted, position[n]);
         } else {
             fitted = box[row + 1];
             grow(fitted, box[node[row].right]);

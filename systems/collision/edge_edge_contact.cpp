@@ -14,7 +14,8 @@ namespace {
 // length than the points around show: an eighth of the default contact distance.
 constexpr Real min_bend = 0.01;
 
-// rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that border exactly.
+// rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that border exactly. To
+// this comes what the step may turn: where a point is stopped, the edge behind it goes on and can cross another within the same step.
 constexpr Real border_angle = 0.002;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -26,11 +27,13 @@ Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>&
 /// The faces at one edge.
 class Wedge {
 public:
-    Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge) {
+    /// `closing`: m, how far things may move in this step.
+    Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, Real closing) {
         const auto& ends = surface.edges.node[edge];
         const auto& around = surface.edges.triangle[edge];
         const Vec3& origin = position[ends[0]];
         length_ = (position[ends[1]] - origin).norm();
+        border_ = border_angle * length_ + closing;
         const auto& first = surface.triangles.node[around[0]];
         const Vec3 normal = (position[first[1]] - position[first[0]]).cross(position[first[2]] - position[first[0]]);
         into_[0] = position[opposite(first, ends)] - origin;
@@ -42,21 +45,22 @@ public:
         }
         into_[1] = position[opposite(surface.triangles.node[around[1]], ends)] - origin;
         // The other face falls away below the plane of the first.
-        convex_ = normal.dot(into_[1]) < -min_bend * normal.norm() * length_;
+        convex_ = normal.dot(into_[1]) < (closing - min_bend * length_) * normal.norm();
     }
 
     bool convex() const { return convex_; }
 
     /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
-        const Real border = border_angle * length_;
         // Both faces together fall away from it, which tells the outside of a nearly flat edge from its inside.
-        return direction.dot(into_[0]) <= border && direction.dot(into_[1]) <= border && direction.dot(into_[0] + into_[1]) < 0;
+        return direction.dot(into_[0]) <= border_ && direction.dot(into_[1]) <= border_ &&
+               direction.dot(into_[0] + into_[1]) < 2 * (border_ - border_angle * length_);
     }
 
 private:
     std::array<Vec3, 2> into_;  // m, from the edge into either face
     Real length_;               // m
+    Real border_;               // m, how far the end of a face may stand out beyond the direction
     bool convex_;
 };
 
@@ -76,9 +80,10 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
     Vec3 normal = (a1 - a0).cross(b1 - b0).normalized();
     const Real height = normal.dot(contact.closest.on_first - contact.closest.on_second);
     if (height < 0) normal = -normal;
-    const Wedge wedge_a(surface, position, first);
+    const Real closing = near - scale.contact_distance;
+    const Wedge wedge_a(surface, position, first, closing);
     if (!wedge_a.convex()) return contact;
-    const Wedge wedge_b(surface, position, second);
+    const Wedge wedge_b(surface, position, second, closing);
     if (!wedge_b.convex()) return contact;
     if (wedge_b.faces(normal) && wedge_a.faces(-normal)) {
         contact.distance = distance;

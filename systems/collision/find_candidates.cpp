@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "jobs/parallel_for.h"
+#include "systems/collision/box.h"
 #include "systems/collision/bvh.h"
 #include "systems/collision/contact_reach.h"
 #include "systems/collision/find_pairs.h"
@@ -61,11 +62,16 @@ void list_expired(const CollisionInputs& inputs, bool all, SearchMemory& memory,
         if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
 }
 
-void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<const Index> bodies, std::span<Aabb> boxes) {
-    parallel_for(executor, bodies.size(), trees_per_block, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            refit_bvh(inputs.body.bvh_nodes[bodies[i]], inputs.bvh_node, inputs.bvh_triangle, inputs.surface.triangles.node,
-                      inputs.position, boxes);
+void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> boxes, SearchMemory& memory) {
+    parallel_for(executor, memory.refit.size(), trees_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Index b = memory.refit[i];
+            const Range tree = inputs.body.bvh_nodes[b], vertices = inputs.body.vertices[b];
+            if (tree.size() == 0) continue;
+            refit_bvh(tree, inputs.bvh_node, inputs.bvh_triangle, inputs.surface.triangles.node, inputs.position, boxes);
+            memory.sphere[b] = sphere_around(boxes[tree.begin], vertices.begin, vertices.end,
+                                             [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; });
+        }
     });
 }
 
@@ -79,10 +85,11 @@ Real closing(const CollisionInputs& inputs, const SearchMemory& memory, const Pa
 
 void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> boxes, Index p,
                   const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
-    PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0};
+    PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
     pair.travel = pair_travel(inputs, pair.kind, pair.first, pair.second);
     pair.margin = settings.pair_skin * pair.scale.edge + closing(inputs, memory, pair, h);
+    if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
 
     pairs.candidates[p].resize(found.size());
@@ -114,7 +121,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     list_expired(inputs, afresh, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
-    refit_trees(executor, inputs, memory.refit, boxes);
+    refit_trees(executor, inputs, boxes, memory);
     if (memory.found.size() < memory.expired.size()) memory.found.resize(memory.expired.size());
     parallel_for(executor, memory.expired.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

@@ -21,11 +21,13 @@ bool is_movable(const BodyTable& body, Index b) {
     return body.kind[b] == BodyKind::deformable;
 }
 
-Aabb body_box(const CollisionInputs& inputs, Index b) {
-    Aabb box = empty_box();
+/// Box and sphere of a body as it is.
+void fit(const CollisionInputs& inputs, Index b, Aabb& box, BoundingSphere& sphere) {
     const Range vertices = inputs.body.vertices[b];
-    for (Index v = vertices.begin; v < vertices.end; ++v) grow(box, inputs.position[inputs.surface.vertices.node[v]]);
-    return box;
+    const auto point_of = [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; };
+    box = empty_box();
+    for (Index v = vertices.begin; v < vertices.end; ++v) grow(box, point_of(v));
+    sphere = sphere_around(box, vertices.begin, vertices.end, point_of);
 }
 
 void widen(Aabb& box, Real margin) {
@@ -53,8 +55,10 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
         for (std::size_t b = begin; b < end; ++b) {
             const Real travel = is_movable(body, static_cast<Index>(b)) ? settings.broad_skin / 2 * body.mean_edge[b] : common_travel;
             search.body_valid_until[b] = memory.body_front[b] + travel;
-            memory.box[b] = body_box(inputs, static_cast<Index>(b));
-            widen(memory.box[b], memory.body_front[b] - body.travel[b] + travel + body.contact_distance[b] / 2);
+            fit(inputs, static_cast<Index>(b), memory.box[b], memory.sphere[b]);
+            const Real margin = memory.body_front[b] - body.travel[b] + travel + body.contact_distance[b] / 2;
+            widen(memory.box[b], margin);
+            memory.sphere[b].radius += margin;
         }
     });
 }
@@ -151,6 +155,7 @@ private:
             return;
         }
         if (!is_movable(body, a) && !is_movable(body, b)) return;
+        if (gap_between(memory_.sphere[a], memory_.sphere[b]) > 0) return;
         if (!is_movable(body, b))
             add_row(collider_pair_key(body.slot[a], body.slot[b]), PairKind::bodies, a, b);
         else if (!is_movable(body, a))
@@ -247,6 +252,7 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     search.body_valid_until.resize(body_count);
     search.collider_valid_until.resize(collider_count);
     search.memory.box.resize(body_count + collider_count);
+    search.memory.sphere.resize(body_count);
     search.memory.collider_extent.resize(collider_count);
     search.memory.collider_margin.resize(collider_count);
     // What moves by a script may travel as far as a mean body.

@@ -25,16 +25,6 @@ bool share_node(const std::array<Index, Size>& a, Index node) {
     return std::find(a.begin(), a.end(), node) != a.end();
 }
 
-/// The triangles of a leaf with their boxes and those of their edges.
-struct Leaf {
-    struct Item {
-        Index row;
-        Aabb box;
-    };
-    std::array<Item, 4> item;
-    Index count;
-};
-
 class BodySearch {
 public:
     BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found)
@@ -69,10 +59,7 @@ private:
     }
 
     void split_with_itself(Index a) {
-        if (node(a).count > 0) {
-            compare_leaves(a, a);
-            return;
-        }
+        if (node(a).count > 0) return;  // the features of one triangle share its nodes
         push(a + 1, a + 1);
         push(node(a).right, node(a).right);
         push(a + 1, node(a).right);
@@ -82,7 +69,7 @@ private:
     void split(Index a, Index b) {
         const bool leaf_a = node(a).count > 0, leaf_b = node(b).count > 0;
         if (leaf_a && leaf_b) {
-            compare_leaves(a, b);
+            compare_triangles(open(a), open(b));
         } else if (leaf_b || (!leaf_a && node(a).skip - a >= node(b).skip - b)) {
             push(a + 1, b);
             push(node(a).right, b);
@@ -92,36 +79,19 @@ private:
         }
     }
 
-    Leaf open(Index row) const {
-        Leaf leaf;
-        leaf.count = node(row).count;
-        for (Index i = 0; i < leaf.count; ++i) {
-            const Index t = inputs_.bvh_triangle[node(row).first + i];
-            Aabb box = empty_box();
-            for (Index n : triangle_.node[t]) grow(box, position(n));
-            leaf.item[i] = {t, box};
-        }
-        return leaf;
-    }
+    struct Leaf {
+        Index row;  // of TriangleTable
+        const Aabb& box;
+    };
+    Leaf open(Index leaf) const { return {inputs_.bvh_triangle[node(leaf).first], boxes_[leaf]}; }
 
-    void compare_leaves(Index a, Index b) {
-        const Leaf first = open(a), second = open(b);
-        for (Index i = 0; i < first.count; ++i) {
-            if (!(distance_squared(boxes_[b], first.item[i].box) < radius_squared_)) continue;
-            for (Index j = self_ && a == b ? i : 0; j < second.count; ++j)
-                if (distance_squared(first.item[i].box, second.item[j].box) < radius_squared_)
-                    compare_triangles(first.item[i], second.item[j]);
-        }
-    }
-
-    void compare_triangles(const Leaf::Item& a, const Leaf::Item& b) {
+    void compare_triangles(const Leaf& a, const Leaf& b) {
         compare_points(a, b, false);
-        if (a.row == b.row) return;  // the edges of one triangle share its nodes
         compare_points(b, a, true);
         if (distance_squared(a.box, b.box) < edge_radius_squared_) compare_edges(a, b);
     }
 
-    void compare_points(const Leaf::Item& owner, const Leaf::Item& other, bool of_second) {
+    void compare_points(const Leaf& owner, const Leaf& other, bool of_second) {
         const std::uint8_t owned = triangle_.owned_vertices[owner.row];
         const auto& corner = triangle_.node[other.row];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -138,7 +108,7 @@ private:
         }
     }
 
-    void compare_edges(const Leaf::Item& a, const Leaf::Item& b) {
+    void compare_edges(const Leaf& a, const Leaf& b) {
         const std::uint8_t owned_a = triangle_.owned_edges[a.row], owned_b = triangle_.owned_edges[b.row];
         if (owned_a == 0 || owned_b == 0) return;
         const auto &na = triangle_.node[a.row], &nb = triangle_.node[b.row];
@@ -210,11 +180,12 @@ private:
 Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return infinite;
+    const Real apart = std::max(pair.apart, std::sqrt(distance_squared(boxes[first.begin], boxes[second.begin]))) - pair.scale.zone;
+    if (apart >= pair.margin) return pair.travel + apart;
     BodySearch(inputs, pair, boxes, found).run();
     std::sort(found.begin(), found.end(),
               [](const FoundCandidate& a, const FoundCandidate& b) { return a.candidate.feature < b.candidate.feature; });
-    const Real apart = std::sqrt(distance_squared(boxes[first.begin], boxes[second.begin])) - pair.scale.zone;
-    return pair.travel + std::max(pair.margin, apart);
+    return pair.travel + pair.margin;
 }
 
 Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found) {

@@ -14,6 +14,7 @@ struct PairToSearch {
     PairScale scale;
     Real travel;  // m, sum of both
     Real margin;  // m: features nearer than scale.zone + margin are listed
+    Real apart;   // m, a lower bound of the distance of two bodies
 };
 
 /// Lists the near features of a pair in feature order, each once: points against triangles both ways and edges against edges (by two trees

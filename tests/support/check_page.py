@@ -25,11 +25,11 @@ def chromium():
 
 
 def browse(page, fragment, picture=None, size=(1440, 900)):
-    """The page as the browser has it after `budget` ms of its own time, and its picture if a name is given."""
+    """The page as the browser has it after two seconds of its own time, and its picture if a name is given."""
     with tempfile.TemporaryDirectory() as profile:
         command = [chromium(), "--headless", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                    "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}",
-                   "--virtual-time-budget=4000", "--dump-dom"]
+                   "--virtual-time-budget=2000", "--dump-dom"]
         if picture:
             command.append(f"--screenshot={picture}")
         result = subprocess.run(command + [f"file://{page}{fragment}"], capture_output=True, text=True, timeout=200)

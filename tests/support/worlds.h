@@ -1,6 +1,7 @@
 // One-line worlds for whole-step tests.
 #pragma once
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 

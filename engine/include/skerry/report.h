@@ -59,6 +59,7 @@ public:
     Real value = 0;                // too_fast: displacement over smallest altitude
     Real step_size = 0;            // s, of the steps taken
     int steps = 0;                 // committed
+    int shortened = 0;             // tries given up because a body was too fast; each was repeated at half the length
     Index contacts = 0;            // of the last step
     Index regions = 0;
     Index largest_region = 0;      // contacts
@@ -86,6 +87,7 @@ struct WorldReport {
     std::uint64_t solved = 0;                   // regions
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
     std::uint64_t inline_steps = 0;             // too small to pay for threads
+    std::uint64_t shortened = 0;                // steps tried again at half the length, since a body was too fast
     Energy energy;
     Vec3 momentum = Vec3::Zero();               // kg m/s
     Vec3 angular_momentum = Vec3::Zero();       // kg m^2/s, about the origin

@@ -101,7 +101,7 @@ TEST_CASE("a file with changed bytes loads or is refused", "[unit]") {
     for (const SampleFile& file : all_sample_files(small_mesh())) {
         INFO(file.name << ", seed 12345");
         const std::string name = write_partners(folder, file);
-        for (int round = 0; round < 400; ++round) {
+        for (int round = 0; round < 200; ++round) {
             std::string content = file.content;
             const int hits = 1 + static_cast<int>(random() % 4);
             for (int h = 0; h < hits; ++h) {

@@ -189,6 +189,15 @@ TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are
     CHECK_THROWS_WITH(mesh::read(folder.write("e.obj", square)), Contains("expected .msh, .vtk, .node or .ele"));
 }
 
+TEST_CASE("polygons of a VTK file become triangles, its lines are passed over", "[unit]") {
+    const std::string head = "# vtk DataFile Version 3.0\nsquare\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0\n0 1 0\n";
+    const TestFolder folder;
+    const SurfaceMesh surface = mesh::read_surface(folder.write("a.vtk", head + "LINES 1 3\n2 0 1\nPOLYGONS 2 9\n4 0 1 2 3\n3 0 1 2\n"));
+    CHECK(surface.triangles == std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}});
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.vtk", head + "POLYGONS 1 3\n2 0 1\n")),
+                      Contains("polygon 1 of 1") && Contains("at least 3"));
+}
+
 TEST_CASE("equal corners of an STL are one node, and triangles without three are dropped", "[unit]") {
     const std::string file =
         "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"

@@ -173,7 +173,7 @@ class ProgramTest(unittest.TestCase):
         stats = self.folder / "stats.json"
         done = self.skerry("run", self.write("fast.json", fast), "--stats", stats, code=1)
         self.assertIn("block", done.stderr)
-        self.assertIn("try", done.stderr)
+        self.assertIn("--step", done.stderr)
         self.assertNotEqual(json.loads(stats.read_text())["status"], "ok")
 
     def test_an_interrupt_writes_what_there_is(self):

@@ -51,7 +51,7 @@ namespace {
 // waits for the others.
 void wait_for_all_workers(Executor& executor) {
     std::atomic<int> here{0};
-    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(100);
     executor.run_blocks(executor.worker_count(), [&](Index) {
         ++here;
         while (here < executor.worker_count() && std::chrono::steady_clock::now() < patience) std::this_thread::yield();

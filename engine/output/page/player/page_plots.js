@@ -76,6 +76,7 @@ function make_plot(host, times, series, format, pick) {
       pen.fillText(format(shown), margin.left - 7, y);
     }
     pen.stroke();
+    if (times.length < 2) return;
     const step = text.tick(span, 4);
     pen.textBaseline = "top";
     for (let i = Math.ceil(first / step); i * step <= first + span * 1.000001; ++i) {

@@ -25,9 +25,9 @@ function make_view(host, up, box) {
   const north = new THREE.Vector3().crossVectors(up, east);
   const direction = (e, n, u) => new THREE.Vector3().addScaledVector(east, e).addScaledVector(north, n).addScaledVector(up, u);
 
-  const sky = new THREE.HemisphereLight(0xffffff, 0x7b7672, 0.74);
+  const sky = new THREE.HemisphereLight(0xffffff, 0x7b7672, 0.66);
   sky.position.copy(up);
-  const key = new THREE.DirectionalLight(0xfffaf2, 0.78);
+  const key = new THREE.DirectionalLight(0xfffaf2, 0.62);
   key.position.copy(box.center).addScaledVector(direction(0.55, -0.65, 1.25).normalize(), 4 * box.radius);
   key.target.position.copy(box.center);
   key.castShadow = true;

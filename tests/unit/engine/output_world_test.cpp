@@ -1,0 +1,86 @@
+// The writers on a real world: what they collect is what it says.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "engine/output/collect_frame.h"
+#include "skerry/output.h"
+#include "skerry/world.h"
+
+namespace {
+
+using namespace skerry;
+namespace fs = std::filesystem;
+
+World box_on_floor(BodyHandle& box) {
+    World world;
+    const MaterialHandle rubber =
+        world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.5, .damping = 20});
+    box = world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = rubber, .position = {0, 0, 0.052}, .name = "box"});
+    world.add_collider(Plane{.normal = {0, 0, 2}}, {.name = "floor"});
+    world.add_collider(Bucket{}, {.position = {0, 0, -0.5}, .motion = {.velocity = {0, 0, -1}}, .name = "bucket"});
+    return world;
+}
+
+}  // namespace
+
+TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world, and forces that carry the weight", "[unit][output]") {
+    BodyHandle box;
+    World world = box_on_floor(box);
+    FrameCollector collector;
+    CHECK(collector.collect(world).step_size == 0);
+    REQUIRE(world.advance(1).ok());
+    collector.collect(world);
+    const std::uint64_t steps = world.report().steps;
+    REQUIRE(world.advance(0.01).ok());
+    const Frame frame = collector.collect(world);
+
+    CHECK(frame.time == world.time());
+    CHECK(frame.step_size == Approx(0.01 / static_cast<Real>(world.report().steps - steps)).epsilon(1e-9));
+    REQUIRE(frame.bodies.size() == 1);
+    CHECK(frame.bodies[0].handle == box);
+    CHECK(frame.bodies[0].name == "box");
+    CHECK(frame.bodies[0].position.data() == world.positions(box).data());
+    CHECK(frame.bodies[0].von_mises.size() == world.tetrahedra(box).size());
+    REQUIRE(frame.colliders.size() == 2);
+    CHECK(frame.colliders[1].name == "bucket");
+    CHECK(frame.colliders[1].pose.position.z() == Approx(-0.5 - world.time()));
+    CHECK(frame.energy.elastic == world.energy().elastic);
+    REQUIRE(frame.contacts.size() == world.contacts().size());
+
+    Vec3 force = Vec3::Zero();
+    for (const Contact& contact : frame.contacts) force += frame.force(contact);
+    // A second of damping at 20/s leaves e^-20 of the landing; a tenth covers what single steps of a contact vary by.
+    CHECK(force.z() == Approx(world.mass(box) * 9.81).epsilon(0.1));
+}
+
+TEST_CASE("a world that bodies join and leave is written as a series and as a page", "[unit][output]") {
+    const fs::path folder = fs::temp_directory_path() / "skerry_output_test_world";
+    fs::remove_all(folder);
+    BodyHandle box;
+    World world = box_on_floor(box);
+    {
+        VtkWriter series(folder / "series", "run");
+        PageWriter page(folder / "run.html", "A box and a ball");
+        BodyHandle ball;
+        for (int i = 0; i < 6; ++i) {
+            if (i == 2)
+                ball = world.add_body(mesh::ball(0.05, 4), {.material = world.add_material({}), .position = {0, 0, 0.2}, .name = "ball"});
+            if (i == 4) world.remove(box);
+            REQUIRE(world.advance(0.01).ok());
+            series.write_frame(world);
+            page.add_frame(world);
+        }
+        series.close();
+        page.close(world);
+        CHECK(fs::exists(folder / "run.html"));
+    }
+    for (const char* file : {"run.pvd", "run_bodies_0005.vtu", "run_contacts_0005.vtp", "run_colliders_0005.vtp"})
+        CHECK(fs::exists(folder / "series" / file));
+    std::ifstream in(folder / "run.html");
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    CHECK(text.find("{\"name\":\"box\",\"vertices\":26,") != std::string::npos);
+    CHECK(text.find("{\"name\":\"ball\",") != std::string::npos);
+    fs::remove_all(folder);
+}
