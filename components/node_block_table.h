@@ -15,6 +15,7 @@ struct NodeBlockSums {
     Vec3 first_moment;      // kg m, sum of m (x - origin)
     Vec3 angular_momentum;  // kg m^2/s, about the origin given
     Mat3 second_moment;     // kg m^2, sum of m (x - origin)(x - origin)^T
+    Real dissipated;        // J, kinetic energy of deformation that damping takes out of the block
 };
 
 /// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next.

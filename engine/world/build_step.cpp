@@ -61,7 +61,7 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
                                          n.position, n.mass, n.inverse_mass};
                 },
                 reads(k.begin, k.end, k.body, b.node_blocks, b.material, b.pinned_count, w.materials, n.position, n.mass, n.inverse_mass)),
-            value(w.step.h), write(k.sums), write(n.velocity_next));
+            read(n.velocity), value(w.step.h), write(k.sums), write(n.velocity_next), make(w.step.damped));
 }
 
 void list_contact_branch(WorldState& w, TaskGraph& g) {

@@ -1,7 +1,6 @@
 #include "systems/dynamics/damp_velocity.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 #include <cmath>
 
 #include "components/check.h"
@@ -35,7 +34,7 @@ std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
 /// Sums over a block; positions and velocities relative to those of the body's first node.
 NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::span<const Vec3> velocity) {
     const std::size_t origin = first_node(bodies, static_cast<std::size_t>(bodies.block_body[block]));
-    NodeBlockSums sums{0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Zero()};
+    NodeBlockSums sums{0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Zero(), 0};
     for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]); n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
         if (!(bodies.inverse_mass[n] > 0)) continue;
         const Real m = bodies.mass[n];
@@ -71,6 +70,10 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
 /// Angular velocity with the given angular momentum. Nodes on a line or in a point cannot turn about it: no rotation there.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
+    const Real mean = inertia.trace() / 3;
+    constexpr Real well_shaped =
+        1e-6;  // of the cube of the mean moment: then the inverse loses at most ten digits, and most bodies lose none
+    if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
     const Real least = 1e-12 * eigen.eigenvalues()[2];  // below it the moment is rounding
     Vec3 omega = Vec3::Zero();
@@ -80,26 +83,33 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     return omega;
 }
 
-/// Moves the velocities of a block towards the rigid motion of the body's sums by `fraction`.
-void damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total, std::span<Vec3> velocity) {
+/// Adds to velocity_next what takes the velocities of a block towards the rigid motion of the body's sums by `fraction`; returns the kinetic
+/// energy that this takes out, J.
+Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total, std::span<const Vec3> velocity,
+                std::span<Vec3> velocity_next) {
     const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);
     const bool rigid = keeps_rigid_motion(bodies, body);
-    if (rigid && !(total.mass > 0)) return;
+    if (rigid && !(total.mass > 0)) return 0;
     const Vec3 linear = rigid ? Vec3(total.momentum / total.mass) : Vec3::Zero();
     const Vec3 angular = rigid ? angular_velocity_of(total) : Vec3::Zero();
     const Vec3 centre = rigid ? Vec3(bodies.position[first_node(bodies, body)] + total.first_moment / total.mass) : Vec3::Zero();
+    Real deformation = 0;  // J, kinetic
     for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]); n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
         if (!(bodies.inverse_mass[n] > 0)) continue;
-        const Vec3 target = linear + angular.cross(bodies.position[n] - centre);
-        velocity[n] += fraction * (target - velocity[n]);
+        const Vec3 excess = velocity[n] - (linear + angular.cross(bodies.position[n] - centre));
+        velocity_next[n] -= fraction * excess;
+        deformation += bodies.mass[n] / 2 * excess.squaredNorm();
     }
+    return deformation * fraction * (2 - fraction);  // 1 - (1 - fraction)^2
 }
 
 }  // namespace
 
-bool damp_velocity(Executor& executor, const DampingInputs& bodies, Real h, std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next) {
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real h, std::span<NodeBlockSums> sums,
+                   std::span<Vec3> velocity_next, Real& dissipated) {
     const std::size_t body_count = bodies.body_node_blocks.size(), block_count = bodies.block_begin.size();
     SKERRY_CHECK(sums.size() == block_count);
+    dissipated = 0;
     bool any = false;
     for (std::size_t body = 0; body < body_count && !any; ++body) any = is_damped(bodies, body);
     if (!any) return false;
@@ -107,19 +117,21 @@ bool damp_velocity(Executor& executor, const DampingInputs& bodies, Real h, std:
     parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
-            if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) sums[b] = sum_block(bodies, b, velocity_next);
+            if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) sums[b] = sum_block(bodies, b, velocity);
         }
     });
     for (std::size_t body = 0; body < body_count; ++body)
-        if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) add_up_body(bodies, body, velocity_next, sums);
+        if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) add_up_body(bodies, body, velocity, sums);
     parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
+            sums[b].dissipated = 0;
             const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
             if (!is_damped(bodies, body)) continue;
             const NodeBlockSums& total = sums[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)];
-            damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * h), total, velocity_next);
+            sums[b].dissipated = damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * h), total, velocity, velocity_next);
         }
     });
+    for (const NodeBlockSums& block : sums) dissipated += block.dissipated;
     return true;
 }
 

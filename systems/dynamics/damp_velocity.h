@@ -20,9 +20,11 @@ struct DampingInputs {
     std::span<const Real> mass, inverse_mass;
 };
 
-/// v <- v_rigid + (v - v_rigid) exp(-damping h) for every body with damping > 0; v_rigid is the rigid motion with the momentum and the
-/// angular momentum of the body. A body with pinned nodes is damped towards rest. Returns false when no body has damping (skipped).
-/// Parallel over node blocks; sums in block order.
-bool damp_velocity(Executor& executor, const DampingInputs& bodies, Real h, std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next);
+/// Takes (1 - exp(-damping h)) of the deformation velocity v - v_rigid out of velocity_next, for every body with damping > 0. `velocity`
+/// is that at the start of the step, not the predicted one: a body at rest under load must not feel its damping. v_rigid is the rigid motion
+/// with the momentum and the angular momentum of the body; a body with pinned nodes is damped towards rest. `dissipated` (J) is the kinetic
+/// energy taken. Returns false when no body has damping (skipped). Parallel over node blocks; sums in block order.
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real h, std::span<NodeBlockSums> sums,
+                   std::span<Vec3> velocity_next, Real& dissipated);
 
 }  // namespace skerry

@@ -8,11 +8,6 @@
 #include "components/lanes.h"
 #include "components/types.h"
 
-#ifdef __GNUC__
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"  // everything below is inlined: how a wide register is passed does not matter
-#endif
-
 namespace skerry {
 
 /// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler instead of a loop over Lanes:
@@ -132,7 +127,3 @@ inline Mat3 to_matrix(const LaneMat3<Real>& a) {
 }
 
 }  // namespace skerry
-
-#ifdef __GNUC__
-#pragma GCC diagnostic pop
-#endif

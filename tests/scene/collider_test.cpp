@@ -14,7 +14,7 @@ struct Dropped {
     Real lowest = 1e9;  // m, over the run
 
     Dropped(const Shape& shape, const ColliderSettings& collider, const Vec3& from, Real seconds, const Vec3& velocity = Vec3::Zero()) {
-        const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = 10});
+        const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = 200});
         world.add_collider(shape, collider);
         ball = world.add_body(mesh::ball(0.05, 6), {.material = material, .position = from, .velocity = velocity, .name = "ball"});
         for (Real t = 0; t < seconds; t += 0.01) {

@@ -12,7 +12,7 @@ constexpr Real mu = 0.3;
 const Real critical_degrees = std::atan(mu) * 180 / std::numbers::pi;
 
 MaterialSettings block_material() {
-    return {.young_modulus = 2e5, .poisson_ratio = 0.3, .density = 1000, .friction = mu, .damping = 30};
+    return {.young_modulus = 2e5, .poisson_ratio = 0.3, .density = 1000, .friction = mu, .damping = 300};
 }
 
 Settings accurate(const Vec3& gravity) {

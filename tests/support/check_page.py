@@ -100,7 +100,8 @@ def main(folder):
     ready = {"ready": "true", "frames": "120"}
     first = check(folder, "page.html", "#frame=0", {**ready, "frame": "0", "bodies": "7", "color": "speed"}, "frame_0.png")
     later = check(folder, "page.html", "#frame=30&color=stress", {**ready, "frame": "30", "bodies": "7", "color": "stress"}, "frame_30.png")
-    check(folder, "page.html", "#frame=60&color=body&contacts=region&xray=1&wire=1&flat=1", {**ready, "bodies": "8", "color": "body"}, "frame_60.png")
+    switched = "#frame=60&color=body&contacts=region&xray=1&wire=1&flat=1"
+    check(folder, "page.html", switched, {**ready, "bodies": "8", "color": "body"}, "frame_60.png")
     check(folder, "page.html", "#frame=119&colliders=0&contacts=off", {**ready, "frame": "119", "bodies": "7"}, "frame_119.png")
     check(folder, "page.html", "#frame=70", ready, "narrow.png", (520, 1100))
     playing = marks(browse(page, "#play=1&frame=0&rate=1"))

@@ -58,12 +58,16 @@ struct BlockOnPlane {
     }
 
     Vec3 velocity() const { return mean_velocity(world, block, mass); }
-    /// Lets the weight settle: gravity without tilt, then damping has its time.
-    void settle(Real seconds) {
+    /// Lets the weight settle, then turns gravity slowly to where it is asked to be: a sudden tilt would make the block sway and slip.
+    void settle(Real seconds, Real ramp = 0.5) {
         const Vec3 tilted = world.settings().gravity;
         world.set_gravity({0, 0, tilted.z()});
         world.advance(seconds);
-        world.set_gravity(tilted);
+        const int turns = 200;
+        for (int i = 1; i <= turns; ++i) {
+            world.set_gravity({tilted.x() * i / turns, 0, tilted.z()});
+            world.advance(ramp / turns);
+        }
     }
 };
 

@@ -30,7 +30,9 @@ function plane_object(radius, cell) {
   const grid = new THREE.ShaderMaterial({
     uniforms: { cell: { value: cell }, reach: { value: size / 2 }, offset: { value: new THREE.Vector2() } },
     transparent: true, depthWrite: false, extensions: { derivatives: true },
-    vertexShader: "varying vec2 at; void main() { at = position.xy; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
+    vertexShader: `
+      varying vec2 at;
+      void main() { at = position.xy; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
     // Lines one pixel wide, in two widths of cell; where a pixel covers many cells they melt into their mean.
     fragmentShader: `
       varying vec2 at; uniform float cell, reach; uniform vec2 offset;
@@ -71,7 +73,8 @@ function solid_object(collider) {
   const material = new THREE.MeshStandardMaterial({
     color: new THREE.Color(clear ? 0xb9c9da : 0x66717d).convertGammaToLinear(2.2), roughness: 0.85, metalness: 0,
     flatShading: collider.kind === "mesh", side: clear ? THREE.DoubleSide : THREE.FrontSide,
-    transparent: Boolean(clear), opacity: clear || 1, depthWrite: !clear, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    transparent: Boolean(clear), opacity: clear || 1, depthWrite: !clear,
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
   });
   const mesh = new THREE.Mesh(geometry, material);
   mesh.receiveShadow = !clear;

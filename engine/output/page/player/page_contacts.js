@@ -1,5 +1,5 @@
-// The contacts: a dot each, and an arrow as long as the force is strong. Drawn twice: plainly where they are in sight, faintly where a
-// body hides them, because contacts lie between bodies.
+// The contacts: a dot each, and an arrow that grows with the root of the force, because impacts are a hundred times stronger than what
+// lies at rest. Drawn twice: plainly where they are in sight, faintly where a body hides them, because contacts lie between bodies.
 "use strict";
 
 // A force of `full_force` (N) gets an arrow about as long as half a body is thick; dots leave room between vertices.
@@ -45,14 +45,14 @@ function make_contacts(scene, capacity, { size, spacing }, full_force) {
       }
       force.fromArray(contacts.force, 3 * i).multiplyScalar(contacts.unit);
       const strength = force.length();
-      const rgb = mode === "region" && contacts.region[i] !== 65535 ? colors.linear(colors.of_number(contacts.region[i]))
-                                                                    : motion_colors[contacts.state[i]];
+      const by_region = mode === "region" && contacts.region[i] !== 65535;
+      const rgb = by_region ? colors.linear(colors.of_number(contacts.region[i])) : motion_colors[contacts.state[i]];
       color.array.set(rgb, 3 * i);
       const radius = strength > 0 ? dot_radius : 0.7 * dot_radius;
       dots[0].setMatrixAt(i, matrix.compose(point, turn.set(0, 0, 0, 1), scale.setScalar(radius)));
       if (strength > 0) turn.setFromUnitVectors(along, force.multiplyScalar(1 / strength));
-      const length = strength / full_force * arrow_length;
-      arrows[0].setMatrixAt(i, matrix.compose(point, turn, scale.set(Math.min(arrow_width, length), length, Math.min(arrow_width, length))));
+      const length = Math.sqrt(strength / full_force) * arrow_length, width = Math.min(arrow_width, length / 3);
+      arrows[0].setMatrixAt(i, matrix.compose(point, turn, scale.set(width, length, width)));
     }
     color.needsUpdate = true;
     dots[0].instanceMatrix.needsUpdate = arrows[0].instanceMatrix.needsUpdate = true;

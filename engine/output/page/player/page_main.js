@@ -24,7 +24,10 @@
   const legend_top = { speed: text.round_up(run.speed.usual), stress: text.round_up(run.stress.usual) };
   const units = { speed: "m/s", stress: "Pa" };
   const modes = { color: ["speed", "stress", "body"], contacts: ["off", "motion", "region"] };
-  const state = { frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false, xray: false, colliders: true };
+  const state = {
+    frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false, xray: false, colliders: true,
+  };
+  const many = (number, one, more) => text.count(number) + " " + (number === 1 ? one : more);
 
   const gravity = new THREE.Vector3(...run.gravity);
   const up = gravity.length() > 0 ? gravity.clone().negate().normalize() : new THREE.Vector3(0, 0, 1);
@@ -37,7 +40,7 @@
     root.dataset.error = "no WebGL";
   }
   if (view) {
-    bodies = make_bodies(view.scene, run.bodies, legend_top);
+    bodies = make_bodies(view.scene, run.bodies, frames, legend_top);
     contacts = make_contacts(view.scene, Math.max(0, ...run.rows.contacts), box, run.force.usual || 1);
     colliders = make_colliders(view.scene, run.colliders, box);
     if (frames.length === 0) notice("No frames were recorded.");
@@ -66,15 +69,18 @@
   function show_summary() {
     const r = run.report;
     find("title").textContent = run.title || "Run";
-    find("subtitle").textContent = text.count(r.bodies) + (r.bodies === 1 ? " body" : " bodies") + ", " + text.count(r.elements) + " elements, "
-      + text.si(r.time, "s") + " in " + text.count(r.steps) + " steps";
+    find("subtitle").textContent = many(r.bodies, "body", "bodies") + ", " + many(r.elements, "element", "elements") + ", "
+      + text.si(r.time, "s") + " in " + many(r.steps, "step", "steps");
     const items = [
-      ["Bodies", text.count(r.bodies)], ["Elements", text.count(r.elements)], ["Nodes", text.count(r.nodes)], ["Steps", text.count(r.steps)],
+      ["Bodies", text.count(r.bodies)], ["Elements", text.count(r.elements)],
+      ["Nodes", text.count(r.nodes)], ["Steps", text.count(r.steps)],
       ["Simulated time", text.si(r.time, "s")], ["Mean step", r.steps ? text.si(r.time / r.steps, "s") : "\u2013"],
       ["Contacts, mean and most", text.average(r.mean_contacts) + ", " + text.count(r.max_contacts)],
       ["Regions, mean and most", text.average(r.mean_regions) + ", " + text.count(r.max_regions)],
-      ["Largest region", text.count(r.largest_region) + " contacts"], ["Sweeps by solved region", text.average(r.mean_iterations)],
-      ["Regions not converged", text.count(r.unconverged) + " of " + text.count(r.solved)], ["Deepest overlap", text.si(r.max_penetration, "m")],
+      ["Largest region", many(r.largest_region, "contact", "contacts")],
+      ["Sweeps by solved region", text.average(r.mean_iterations)],
+      ["Regions not converged", text.count(r.unconverged) + " of " + text.count(r.solved)],
+      ["Deepest overlap", text.si(r.max_penetration, "m")],
     ];
     for (const [name, value] of items) add_item(name, value);
     const code = document.createElement("code");
@@ -118,7 +124,7 @@
       add(text.si(top / 2, units[state.color]));
       add((run[state.color].max > top ? "\u2265\u202f" : "") + text.si(top, units[state.color]));
     } else {
-      name.textContent = text.count(run.bodies.length) + (run.bodies.length === 1 ? " body" : " bodies");
+      name.textContent = many(run.bodies.length, "body", "bodies");
       run.bodies.slice(0, 10).forEach((body, i) => add(body.name || "body " + i, colors.css(colors.of_body(i))));
       if (run.bodies.length > 10) add("and " + text.count(run.bodies.length - 10) + " more");
     }
@@ -141,7 +147,8 @@
     };
     if (state.contacts === "motion") for (const name of ["stick", "slide", "open"]) add(name, colors.motion[name]);
     else add("one colour by contact region");
-    add("longest arrows: " + text.si(run.force.max, "N"));
+    add("arrows: root of the force");
+    add("strongest " + text.si(run.force.max, "N"));
   }
 
   // Draws the frame, between frames the mean of two, and says where it is.

@@ -34,7 +34,8 @@ function measure_scene(run, frames) {
     for (const y of [shown.min.y, shown.max.y])
       for (const z of [shown.min.z, shown.max.z]) corners.push(new THREE.Vector3(x, y, z));
   const middle = shown.getCenter(new THREE.Vector3());
-  return { center: middle, radius: Math.max(middle.distanceTo(corners[0]), 1e-6), corners, spacing: part(spacing, 0.5), size: part(sizes, 0.5) };
+  const around = Math.max(middle.distanceTo(corners[0]), 1e-6);
+  return { center: middle, radius: around, corners, spacing: part(spacing, 0.5), size: part(sizes, 0.5) };
 }
 
 function box_of(collider, pose) {
