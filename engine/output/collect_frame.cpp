@@ -1,4 +1,4 @@
-#include "collect_frame.h"
+#include "engine/output/collect_frame.h"
 
 namespace skerry {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "frame.h"
+#include "engine/output/frame.h"
 #include "skerry/world.h"
 
 namespace skerry {

@@ -1,4 +1,4 @@
-#include "shape_picture.h"
+#include "engine/output/shape_picture.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "write_file.h"
+#include "engine/output/write_file.h"
 
 #include <cerrno>
 #include <fstream>

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace skerry {
 
@@ -24,6 +23,13 @@ Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>&
     return triangle[0];
 }
 
+/// Zero for a triangle without area.
+Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& node) {
+    const Vec3 normal = (position[node[1]] - position[node[0]]).cross(position[node[2]] - position[node[0]]);
+    const Real length = normal.norm();
+    return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
 /// The faces at one edge.
 class Wedge {
 public:
@@ -35,30 +41,33 @@ public:
         length_ = (position[ends[1]] - origin).norm();
         border_ = border_angle * length_ + closing;
         const auto& first = surface.triangles.node[around[0]];
-        const Vec3 normal = (position[first[1]] - position[first[0]]).cross(position[first[2]] - position[first[0]]);
+        const Vec3 normal = unit_normal(position, first);
+        outward_ = normal;
         into_[0] = position[opposite(first, ends)] - origin;
         if (around[1] == no_index) {
             // The rim of an open surface: as if a wall went down from it.
-            into_[1] = normal * (-length_ / std::max(normal.norm(), std::numeric_limits<Real>::min()));
+            into_[1] = -length_ * normal;
             convex_ = true;
             return;
         }
-        into_[1] = position[opposite(surface.triangles.node[around[1]], ends)] - origin;
+        const auto& second = surface.triangles.node[around[1]];
+        into_[1] = position[opposite(second, ends)] - origin;
+        outward_ += unit_normal(position, second);
         // The other face falls away below the plane of the first.
-        convex_ = normal.dot(into_[1]) < (closing - min_bend * length_) * normal.norm();
+        convex_ = normal.dot(into_[1]) < closing - min_bend * length_;
     }
 
     bool convex() const { return convex_; }
 
     /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
-        // Both faces together fall away from it, which tells the outside of a nearly flat edge from its inside.
-        return direction.dot(into_[0]) <= border_ && direction.dot(into_[1]) <= border_ &&
-               direction.dot(into_[0] + into_[1]) < 2 * (border_ - border_angle * length_);
+        // The mean normal tells the outside of a nearly flat edge from its inside, which the borders cannot.
+        return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_ && direction.dot(into_[1]) <= border_;
     }
 
 private:
     std::array<Vec3, 2> into_;  // m, from the edge into either face
+    Vec3 outward_;              // sum of the unit normals of both
     Real length_;               // m
     Real border_;               // m, how far the end of a face may stand out beyond the direction
     bool convex_;

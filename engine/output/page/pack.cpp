@@ -1,4 +1,4 @@
-#include "pack.h"
+#include "engine/output/page/pack.h"
 
 namespace skerry {
 

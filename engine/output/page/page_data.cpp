@@ -1,10 +1,10 @@
-#include "page_data.h"
+#include "engine/output/page/page_data.h"
 
 #include <algorithm>
 
-#include "../shape_picture.h"
 #include "components/check.h"
-#include "pack.h"
+#include "engine/output/page/pack.h"
+#include "engine/output/shape_picture.h"
 
 namespace skerry {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "../frame.h"
-#include "quantile.h"
+#include "engine/output/frame.h"
+#include "engine/output/page/quantile.h"
 
 namespace skerry {
 

@@ -1,12 +1,12 @@
-#include "page_document.h"
+#include "engine/output/page/page_document.h"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "../write_file.h"
-#include "pack.h"
-#include "page_assets.h"
+#include "engine/output/page/pack.h"
+#include "engine/output/page/page_assets.h"
+#include "engine/output/write_file.h"
 #include "skerry/error.h"
 
 namespace skerry {

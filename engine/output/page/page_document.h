@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "page_data.h"
+#include "engine/output/page/page_data.h"
 
 namespace skerry {
 

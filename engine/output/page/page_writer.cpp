@@ -1,6 +1,6 @@
-#include "../collect_frame.h"
-#include "../write_file.h"
-#include "page_document.h"
+#include "engine/output/collect_frame.h"
+#include "engine/output/page/page_document.h"
+#include "engine/output/write_file.h"
 #include "skerry/output.h"
 
 namespace skerry {

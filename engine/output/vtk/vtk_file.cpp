@@ -1,11 +1,11 @@
-#include "vtk_file.h"
+#include "engine/output/vtk/vtk_file.h"
 
 #include <array>
 #include <charconv>
 #include <ostream>
 
-#include "../write_file.h"
 #include "components/check.h"
+#include "engine/output/write_file.h"
 
 namespace skerry {
 

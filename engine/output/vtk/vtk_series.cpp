@@ -1,13 +1,13 @@
-#include "vtk_series.h"
+#include "engine/output/vtk/vtk_series.h"
 
 #include <algorithm>
 #include <ostream>
 
-#include "../shape_picture.h"
-#include "../write_file.h"
 #include "components/check.h"
+#include "engine/output/shape_picture.h"
+#include "engine/output/vtk/vtk_file.h"
+#include "engine/output/write_file.h"
 #include "skerry/error.h"
-#include "vtk_file.h"
 
 namespace skerry {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../frame.h"
+#include "engine/output/frame.h"
 
 namespace skerry {
 

@@ -1,6 +1,6 @@
-#include "../collect_frame.h"
+#include "engine/output/collect_frame.h"
+#include "engine/output/vtk/vtk_series.h"
 #include "skerry/output.h"
-#include "vtk_series.h"
 
 namespace skerry {
 

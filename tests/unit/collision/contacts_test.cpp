@@ -6,6 +6,7 @@
 #include <set>
 
 #include "systems/collision/contact_key.h"
+#include "systems/collision/edge_edge_contact.h"
 #include "tests/support/collision_world.h"
 
 using namespace skerry;
@@ -321,4 +322,31 @@ TEST_CASE("a folded body touches itself, a thin one does not touch its own other
         CHECK(w.contacts.gap[i] == Approx(0).margin(1e-9));
         CHECK(std::abs(w.contacts.normal[i][2]) == Approx(1));
     }
+}
+
+TEST_CASE("two ridges that have passed each other are pushed back, however flat they are", "[unit]") {
+    const PairScale scale{0.02, 1, 0.25, 0.02, 0.25};
+    for (Real bend : {0.015, 0.05, 0.5, 2.0})
+        for (Real height : {0.01, 0.0, -0.005, -0.015}) {
+            INFO("bend " << bend << ", height " << height);
+            // A roof with its ridge along x that looks up, and one along y that looks down, `height` above it.
+            const Real fall = 0.5 * std::tan(bend / 2);
+            std::vector<Vec3> x{{-0.5, 0, 0}, {0.5, 0, 0}, {0, 0.5, -fall}, {0, -0.5, -fall}};
+            for (std::size_t i = 0; i < 4; ++i) x.push_back({x[i][1], x[i][0], height - x[i][2]});
+            SurfaceTables surface;
+            const std::vector<BoundaryTriangle> roof{{{0, 1, 2}, no_index}, {{1, 0, 3}, no_index}};
+            append_surface(roof, 0, no_index, surface);
+            append_surface(roof, 4, no_index, surface);
+            const auto ridge = [&](Index a) {
+                Index e = 0;
+                while (surface.edges.node[e] != std::array<Index, 2>{a, a + 1}) ++e;
+                return e;
+            };
+            for (Real closing : {0.0, 0.004}) {
+                const EdgeEdgeContact contact = edge_edge_contact(surface, x, ridge(4), ridge(0), scale, 0.02 + closing);
+                REQUIRE(contact.touching);
+                CHECK(contact.distance == Approx(height).margin(1e-14));
+                CHECK((contact.normal - Vec3(0, 0, 1)).norm() < 1e-12);
+            }
+        }
 }

@@ -227,7 +227,8 @@
   }
 
   for (const name in modes)
-    for (const button of find(name).querySelectorAll("button")) button.addEventListener("click", () => set_mode(name, button.dataset.value));
+    for (const button of find(name).querySelectorAll("button"))
+      button.addEventListener("click", () => set_mode(name, button.dataset.value));
   for (const button of find("switches").children)
     button.addEventListener("click", () => set_switch(button.dataset.switch, !state[button.dataset.switch]));
   find("play").addEventListener("click", () => { set_playing(!state.playing); show(); });
