@@ -33,6 +33,7 @@ Json statistics_of(const RunResult& result) {
         {"status", result.status},
         {"seconds_simulated", simulated},
         {"steps", r.steps},
+        {"shortened_steps", r.shortened},
         {"seconds_wall", wall},
         {"seconds_load", result.seconds_load},
         {"seconds_output", result.seconds_output},

@@ -78,7 +78,8 @@ std::string summary_of(const RunResult& result) {
                                grouped(r.colliders) + " colliders");
     if (r.steps > 0)
         text += line("steps", grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
-                                  ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")");
+                                  ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
+                                  (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : ""));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " + with_unit(result.peak_kinetic_energy, "J") +
                                "), elastic " + with_unit(r.energy.elastic, "J") + ", potential " + with_unit(r.energy.potential, "J") +
