@@ -49,8 +49,7 @@ struct ColliderTable {
     Column<RigidMotion> initial;  // at time 0
     Column<MotionScript> script;
     Column<Keyframe> keyframe;         // of all colliders, by script range
-    Column<std::uint8_t> has_surface;  // 0: the contact takes the body's surface properties
-    Column<SurfaceProperties> surface;
+    Column<SurfaceProperties> surface;  // a property below zero: the contact takes the body's
     Column<Index> body;   // row of the kinematic body of a mesh collider, else no_index
     Column<Real> travel;  // m, how far any of its points near a body can have moved, as BodyTable::travel
 
@@ -61,7 +60,6 @@ struct ColliderTable {
         visit("motion", motion);
         visit("initial", initial);
         visit("script", script);
-        visit("has_surface", has_surface);
         visit("surface", surface);
         visit("body", body);
         visit("travel", travel);

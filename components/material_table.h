@@ -17,7 +17,7 @@ struct MaterialConstants {
     Real density;        // kg/m^3
 };
 
-/// What a contact needs of a surface. A collider without its own takes the body's.
+/// What a contact needs of a surface.
 struct SurfaceProperties {
     Real static_friction;
     Real dynamic_friction;

@@ -39,9 +39,12 @@ struct GeometryOf {
     ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
 };
 
+/// What is not given is left to the body: below zero.
 SurfaceProperties surface_of(const ColliderSettings& settings) {
-    const Real dynamic = settings.dynamic_friction.value_or(settings.friction.value_or(0));
-    return {settings.static_friction.value_or(std::max(dynamic, settings.friction.value_or(0))), dynamic, settings.restitution.value_or(0)};
+    constexpr Real left_to_the_body = -1;
+    const Real friction = settings.friction.value_or(left_to_the_body);
+    const Real dynamic = settings.dynamic_friction.value_or(friction);
+    return {settings.static_friction.value_or(std::max(friction, dynamic)), dynamic, settings.restitution.value_or(left_to_the_body)};
 }
 
 /// The smallest rotation that takes the z axis to a direction; half a turn about x takes it to its opposite.
@@ -121,7 +124,6 @@ Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape,
     table.geometry[row] = std::visit(GeometryOf{}, shape);
     table.initial[row] = table.motion[row] = initial_pose(shape, settings);
     table.script[row] = append_script(settings.motion, table.keyframe);
-    table.has_surface[row] = settings.friction || settings.static_friction || settings.dynamic_friction || settings.restitution;
     table.surface[row] = surface_of(settings);
     table.body[row] = no_index;
     table.travel[row] = 0;

@@ -28,7 +28,10 @@ SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Ind
     SurfaceProperties other = own;
     if (kind == PairKind::collider || inputs.body.kind[second] == BodyKind::kinematic) {
         const Index collider = kind == PairKind::collider ? second : inputs.body.collider[second];
-        if (inputs.collider.has_surface[collider]) other = inputs.collider.surface[collider];
+        const SurfaceProperties given = inputs.collider.surface[collider];
+        if (given.static_friction >= 0) other.static_friction = given.static_friction;
+        if (given.dynamic_friction >= 0) other.dynamic_friction = given.dynamic_friction;
+        if (given.restitution >= 0) other.restitution = given.restitution;
     } else {
         other = inputs.material_surface[inputs.body.material[second]];
     }

@@ -48,6 +48,7 @@ struct CollisionWorld {
         collider.slot[row] = next_slot++;
         collider.geometry[row] = {shape, size};
         collider.motion[row] = collider.initial[row] = motion;
+        collider.surface[row] = {-1, -1, -1};  // left to the body
         collider.body[row] = no_index;
         return static_cast<Index>(row);
     }
