@@ -44,6 +44,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     const Range nodes = state_->bodies.nodes[static_cast<std::size_t>(state_->row(body, "set_velocities"))];
     for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n)
         if (state_->nodes.inverse_mass[n] == 0) state_->nodes.velocity[n] = Vec3::Zero();
+    state_->search_afresh();  // the search counts on the speed of the last step
 }
 
 void World::set_loads(BodyHandle body, std::span<const Vec3> load) {

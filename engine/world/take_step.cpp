@@ -37,9 +37,11 @@ void add_travel(WorldState& world) {
     for (std::size_t b = 0; b < world.bodies.slot.size(); ++b) world.bodies.travel[b] += h * world.bodies.max_speed[b];
     for (std::size_t c = 0; c < world.colliders.slot.size(); ++c) {
         const RigidMotion& motion = world.colliders.motion[c];
-        // A turning shape moves its far points by any amount: it is looked at in every step.
-        const bool turns = !motion.angular_velocity.isZero(0);
-        world.colliders.travel[c] += turns ? std::numeric_limits<Real>::infinity() : h * motion.velocity.norm();
+        // A turning shape moves its far points fastest; what is near a body is within the extent that the search has noted.
+        const Real turning = motion.angular_velocity.norm();
+        const Column<Real>& extent = world.search.memory.collider_extent;
+        const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
+        world.colliders.travel[c] += h * (motion.velocity.norm() + rim_speed);
     }
 }
 

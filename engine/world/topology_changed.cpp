@@ -4,13 +4,17 @@
 
 namespace skerry {
 
+void WorldState::search_afresh() {
+    search.body_valid_until.clear();
+    search.collider_valid_until.clear();
+}
+
 void WorldState::topology_changed() {
     build_corners(elements.node, elements.volume, nodes.position.size(), corners);
     stiffness_sum.resize(nodes.position.size());
     // Rows have moved: pairs and contacts are found again. Impulses stay, since their keys name bodies by slot.
     pairs = PairTable{};
-    search.body_valid_until.clear();
-    search.collider_valid_until.clear();
+    search_afresh();
     contacts.resize(0);
     regions = RegionTable{};
     contact_view_is_current = false;

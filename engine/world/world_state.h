@@ -119,6 +119,8 @@ struct WorldState {
     Index row(AttachmentHandle attachment, const char* call) const;
 
     ElementInputs element_inputs() const;
+    /// Forgets what the search believes of distances.
+    void search_afresh();
     /// After bodies or colliders came or went: what is derived from all of them.
     void topology_changed();
 };
