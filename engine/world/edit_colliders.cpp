@@ -55,14 +55,24 @@ Mat3 turn_from_z(const Vec3& direction) {
     return rotation_matrix(axis * (std::atan2(sine, direction.z()) / sine));
 }
 
-/// A plane is given by a point and a normal in the collider's frame; inside its own frame it is z = 0.
-RigidMotion initial_pose(const Shape& shape, const ColliderSettings& settings) {
-    RigidMotion pose{settings.position, rotation_matrix(settings.rotation), Vec3::Zero(), Vec3::Zero()};
-    if (const auto* plane = std::get_if<Plane>(&shape)) {
-        pose.position += pose.rotation * plane->point;
-        pose.rotation = pose.rotation * turn_from_z(plane->normal);
+/// Where the shape's own frame is in the collider's. A plane is given by a point and a normal; in its own frame it is z = 0.
+RigidPose shape_frame(const Shape& shape) {
+    if (const auto* plane = std::get_if<Plane>(&shape)) return {plane->point, turn_from_z(plane->normal)};
+    return {Vec3::Zero(), Mat3::Identity()};
+}
+
+RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
+    return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
+}
+
+/// The same motion for the shape's own frame.
+Motion motion_of_shape(Motion motion, const RigidPose& frame) {
+    for (MotionKey& key : motion.keys) {
+        const RigidPose pose = compose({key.position, rotation_matrix(key.rotation)}, frame);
+        key.position = pose.position;
+        key.rotation = rotation_vector(pose.rotation);
     }
-    return pose;
+    return motion;
 }
 
 }  // namespace
@@ -122,8 +132,10 @@ Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape,
     table.for_each_row_column([row](const char*, auto& column) { column.resize(row + 1); });
     table.slot[row] = slot;
     table.geometry[row] = std::visit(GeometryOf{}, shape);
-    table.initial[row] = table.motion[row] = initial_pose(shape, settings);
-    table.script[row] = append_script(settings.motion, table.keyframe);
+    const RigidPose frame = shape_frame(shape);
+    const RigidPose placed = compose({settings.position, rotation_matrix(settings.rotation)}, frame);
+    table.initial[row] = table.motion[row] = {placed.position, placed.rotation, Vec3::Zero(), Vec3::Zero()};
+    table.script[row] = append_script(motion_of_shape(settings.motion, frame), table.keyframe);
     table.surface[row] = surface_of(settings);
     table.body[row] = no_index;
     table.travel[row] = 0;

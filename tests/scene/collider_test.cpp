@@ -1,6 +1,7 @@
 // A ball dropped on each kind of collider.
 #include <catch2/catch.hpp>
 
+#include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
@@ -86,6 +87,22 @@ TEST_CASE("a moving collider pushes a ball along and a moving plane carries it",
     REQUIRE(world.advance(1.0).ok());
     CHECK(world.center_of_mass(ball).x() > 0.35 + 0.04);  // face of the box is at -0.15 + 0.5
     CHECK(world.pose(world.colliders()[0]).position.x() == Approx(0.3));
+}
+
+TEST_CASE("a plane with its own normal keeps it while keys move it", "[scene]") {
+    World world;
+    const auto material = world.add_material({.young_modulus = 5e4, .damping = 200});
+    ColliderSettings wall;
+    wall.motion.keys = {{0, {-0.2, 0, 0}, Vec3::Zero()}, {1, {0.1, 0, 0}, Vec3::Zero()}};
+    world.add_collider(Plane{.normal = {1, 0, 0}}, wall);
+    world.add_collider(Plane{}, {.friction = 0.0});
+    const auto ball = world.add_body(mesh::ball(0.05, 6), {.material = material, .position = {0, 0, 0.051}});
+    REQUIRE(world.advance(1.0).ok());
+    Real nearest = 1e9;
+    for (const Vec3& x : world.positions(ball)) nearest = std::min(nearest, x.x());
+    CHECK(nearest > 0.1 - 1e-4);  // pushed along, and not thrown far
+    CHECK(world.center_of_mass(ball).x() < 0.3);
+    CHECK((rotation_matrix(world.pose(world.colliders()[0]).rotation) * Vec3::UnitZ() - Vec3::UnitX()).norm() < 1e-12);
 }
 
 TEST_CASE("a scene in which nothing is close skips the contact branch", "[scene]") {
