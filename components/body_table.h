@@ -44,7 +44,8 @@ struct BodyTable {
     Column<Real> rest_step;         // s, stable step of the rest shape
     Column<Real> stable_step;       // s, as last watched
     Column<Real> max_speed;         // m/s, of this step's motion
-    Column<Real> travel;            // m, sum of step times max_speed since the body was added: no node moved further
+    Column<Real> drift;             // m, greatest distance of a node from its drift origin
+    Column<Real> travel;  // m: since any earlier time no node has come further than the growth of travel plus twice the drift then
 
     void for_each_column(auto&& visit) {
         visit("slot", slot);
@@ -67,6 +68,7 @@ struct BodyTable {
         visit("rest_step", rest_step);
         visit("stable_step", stable_step);
         visit("max_speed", max_speed);
+        visit("drift", drift);
         visit("travel", travel);
     }
 };

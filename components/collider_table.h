@@ -48,10 +48,10 @@ struct ColliderTable {
     Column<RigidMotion> motion;   // of this step, by move_colliders
     Column<RigidMotion> initial;  // at time 0
     Column<MotionScript> script;
-    Column<Keyframe> keyframe;         // of all colliders, by script range
+    Column<Keyframe> keyframe;          // of all colliders, by script range
     Column<SurfaceProperties> surface;  // a property below zero: the contact takes the body's
-    Column<Index> body;   // row of the kinematic body of a mesh collider, else no_index
-    Column<Real> travel;  // m, how far any of its points near a body can have moved, as BodyTable::travel
+    Column<Index> body;                 // row of the kinematic body of a mesh collider, else no_index
+    Column<Real> travel;                // m, how far any of its points near a body can have moved, as BodyTable::travel
 
     /// All columns that have one row per collider; `keyframe` is ragged and is visited on its own by for_each_column.
     void for_each_row_column(auto&& visit) {

@@ -24,6 +24,7 @@ struct NodeBlockTable {
     Column<Index> end;               // one past the last node
     Column<Index> body;              // row of BodyTable
     Column<Real> max_speed_squared;  // m^2/s^2, of velocity_next + push_out, by check_state; not a number if any node's is not finite
+    Column<Real> drift_squared;      // m^2, by measure_drift
     Column<NodeBlockSums> sums;      // by damp_velocity
 
     void for_each_column(auto&& visit) {
@@ -31,6 +32,7 @@ struct NodeBlockTable {
         visit("end", end);
         visit("body", body);
         visit("max_speed_squared", max_speed_squared);
+        visit("drift_squared", drift_squared);
         visit("sums", sums);
     }
 };

@@ -15,6 +15,7 @@ struct NodeTable {
     Column<Vec3> force;          // N, elastic and external, overwritten by gather_node_forces
     Column<Vec3> load;           // N, set by the user, kept until changed
     Column<Vec3> rest_position;  // m, as added, in the frame of the mesh
+    Column<Vec3> drift_origin;   // m, where the node was when the drift of its body was last zero
     Column<Real> mass;           // kg, lumped
     Column<Real> inverse_mass;   // 1/kg, 0: pinned or kinematic
     Column<Index> body;          // row of BodyTable
@@ -35,6 +36,7 @@ struct NodeTable {
         visit("velocity_next", velocity_next);
         visit("push_out", push_out);
         visit("force", force);
+        visit("drift_origin", drift_origin);
     }
 };
 

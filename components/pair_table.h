@@ -80,6 +80,7 @@ struct SearchMemory {
     std::vector<Column<Real>> asleep_until;
     Column<Index> expired;                      // rows of PairTable
     Column<std::uint8_t> needs_refit;           // by body
+    Column<std::uint8_t> rebase;                // by body: its drift costs a pair much; measure_drift sets it to zero
     Column<Index> refit;                        // rows of BodyTable
     std::vector<Column<FoundCandidate>> found;  // by expired pair
 };

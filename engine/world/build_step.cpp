@@ -7,6 +7,7 @@
 #include "systems/dynamics/advance_positions.h"
 #include "systems/dynamics/damp_velocity.h"
 #include "systems/dynamics/gather_node_forces.h"
+#include "systems/dynamics/measure_drift.h"
 #include "systems/dynamics/move_colliders.h"
 #include "systems/dynamics/predict_velocity.h"
 
@@ -113,6 +114,15 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
     const auto trusted = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
     g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), write(n.push_out), write(n.position),
             write(n.velocity), trusted);
+    g.stage("dynamics/measure_drift", measure_drift,
+            bundle([&n, &b, &k] { return DriftInputs{k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position}; },
+                   reads(k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position)),
+            bundle(
+                [&w, &n, &b, &k] {
+                    return DriftOutputs{n.drift_origin, k.drift_squared, w.search.memory.rebase, b.drift, b.travel};
+                },
+                writes(n.drift_origin, k.drift_squared, w.search.memory.rebase, b.drift, b.travel)),
+            trusted);
     g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse), value(w.step.h), make(w.warm_start),
             trusted);
 }

@@ -32,9 +32,9 @@ void put_back_driven_velocities(WorldState& world) {
         world.nodes.velocity[static_cast<std::size_t>(world.attachments.node[i])] = world.velocity_before_drive[i];
 }
 
-void add_travel(WorldState& world) {
+/// Bodies have theirs from measure_drift.
+void add_collider_travel(WorldState& world) {
     const Real h = world.step.h;
-    for (std::size_t b = 0; b < world.bodies.slot.size(); ++b) world.bodies.travel[b] += h * world.bodies.max_speed[b];
     for (std::size_t c = 0; c < world.colliders.slot.size(); ++c) {
         const RigidMotion& motion = world.colliders.motion[c];
         // A turning shape moves its far points fastest; what is near a body is within the extent that the search has noted.
@@ -145,7 +145,7 @@ void take_step(WorldState& world, Real h) {
         return;
     }
     world.elements.rotation.swap(world.elements.rotation_next);
-    add_travel(world);
+    add_collider_travel(world);
     count(world);
     world.counters.inline_steps += small;
     world.step.time += h;

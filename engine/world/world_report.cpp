@@ -75,7 +75,8 @@ std::string StepReport::message() const {
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
         case StepStatus::too_fast:
             return "the step was not taken: " + who + where + " would move by " + std::to_string(value) +
-                   " of its smallest element altitude in one step; in a sixty-fourth of the stable step, too; lower its velocities and loads, or raise "
+                   " of its smallest element altitude in one step; in a sixty-fourth of the stable step, too; lower its velocities and "
+                   "loads, or raise "
                    "max_strain_step";
     }
     return {};

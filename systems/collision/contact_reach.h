@@ -1,8 +1,9 @@
 // How far apart things can be and still matter. All budgets of the collision stages rest on this page.
 //
 // 1. A candidate becomes a contact of this step when gap <= reach(h, its own relative speed, ...): it could close within the step.
-// 2. `travel` of a body bounds how far any of its nodes has moved since it was added, so a distance d measured when the travels of a pair
-//    summed to T0 is at least d - (T - T0) later. `front` = T + what the two may close in this step, by their greatest speeds; it bounds
+// 2. No node of a body has come further since some time than the growth of `travel` since then plus twice the `drift` at that time
+//    (measure_drift.h). So a distance d of a pair is at least d - (T - T0) later, where T is the sum of both travels later and T0 that sum
+//    now less twice both drifts (pair_datum). `front` = T + what the two may close in this step, by their greatest speeds; it bounds
 //    T + reach of every candidate of the pair from above.
 // 3. A candidate with gap g at T0 cannot be a contact while front < T0 + g. That is asleep_until: one comparison.
 // 4. A candidate list that holds everything nearer than zone + m at T0 (zone: the distance at which a candidate matters, whatever the
@@ -51,6 +52,12 @@ SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Ind
 inline Real pair_travel(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
     const Real own = inputs.body.travel[first];
     return own + (kind == PairKind::collider ? inputs.collider.travel[second] : inputs.body.travel[second]);
+}
+
+/// T0 of the page above, m: what is noted now holds while front is below it plus a distance.
+inline Real pair_datum(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
+    const Real drift = inputs.body.drift[first] + (kind == PairKind::collider ? 0 : inputs.body.drift[second]);
+    return pair_travel(inputs, kind, first, second) - 2 * drift;
 }
 
 }  // namespace skerry

@@ -87,7 +87,7 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
                   const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
-    pair.travel = pair_travel(inputs, pair.kind, pair.first, pair.second);
+    pair.datum = pair_datum(inputs, pair.kind, pair.first, pair.second);
     pair.margin = settings.pair_skin * pair.scale.edge + closing(inputs, memory, pair, h);
     if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
@@ -97,6 +97,20 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     for (std::size_t i = 0; i < found.size(); ++i) {
         pairs.candidates[p][i] = found[i].candidate;
         pairs.asleep_until[p][i] = found[i].asleep_until;
+    }
+}
+
+/// Bodies whose drift has cost a searched pair a good part of its skin.
+void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory, const PairTable& pairs) {
+    constexpr Real good_part = 0.25;
+    memory.rebase.resize(inputs.body.slot.size());
+    const auto ask = [&](Index b, Real skin) {
+        if (2 * inputs.body.drift[b] > good_part * skin) memory.rebase[b] = 1;
+    };
+    for (Index p : memory.expired) {
+        const Real skin = settings.pair_skin * pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).edge;
+        ask(pairs.first[p], skin);
+        if (pairs.kind[p] != PairKind::collider) ask(pairs.second[p], skin);
     }
 }
 
@@ -127,6 +141,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
         for (std::size_t i = begin; i < end; ++i)
             search_again(inputs, settings, h, boxes, memory.expired[i], memory, pairs, memory.found[i]);
     });
+    ask_for_rebase(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();
     search.candidate_count = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) search.candidate_count += pairs.candidates[p].size();

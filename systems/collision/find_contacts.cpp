@@ -79,8 +79,8 @@ private:
     void prepare() {
         scale_ = pair_scale(inputs_, kind_, first_, second_);
         surface_ = pair_surface(inputs_, kind_, first_, second_);
-        travel_ = pair_travel(inputs_, kind_, first_, second_);
-        const Real closing = front_ - travel_;
+        datum_ = pair_datum(inputs_, kind_, first_, second_);
+        const Real closing = front_ - pair_travel(inputs_, kind_, first_, second_);
         near_ = scale_.contact_distance + (closing >= 0 ? closing : 0);
         prepared_ = true;
     }
@@ -123,7 +123,7 @@ private:
         const RigidMotion& motion = inputs_.collider.motion[candidate.second];
         const SurfacePoint nearest = distance_to_collider_part(inputs_.collider.geometry[candidate.second], motion,
                                                                second_local(candidate.feature), inputs_.position[node]);
-        asleep_until_[c] = travel_ + nearest.distance - scale_.contact_distance;
+        asleep_until_[c] = datum_ + nearest.distance - scale_.contact_distance;
         if (!(nearest.distance <= near_)) return;
         const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(nearest.point - motion.position);
         if (!within_reach(nearest.distance, (inputs_.velocity[node] - velocity).norm())) return;
@@ -135,7 +135,7 @@ private:
         const Index node = inputs_.surface.vertices.node[candidate.first];
         const PointTriangleContact contact =
             point_triangle_contact(inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_);
-        asleep_until_[c] = travel_ + contact.sleep;
+        asleep_until_[c] = datum_ + contact.sleep;
         if (contact.side == Side::none) return;
         const auto& corner = inputs_.surface.triangles.node[candidate.second];
         Real speed_squared = 0;
@@ -183,7 +183,7 @@ private:
     void edge_against_edge(Index c, const Candidate& candidate) {
         const EdgeEdgeContact contact =
             edge_edge_contact(inputs_.surface, inputs_.position, candidate.first, candidate.second, scale_, near_);
-        asleep_until_[c] = travel_ + contact.sleep;
+        asleep_until_[c] = datum_ + contact.sleep;
         if (!contact.touching) return;
         const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
         Real speed_squared = 0;
@@ -208,7 +208,7 @@ private:
     bool prepared_ = false;
     PairScale scale_;
     SurfaceProperties surface_;
-    Real travel_ = 0;
+    Real datum_ = 0;
     Real near_ = 0;
 };
 

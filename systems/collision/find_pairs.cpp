@@ -54,7 +54,7 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
     parallel_for(executor, body.slot.size(), bodies_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             const Real travel = is_movable(body, static_cast<Index>(b)) ? settings.broad_skin / 2 * body.mean_edge[b] : common_travel;
-            search.body_valid_until[b] = memory.body_front[b] + travel;
+            search.body_valid_until[b] = memory.body_front[b] - 2 * body.drift[b] + travel;
             fit(inputs, static_cast<Index>(b), memory.box[b], memory.sphere[b]);
             const Real margin = memory.body_front[b] - body.travel[b] + travel + body.contact_distance[b] / 2;
             widen(memory.box[b], margin);

@@ -161,7 +161,7 @@ private:
 
     /// It sleeps until it may have come within the zone in which it is looked at closely.
     void add(const Candidate& candidate, Real squared, Real zone) {
-        found_.push_back({candidate, pair_.travel + std::sqrt(squared) - zone});
+        found_.push_back({candidate, pair_.datum + std::sqrt(squared) - zone});
     }
 
     const CollisionInputs& inputs_;
@@ -181,11 +181,11 @@ Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std:
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return infinite;
     const Real apart = std::max(pair.apart, std::sqrt(distance_squared(boxes[first.begin], boxes[second.begin]))) - pair.scale.zone;
-    if (apart >= pair.margin) return pair.travel + apart;
+    if (apart >= pair.margin) return pair.datum + apart;
     BodySearch(inputs, pair, boxes, found).run();
     std::sort(found.begin(), found.end(),
               [](const FoundCandidate& a, const FoundCandidate& b) { return a.candidate.feature < b.candidate.feature; });
-    return pair.travel + pair.margin;
+    return pair.datum + pair.margin;
 }
 
 Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found) {
@@ -201,10 +201,10 @@ Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Co
             const Real distance = distance_to_collider_part(geometry, motion, part, point).distance;
             nearest = distance < nearest ? distance : nearest;
             if (!(distance < radius)) continue;
-            found.push_back({{point_collider_feature(v - vertices.begin, part), v, pair.second}, pair.travel + distance - pair.scale.zone});
+            found.push_back({{point_collider_feature(v - vertices.begin, part), v, pair.second}, pair.datum + distance - pair.scale.zone});
         }
     }
-    return pair.travel + std::max(pair.margin, nearest - pair.scale.zone);
+    return pair.datum + std::max(pair.margin, nearest - pair.scale.zone);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ struct PairToSearch {
     Index first;
     Index second;
     PairScale scale;
-    Real travel;  // m, sum of both
+    Real datum;   // m, pair_datum of both
     Real margin;  // m: features nearer than scale.zone + margin are listed
     Real apart;   // m, a lower bound of the distance of two bodies
 };
