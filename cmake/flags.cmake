@@ -5,8 +5,8 @@ target_compile_features(skerry_flags INTERFACE cxx_std_20)
 target_compile_options(skerry_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -fno-math-errno -fno-trapping-math -fopenmp-simd -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # gcc 12 warns of its own AVX-512 headers and of Eigen's moves; later versions do not.
-    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
+    # gcc 12 warns of its own AVX-512 headers, of Eigen's moves and of std::string's concatenation (GCC bug 105651); later versions do not.
+    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict>)
 endif()
 if(SKERRY_ARCH)
     include(CheckCXXCompilerFlag)
