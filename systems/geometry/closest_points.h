@@ -13,8 +13,8 @@ enum class TriangleRegion : std::uint8_t { face, edge01, edge12, edge20, vertex0
 struct PointTriangle {
     std::array<Real, 3> weight;  // barycentric, sum 1, each in [0, 1]
     TriangleRegion region;
-    Vec3 nearest;                // m
-    Real distance_squared;       // m^2
+    Vec3 nearest;           // m
+    Real distance_squared;  // m^2
 };
 
 /// Nearest point of triangle abc to p (Ericson, Real-Time Collision Detection, 5.1.5). A triangle without area is treated as its longest edge.

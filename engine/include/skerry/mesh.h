@@ -47,11 +47,11 @@ Mesh skittle(Real height, int resolution);
 
 /// A table: a top of size x by y by thickness on four square legs, standing on z = 0. `cells_per_leg` elements across a leg.
 struct TableShape {
-    Real length = 0.5;       // m, along x
-    Real width = 0.3;        // m, along y
-    Real height = 0.3;       // m
-    Real thickness = 0.05;   // m, of the top
-    Real leg = 0.05;         // m, edge of a leg
+    Real length = 0.5;      // m, along x
+    Real width = 0.3;       // m, along y
+    Real height = 0.3;      // m
+    Real thickness = 0.05;  // m, of the top
+    Real leg = 0.05;        // m, edge of a leg
     int cells_per_leg = 1;
 };
 Mesh table(const TableShape& shape);
@@ -75,13 +75,13 @@ SurfaceMesh boundary(const Mesh& mesh);
 /// What `skerry inspect` prints of a mesh.
 struct MeshReport {
     std::size_t nodes = 0, tetrahedra = 0, boundary_triangles = 0, components = 0;
-    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();   // m
-    Real volume = 0;                                   // m^3
-    Real mean_edge = 0, min_edge = 0, max_edge = 0;    // m
-    Real min_altitude = 0;                             // m
-    Real min_quality = 0, mean_quality = 0;            // 12 (3 V)^(2/3) / sum of squared edges: 1 is regular, < 0 inverted
-    std::size_t inverted = 0, flat = 0;                // tetrahedra of negative, of no volume
-    bool closed_manifold = false;                      // every boundary edge has two triangles
+    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // m
+    Real volume = 0;                                  // m^3
+    Real mean_edge = 0, min_edge = 0, max_edge = 0;   // m
+    Real min_altitude = 0;                            // m
+    Real min_quality = 0, mean_quality = 0;           // 12 (3 V)^(2/3) / sum of squared edges: 1 is regular, < 0 inverted
+    std::size_t inverted = 0, flat = 0;               // tetrahedra of negative, of no volume
+    bool closed_manifold = false;                     // every boundary edge has two triangles
 };
 MeshReport inspect(const Mesh& mesh);
 

@@ -15,10 +15,10 @@ namespace skerry {
 /// dual cone. W in compressed rows of 3x3 blocks.
 struct ContactProblem {
     std::string name;
-    std::vector<Index> row_offset;      // contacts + 1
-    std::vector<Index> column;          // block columns, ascending in a row; the diagonal is always there
-    std::vector<Mat3> block;            // s/kg
-    std::vector<Vec3> q;                // m/s
+    std::vector<Index> row_offset;  // contacts + 1
+    std::vector<Index> column;      // block columns, ascending in a row; the diagonal is always there
+    std::vector<Mat3> block;        // s/kg
+    std::vector<Vec3> q;            // m/s
     std::vector<Real> mu;
 
     Index contacts() const { return static_cast<Index>(q.size()); }
@@ -27,18 +27,18 @@ struct ContactProblem {
 struct ProblemSettings {
     SolverMethod method = SolverMethod::pgs;
     Friction friction = Friction::cone;
-    Real tolerance = 1e-6;          // on `error`
+    Real tolerance = 1e-6;  // on `error`
     Index max_iterations = 100000;
 };
 
 struct ProblemSolution {
-    std::vector<Vec3> reaction;     // N s, in the frames of the problem
+    std::vector<Vec3> reaction;  // N s, in the frames of the problem
     Index regions = 0;
-    Index iterations = 0;           // the most of any region
-    double seconds = 0;             // of the solve alone; median of repeated solves when it is short
-    Real error = 0;                 // of FCLIB and Siconos: |e| / max(|q|, |r|, |u|)
-    Real error_absolute = 0;        // |e|
-    Real error_over_q = 0;          // |e| / |q|
+    Index iterations = 0;     // the most of any region
+    double seconds = 0;       // of the solve alone; median of repeated solves when it is short
+    Real error = 0;           // of FCLIB and Siconos: |e| / max(|q|, |r|, |u|)
+    Real error_absolute = 0;  // |e|
+    Real error_over_q = 0;    // |e| / |q|
     bool converged = false;
 };
 

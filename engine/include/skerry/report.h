@@ -17,33 +17,33 @@ enum class ContactMotion { open, stick, slide };
 
 /// One contact of the last step.
 struct Contact {
-    BodyHandle first{};             // the body of the point, or of the first edge
-    BodyHandle second{};            // the other body, or a stale handle (collider contacts)
-    ColliderHandle collider{};      // the collider, or a stale handle
-    std::array<Index, 4> node{};    // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
+    BodyHandle first{};           // the body of the point, or of the first edge
+    BodyHandle second{};          // the other body, or a stale handle (collider contacts)
+    ColliderHandle collider{};    // the collider, or a stale handle
+    std::array<Index, 4> node{};  // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
     std::array<Real, 4> weight{};
-    Vec3 point = Vec3::Zero();      // m
-    Vec3 normal = Vec3::Zero();     // unit, towards the first body
-    Real gap = 0;                   // m, > 0 apart, measured from the contact shell
-    Vec3 slip = Vec3::Zero();       // m/s, tangential relative velocity after the step
-    Vec3 impulse = Vec3::Zero();    // N s, on the first body
+    Vec3 point = Vec3::Zero();    // m
+    Vec3 normal = Vec3::Zero();   // unit, towards the first body
+    Real gap = 0;                 // m, > 0 apart, measured from the contact shell
+    Vec3 slip = Vec3::Zero();     // m/s, tangential relative velocity after the step
+    Vec3 impulse = Vec3::Zero();  // N s, on the first body
     ContactMotion motion = ContactMotion::open;
-    Index region = -1;              // -1: none of its nodes moves
+    Index region = -1;  // -1: none of its nodes moves
 };
 
 /// Seconds and runs of one stage.
 struct StageReport {
-    std::string name;      // folder/stage
+    std::string name;  // folder/stage
     double seconds = 0;
     std::uint64_t runs = 0;
     std::uint64_t skipped = 0;
 };
 
 struct Energy {
-    Real kinetic = 0;      // J
-    Real elastic = 0;      // J
-    Real potential = 0;    // J, of weight, relative to the origin
-    Real dissipated = 0;   // J, by contacts and damping, since the start
+    Real kinetic = 0;     // J
+    Real elastic = 0;     // J
+    Real potential = 0;   // J, of weight, relative to the origin
+    Real dissipated = 0;  // J, by contacts and damping, since the start
 };
 
 /// What `advance` did. Cheap: no allocation unless something went wrong.
@@ -54,20 +54,20 @@ public:
     std::string message() const;
 
     StepStatus status = StepStatus::ok;
-    BodyHandle body;               // to blame, when not ok
-    Index node = -1;               // local, when one node is to blame
-    Real value = 0;                // too_fast: displacement over smallest altitude
-    Real step_size = 0;            // s, of the steps taken
-    int steps = 0;                 // committed
-    int shortened = 0;             // tries given up because a body was too fast; each was repeated at half the length
-    Index contacts = 0;            // of the last step
+    BodyHandle body;     // to blame, when not ok
+    Index node = -1;     // local, when one node is to blame
+    Real value = 0;      // too_fast: displacement over smallest altitude
+    Real step_size = 0;  // s, of the steps taken
+    int steps = 0;       // committed
+    int shortened = 0;   // tries given up because a body was too fast; each was repeated at half the length
+    Index contacts = 0;  // of the last step
     Index regions = 0;
-    Index largest_region = 0;      // contacts
-    Index unconverged = 0;         // regions, summed over the steps
-    Real worst_error = 0;          // largest relative error of a region over the steps
-    Real max_penetration = 0;      // m, overlap of surfaces, largest over the steps
-    Real max_gap_violation = 0;    // m, pressed into the contact shell, largest over the steps
-    std::string body_name;         // when not ok
+    Index largest_region = 0;    // contacts
+    Index unconverged = 0;       // regions, summed over the steps
+    Real worst_error = 0;        // largest relative error of a region over the steps
+    Real max_penetration = 0;    // m, overlap of surfaces, largest over the steps
+    Real max_gap_violation = 0;  // m, pressed into the contact shell, largest over the steps
+    std::string body_name;       // when not ok
 };
 
 /// Sums since the world was made. Asking walks all tables; the run itself keeps only counters.
@@ -75,24 +75,24 @@ struct WorldReport {
     Real time = 0;
     std::uint64_t steps = 0;
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
-    Real stable_step = 0;                       // s, of the stiffest body, now
-    std::string stable_step_body;               // which body that is
-    std::vector<StageReport> stages;            // in the order of the step
+    Real stable_step = 0;                                             // s, of the stiffest body, now
+    std::string stable_step_body;                                     // which body that is
+    std::vector<StageReport> stages;                                  // in the order of the step
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
-    std::uint64_t unconverged = 0;              // regions
-    std::uint64_t certified = 0;                // regions whose warm start needed no sweep
-    std::uint64_t closed_form = 0;              // regions of one contact
-    std::uint64_t solved = 0;                   // regions
+    std::uint64_t unconverged = 0;  // regions
+    std::uint64_t certified = 0;    // regions whose warm start needed no sweep
+    std::uint64_t closed_form = 0;  // regions of one contact
+    std::uint64_t solved = 0;       // regions
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
-    std::uint64_t inline_steps = 0;             // too small to pay for threads
-    std::uint64_t shortened = 0;                // steps tried again at half the length, since a body was too fast
+    std::uint64_t inline_steps = 0;  // too small to pay for threads
+    std::uint64_t shortened = 0;     // steps tried again at half the length, since a body was too fast
     Energy energy;
-    Vec3 momentum = Vec3::Zero();               // kg m/s
-    Vec3 angular_momentum = Vec3::Zero();       // kg m^2/s, about the origin
+    Vec3 momentum = Vec3::Zero();                     // kg m/s
+    Vec3 angular_momentum = Vec3::Zero();             // kg m^2/s, about the origin
     Real max_penetration = 0, max_gap_violation = 0;  // m, over the run
-    Real worst_volume_ratio = 1;                // smallest det F now; < 0 is inverted
+    Real worst_volume_ratio = 1;                      // smallest det F now; < 0 is inverted
     std::string worst_volume_body;
 };
 

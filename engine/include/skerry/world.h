@@ -53,15 +53,15 @@ public:
     void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
     /// External forces on the nodes, kept until set again, N.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
-    std::span<const std::array<Index, 3>> surface(BodyHandle body) const;        // boundary triangles, local nodes
-    std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;     // local nodes
-    std::vector<Real> von_mises_stress(BodyHandle body) const;                   // Pa, by tetrahedron
+    std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // boundary triangles, local nodes
+    std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // local nodes
+    std::vector<Real> von_mises_stress(BodyHandle body) const;                // Pa, by tetrahedron
     const std::string& name(BodyHandle body) const;
-    Real mass(BodyHandle body) const;                                            // kg
-    Vec3 center_of_mass(BodyHandle body) const;                                  // m
-    Real contact_distance(BodyHandle body) const;                                // m
-    Real mean_edge(BodyHandle body) const;                                       // m, of the rest surface
-    std::vector<BodyHandle> bodies() const;                                      // in the order added
+    Real mass(BodyHandle body) const;              // kg
+    Vec3 center_of_mass(BodyHandle body) const;    // m
+    Real contact_distance(BodyHandle body) const;  // m
+    Real mean_edge(BodyHandle body) const;         // m, of the rest surface
+    std::vector<BodyHandle> bodies() const;        // in the order added
     std::vector<ColliderHandle> colliders() const;
     /// Pose of a collider now: position and rotation (axis times angle).
     MotionKey pose(ColliderHandle collider) const;
@@ -69,7 +69,7 @@ public:
     const std::string& name(ColliderHandle collider) const;
 
     // What happened.
-    std::span<const Contact> contacts() const;   // of the last step, in a fixed order
+    std::span<const Contact> contacts() const;  // of the last step, in a fixed order
     WorldReport report() const;
     Energy energy() const;
     /// Hash of everything that the next step depends on; equal on any number of threads and on every backend.
