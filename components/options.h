@@ -13,7 +13,7 @@ enum class MaterialModel { linear, corotational, stable_neo_hookean };
 enum class Friction { cone, pyramid };
 enum class ContactRegions { separate, global, paper_algorithm_1 };
 enum class SolverMethod { pgs, pcg_pgs };
-enum class Backend { tbb, openmp, threads, serial };
+enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
 enum class WarmStart { off, on };
 
 template <class Enum>
@@ -51,11 +51,12 @@ struct EnumNames<SolverMethod> {
 };
 template <>
 struct EnumNames<Backend> {
-    static constexpr std::array<std::pair<Backend, std::string_view>, 4> table{{
+    static constexpr std::array<std::pair<Backend, std::string_view>, 5> table{{
         {Backend::tbb, "tbb"},
         {Backend::openmp, "openmp"},
         {Backend::threads, "threads"},
         {Backend::serial, "serial"},
+        {Backend::automatic, "automatic"},
     }};
 };
 template <>

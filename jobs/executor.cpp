@@ -18,6 +18,8 @@ constexpr std::array built_backends{SKERRY_BACKEND_LIST Backend::serial};
 std::unique_ptr<Executor> make_executor(Backend backend, int workers) {
     if (workers < 0) throw std::invalid_argument("the number of workers is negative: " + std::to_string(workers));
     switch (backend) {
+        case Backend::automatic:
+            return make_executor(built_backends.front(), workers);
 #ifdef SKERRY_HAS_TBB
         case Backend::tbb:
             return make_tbb_executor(workers);

@@ -36,7 +36,7 @@ public:
     virtual void run_graph(const GraphEdges& edges, FunctionRef<void(Index stage)> run_stage) = 0;
 };
 
-/// Workers of the given backend. `workers` 0 means: as many as the caller's arena has (tbb), as OMP_NUM_THREADS says (openmp), as the
+/// Workers of the given backend, or for automatic of the first of this build. `workers` 0 means: as many as the caller's arena has (tbb), as OMP_NUM_THREADS says (openmp), as the
 /// machine has cores (threads). With tbb and 0 the work runs in the arena that the caller is in. Throws std::invalid_argument when this
 /// build lacks the backend.
 std::unique_ptr<Executor> make_executor(Backend backend, int workers);

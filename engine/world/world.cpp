@@ -32,6 +32,7 @@ Index live_row(const Map& map, HandleType handle, const char* call, const char* 
 }  // namespace
 
 WorldState::WorldState(const Settings& wanted) : settings(wanted), executor(make_executor(wanted.backend, wanted.threads)) {
+    settings.backend = executor->backend();
     step.gravity = settings.gravity;
     step.contact_regions = settings.contact_regions;
     step.max_strain_step = settings.max_strain_step;
