@@ -1,5 +1,5 @@
-# skerry_readme_code(README SOURCE): writes the first block of C++ in README as a program: its includes, then the rest as the body of main.
-# Writes nothing, and removes what it wrote before, when there is no such block.
+# skerry_readme_code(README SOURCE): writes the first block of C++ in README as a program: as it is when it has a main, else its includes,
+# then the rest as the body of main. Writes nothing, and removes what it wrote before, when there is no such block.
 function(skerry_readme_code readme source)
     set(text "")
     if(EXISTS ${readme})
@@ -14,6 +14,11 @@ function(skerry_readme_code readme source)
     string(SUBSTRING "${text}" ${begin} -1 text)
     string(FIND "${text}" "```" end)
     string(SUBSTRING "${text}" 0 ${end} code)
+
+    if(code MATCHES "int main\\(")
+        file(CONFIGURE OUTPUT ${source} @ONLY CONTENT "// From README.md.\n@code@")
+        return()
+    endif()
 
     # Lines cannot be told apart as a list: code is full of semicolons.
     set(includes "")
