@@ -88,6 +88,7 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.nodes;
     ContactTable& c = w.contacts;
     BodyTable& b = w.bodies;
+    ElementBlockTable& e = w.elements;
     NodeBlockTable& k = w.node_blocks;
     g.stage("solver/solve_regions", solve_regions,
             bundle(
@@ -107,9 +108,12 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
                         write(c.slip), write(c.state), value(w.step.solver.friction));
     g.stage_with_result(
         "dynamics/check_state", w.step.verdict, check_state,
-        bundle([&n, &b,
-                &k] { return CheckInputs{k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out}; },
-               reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out)),
+        bundle(
+            [&n, &b, &k, &e] {
+                return CheckInputs{k.begin,    k.end,           k.body,     b.node_blocks, b.min_altitude,
+                                   n.velocity, n.velocity_next, n.push_out, e.node,        b.blocks};
+            },
+            reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out, e.node, b.blocks)),
         value(w.step.h), value(w.step.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
     const auto trusted = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
     g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), write(n.push_out), write(n.position),

@@ -17,6 +17,12 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
     return script;
 }
 
+/// The pose at time 0 of what is at `pose` now and moves by constant velocities: scripts count from time 0.
+RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
+    return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation, Vec3::Zero(),
+            Vec3::Zero()};
+}
+
 /// Erases one row of a table with a ragged key list.
 void erase_scripted_row(auto& table, std::size_t row) {
     const Index begin = table.script[row].key_begin, count = table.script[row].key_end - begin;
@@ -77,26 +83,28 @@ Motion motion_of_shape(Motion motion, const RigidPose& frame) {
 
 }  // namespace
 
-Index append_attachment(WorldState& world, std::uint32_t slot, Index body, std::span<const Index> nodes, const RigidMotion& initial,
+Index append_attachment(WorldState& world, std::uint32_t slot, Index body, std::span<const Index> nodes, const RigidPose& pose,
                         const Motion& motion) {
     AttachmentTable& table = world.attachments;
     const std::size_t row = table.slot.size();
     table.for_each_row_column([row](const char*, auto& column) { column.resize(row + 1); });
     table.slot[row] = slot;
     table.body[row] = body;
+    table.initial[row] = initial_of(pose, motion, world.step.time);
+    table.script[row] = append_script(motion, table.keyframe);
+    const RigidPose now = pose_at(table.script[row], table.keyframe, table.initial[row], world.step.time);
+    table.motion[row] = {now.position, now.rotation, Vec3::Zero(), Vec3::Zero()};
     table.nodes[row].begin = static_cast<Index>(table.node.size());
     const auto b = static_cast<std::size_t>(body);
     for (Index local : nodes) {
         const auto n = static_cast<std::size_t>(world.bodies.nodes[b].begin + local);
         table.node.push_back(static_cast<Index>(n));
-        table.anchor.push_back(initial.rotation.transpose() * (world.nodes.position[n] - initial.position));
+        table.anchor.push_back(now.rotation.transpose() * (world.nodes.position[n] - now.position));
         if (world.nodes.inverse_mass[n] > 0) ++world.bodies.pinned_count[b];
         world.nodes.inverse_mass[n] = 0;
         world.nodes.velocity[n] = Vec3::Zero();
     }
     table.nodes[row].end = static_cast<Index>(table.node.size());
-    table.initial[row] = table.motion[row] = initial;
-    table.script[row] = append_script(motion, table.keyframe);
     return static_cast<Index>(row);
 }
 
@@ -134,15 +142,16 @@ Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape,
     table.geometry[row] = std::visit(GeometryOf{}, shape);
     const RigidPose frame = shape_frame(shape);
     const RigidPose placed = compose({settings.position, rotation_matrix(settings.rotation)}, frame);
-    table.initial[row] = table.motion[row] = {placed.position, placed.rotation, Vec3::Zero(), Vec3::Zero()};
+    table.initial[row] = initial_of(placed, settings.motion, world.step.time);
     table.script[row] = append_script(motion_of_shape(settings.motion, frame), table.keyframe);
+    const RigidPose now = pose_at(table.script[row], table.keyframe, table.initial[row], world.step.time);
+    table.motion[row] = {now.position, now.rotation, Vec3::Zero(), Vec3::Zero()};
     table.surface[row] = surface_of(settings);
     table.body[row] = no_index;
     table.travel[row] = 0;
     world.collider_records.push_back({settings.name, shape});
 
     if (const auto* surface = std::get_if<SurfaceMesh>(&shape)) {
-        const RigidMotion& pose = table.initial[row];
         table.body[row] = append_body(world, {.slot = slot,
                                               .kind = BodyKind::kinematic,
                                               .self_contact = false,
@@ -152,13 +161,13 @@ Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape,
                                               .nodes = surface->nodes,
                                               .tetrahedra = {},
                                               .triangles = surface->triangles,
-                                              .position = pose.position,
-                                              .rotation = pose.rotation,
+                                              .position = now.position,
+                                              .rotation = now.rotation,
                                               .velocity = Vec3::Zero(),
                                               .angular_velocity = Vec3::Zero()});
         std::vector<Index> all(surface->nodes.size());
         for (std::size_t n = 0; n < all.size(); ++n) all[n] = static_cast<Index>(n);
-        append_attachment(world, no_slot, table.body[row], all, pose, settings.motion);
+        append_attachment(world, no_slot, table.body[row], all, placed, settings.motion);
     }
     return static_cast<Index>(row);
 }

@@ -142,6 +142,10 @@ void take_step(WorldState& world, Real h) {
     world.contact_view_is_current = false;
     if (world.step.verdict.fault != StepFault::none) {
         put_back_driven_velocities(world);
+        if (world.step.verdict.fault == StepFault::not_finite) {
+            for (Real& speed : world.bodies.max_speed) speed = 0;  // of this step; the search measures afresh
+            world.search_afresh();
+        }
         return;
     }
     world.elements.rotation.swap(world.elements.rotation_next);

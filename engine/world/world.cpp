@@ -134,14 +134,8 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
-    RigidMotion initial{pivot, Mat3::Identity(), Vec3::Zero(), Vec3::Zero()};
-    // Keys are poses of the attachment's own frame; it is attached in the pose of the first one.
-    if (!motion.keys.empty()) {
-        initial.position = motion.keys.front().position;
-        initial.rotation = rotation_matrix(motion.keys.front().rotation);
-    }
     const AttachmentHandle handle = state_->attachment_map.insert(static_cast<Index>(state_->attachments.slot.size()));
-    append_attachment(*state_, handle.slot, row, nodes, initial, motion);
+    append_attachment(*state_, handle.slot, row, nodes, {pivot, Mat3::Identity()}, motion);
     state_->topology_changed();
     return handle;
 }

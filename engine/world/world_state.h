@@ -29,6 +29,7 @@
 #include "systems/contact/separate_regions.h"
 #include "systems/dynamics/check_state.h"
 #include "systems/dynamics/compute_element_forces.h"
+#include "systems/dynamics/move_colliders.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -157,7 +158,7 @@ Index append_body(WorldState& world, const NewBody& body);
 void erase_body(WorldState& world, Index row);
 
 // edit_colliders.cpp
-Index append_attachment(WorldState& world, std::uint32_t slot, Index body, std::span<const Index> nodes, const RigidMotion& initial,
+Index append_attachment(WorldState& world, std::uint32_t slot, Index body, std::span<const Index> nodes, const RigidPose& pose,
                         const Motion& motion);
 void erase_attachment(WorldState& world, Index row);
 Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape, const ColliderSettings& settings);

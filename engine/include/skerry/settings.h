@@ -71,7 +71,7 @@ struct MotionKey {
     Vec3 rotation = Vec3::Zero();  // rad, axis times angle
 };
 
-/// A scripted motion: constant velocities, or keys (then the velocities must be zero).
+/// A scripted motion: constant velocities from now on, or keys at absolute times (then the velocities must be zero).
 struct Motion {
     Vec3 velocity = Vec3::Zero();          // m/s
     Vec3 angular_velocity = Vec3::Zero();  // rad/s

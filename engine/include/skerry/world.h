@@ -28,7 +28,8 @@ public:
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
-    /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion about `pivot`.
+    /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion from now on. Constant velocities
+    /// turn them about `pivot`; keys are poses at absolute times, and the nodes are attached to the pose that the keys have now.
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {}, const Vec3& pivot = Vec3::Zero());
     void remove(BodyHandle body);
     void remove(ColliderHandle collider);
