@@ -25,9 +25,10 @@ public:
             std::memcpy(&word, at, 8);
             add(word);
         }
+        if (bytes == 0) return;
         std::uint64_t rest = 0;
         std::memcpy(&rest, at, bytes);
-        if (bytes > 0) add(rest);
+        add(rest);
     }
     template <class T>
     void add(const Column<T>& column) {
