@@ -53,7 +53,7 @@ Mesh small_mesh() {
 }
 
 /// The name under which this file is to be damaged. A .node and a .ele are read together: writes a good pair of that name.
-std::string write_partners(const TestFolder& folder, const SampleFile& file) {
+std::string write_partners(const TemporaryFolder& folder, const SampleFile& file) {
     const int first_number = file.name.starts_with("one") ? 1 : 0;
     folder.write("hit.node", node_file(small_mesh(), first_number));
     folder.write("hit.ele", ele_file(small_mesh(), first_number));
@@ -81,7 +81,7 @@ bool loads(const std::string& path, std::size_t size) {
 }  // namespace
 
 TEST_CASE("a file cut anywhere loads or is refused", "[unit]") {
-    const TestFolder folder;
+    const TemporaryFolder folder;
     for (const SampleFile& file : all_sample_files(small_mesh())) {
         INFO(file.name);
         const std::string name = write_partners(folder, file);
@@ -96,7 +96,7 @@ TEST_CASE("a file cut anywhere loads or is refused", "[unit]") {
 }
 
 TEST_CASE("a file with changed bytes loads or is refused", "[unit]") {
-    const TestFolder folder;
+    const TemporaryFolder folder;
     std::mt19937 random(12345);
     for (const SampleFile& file : all_sample_files(small_mesh())) {
         INFO(file.name << ", seed 12345");

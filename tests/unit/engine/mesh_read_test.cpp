@@ -28,7 +28,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 /// What reading this text is refused with.
 std::string refusal(const std::string& name, const std::string& content) {
-    const TestFolder folder;
+    const TemporaryFolder folder;
     const std::string path = folder.write(name, content);
     try {
         mesh::read(path);
@@ -52,7 +52,7 @@ std::filesystem::path shared_meshes() {
 
 TEST_CASE("every format gives back the tetrahedra that were written, without the unused node", "[unit]") {
     const Mesh mesh = sample();
-    const TestFolder folder;
+    const TemporaryFolder folder;
     for (const SampleFile& file : all_sample_files(mesh)) {
         INFO(file.name);
         const std::string path = folder.write(file.name, file.content);
@@ -67,7 +67,7 @@ TEST_CASE("every format gives back the tetrahedra that were written, without the
 TEST_CASE("every format gives the boundary as a surface", "[unit]") {
     const Mesh mesh = sample();
     const SurfaceMesh boundary = mesh::boundary(mesh);
-    const TestFolder folder;
+    const TemporaryFolder folder;
     for (const SampleFile& file : all_sample_files(mesh)) {
         INFO(file.name);
         const std::string path = folder.write(file.name, file.content);
@@ -84,7 +84,7 @@ TEST_CASE("every format gives the boundary as a surface", "[unit]") {
 }
 
 TEST_CASE("either name of a TetGen pair reads both", "[unit]") {
-    const TestFolder folder;
+    const TemporaryFolder folder;
     const std::string nodes = folder.write("m.node", node_file(sample(), 0)), elements = folder.write("m.ele", ele_file(sample(), 0));
     CHECK(mesh::read(nodes).tetrahedra == sample().tetrahedra);
     CHECK(mesh::read(elements).tetrahedra == sample().tetrahedra);
@@ -93,7 +93,7 @@ TEST_CASE("either name of a TetGen pair reads both", "[unit]") {
 TEST_CASE("a file whose tetrahedra all count the other way round is turned over", "[unit]") {
     Mesh mesh = sample();
     for (auto& t : mesh.tetrahedra) std::swap(t[0], t[1]);
-    const TestFolder folder;
+    const TemporaryFolder folder;
     const MeshReport report = inspect(mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text))));
     CHECK(report.inverted == 0);
     CHECK(report.volume == Approx(0.006));
@@ -102,7 +102,7 @@ TEST_CASE("a file whose tetrahedra all count the other way round is turned over"
 TEST_CASE("a file with some inverted tetrahedra is read as it is", "[unit]") {
     Mesh mesh = sample();
     std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);
-    const TestFolder folder;
+    const TemporaryFolder folder;
     const Mesh found = mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text)));
     CHECK(found.tetrahedra == mesh.tetrahedra);
     CHECK(inspect(found).inverted == 1);
@@ -157,7 +157,7 @@ TEST_CASE("a bad VTK file is refused with the place and the reason", "[unit]") {
 
 TEST_CASE("a bad TetGen file is refused with the place and the reason", "[unit]") {
     const auto refused = [](const std::string& nodes, const std::string& elements) {
-        const TestFolder folder;
+        const TemporaryFolder folder;
         folder.write("a.node", nodes);
         try {
             mesh::read(folder.write("a.ele", elements));
@@ -174,12 +174,12 @@ TEST_CASE("a bad TetGen file is refused with the place and the reason", "[unit]"
     CHECK_THAT(refused(nodes, replaced(elements, "1 4 1", "2 4 1")), Contains("end of the file"));
     CHECK_THAT(refused(nodes, elements + "2 1 2 3 4 7\n"), Contains("more tetrahedra than the header announces"));
     CHECK_THAT(refused(replaced(nodes, "2 1 0 0", "1 1 0 0"), elements), Contains("1 a second time"));
-    const TestFolder folder;
+    const TemporaryFolder folder;
     CHECK_THROWS_WITH(mesh::read(folder.write("lonely.node", nodes)), Contains("lonely.ele: found no such file"));
 }
 
 TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are refused", "[unit]") {
-    const TestFolder folder;
+    const TemporaryFolder folder;
     const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     CHECK(mesh::read_surface(folder.write("a.obj", square + "f 1 2 3 4\n")).triangles ==
           std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}});
@@ -191,7 +191,7 @@ TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are
 
 TEST_CASE("polygons of a VTK file become triangles, its lines are passed over", "[unit]") {
     const std::string head = "# vtk DataFile Version 3.0\nsquare\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0\n0 1 0\n";
-    const TestFolder folder;
+    const TemporaryFolder folder;
     const SurfaceMesh surface = mesh::read_surface(folder.write("a.vtk", head + "LINES 1 3\n2 0 1\nPOLYGONS 2 9\n4 0 1 2 3\n3 0 1 2\n"));
     CHECK(surface.triangles == std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}});
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.vtk", head + "POLYGONS 1 3\n2 0 1\n")),
@@ -202,7 +202,7 @@ TEST_CASE("equal corners of an STL are one node, and triangles without three are
     const std::string file =
         "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
         "facet normal 0 0 1\nouter loop\nvertex 1 0 -0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
-    const TestFolder folder;
+    const TemporaryFolder folder;
     const SurfaceMesh surface = mesh::read_surface(folder.write("a.stl", file));
     CHECK(surface.nodes.size() == 3);
     CHECK(surface.triangles.size() == 1);
@@ -210,8 +210,8 @@ TEST_CASE("equal corners of an STL are one node, and triangles without three are
 
 TEST_CASE("a file that is not there, or is a folder, is refused", "[unit]") {
     CHECK_THROWS_WITH(mesh::read("/nowhere/at/all.msh"), Contains("/nowhere/at/all.msh: found no such file"));
-    const TestFolder folder;
-    const std::string inner = folder.write("x", "") + ".msh";
+    const TemporaryFolder folder;
+    const std::filesystem::path inner = folder.path() / "x.msh";
     std::filesystem::create_directory(inner);
     CHECK_THROWS_WITH(mesh::read(inner), Contains("not a regular file"));
 }

@@ -4,11 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
-
-#include <unistd.h>
 
 namespace skerry::test {
 namespace {
@@ -237,23 +233,6 @@ std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
             {"a.obj", obj_file(surface)},
             {"a.stl", stl_file(surface, false)},
             {"b.stl", stl_file(surface, true)}};
-}
-
-TestFolder::TestFolder() {
-    static int count = 0;
-    path_ = (std::filesystem::temp_directory_path() / ("skerry_mesh_" + std::to_string(getpid()) + "_" + std::to_string(count++))).string();
-    std::filesystem::create_directories(path_);
-}
-
-TestFolder::~TestFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
-std::string TestFolder::write(const std::string& name, const std::string& content) const {
-    const std::string file = path_ + "/" + name;
-    std::ofstream(file, std::ios::binary) << content;
-    return file;
 }
 
 }  // namespace skerry::test

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "skerry/mesh.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skerry::test {
 
@@ -31,19 +32,5 @@ struct SampleFile {
 };
 /// One file of each kind, of the same small mesh; .obj and .stl of its boundary. A .ele needs the .node before it beside it.
 std::vector<SampleFile> all_sample_files(const Mesh& mesh);
-
-/// A folder for the files of one test, removed with all in it at the end.
-class TestFolder {
-public:
-    TestFolder();
-    ~TestFolder();
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-    /// Writes a file; its path.
-    std::string write(const std::string& name, const std::string& content) const;
-
-private:
-    std::string path_;
-};
 
 }  // namespace skerry::test

@@ -9,31 +9,19 @@
 #include "engine/output/write_file.h"
 #include "output_sample.h"
 #include "skerry/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
 using namespace skerry;
 namespace fs = std::filesystem;
 
-/// An empty folder of the test's own, gone afterwards.
-struct Folder {
-    fs::path path;
-
-    explicit Folder(const std::string& name) : path(fs::temp_directory_path() / ("skerry_output_test_" + name)) {
-        fs::remove_all(path);
-        fs::create_directories(path);
-    }
-    ~Folder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    int count(const std::string& part) const {
-        int found = 0;
-        for (const auto& entry : fs::recursive_directory_iterator(path))
-            found += entry.path().filename().string().find(part) != std::string::npos;
-        return found;
-    }
-};
+int count_files(const TemporaryFolder& folder, const std::string& part) {
+    int found = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path()))
+        found += entry.path().filename().string().find(part) != std::string::npos;
+    return found;
+}
 
 std::string content(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
@@ -52,8 +40,8 @@ std::string complaint_of(auto&& action) {
 }  // namespace
 
 TEST_CASE("a file is replaced as a whole, and what fails on the way leaves the old one and nothing beside it", "[unit][output]") {
-    const Folder folder("replace");
-    const fs::path file = folder.path / "made" / "on" / "demand.txt";
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "made" / "on" / "demand.txt";
     write_file(file, [](std::ostream& out) { out << "first"; });
     write_file(file, [&](std::ostream& out) {
         out << "second";
@@ -68,12 +56,12 @@ TEST_CASE("a file is replaced as a whole, and what fails on the way leaves the o
                     std::runtime_error);
     CHECK_THROWS_AS(write_file(file, [](std::ostream& out) { out.setstate(std::ios::badbit); }), SceneError);
     CHECK(content(file) == "second");
-    CHECK(folder.count(".part") == 0);
+    CHECK(count_files(folder, ".part") == 0);
 }
 
 TEST_CASE("a folder that cannot be made is named, with what was found and what was expected", "[unit][output]") {
-    const Folder folder("refused");
-    const fs::path file = folder.path / "plain_file";
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "plain_file";
     std::ofstream(file) << "not a folder";
     for (const fs::path& place : {file, file / "below"}) {
         const std::string complaint = complaint_of([&] { VtkSeries(place, "run"); });
@@ -81,42 +69,43 @@ TEST_CASE("a folder that cannot be made is named, with what was found and what w
         CHECK(complaint.find("found ") != std::string::npos);
         CHECK(complaint.find("expected a folder") != std::string::npos);
     }
-    fs::create_directories(folder.path / "taken");
-    CHECK(complaint_of([&] { write_file(folder.path / "taken", [](std::ostream& out) { out << 1; }); }).find("taken") != std::string::npos);
-    CHECK(complaint_of([&] { VtkSeries(folder.path, "a/b"); }).find("\"a/b\"") != std::string::npos);
-    CHECK(complaint_of([&] { VtkSeries(folder.path, ""); }).find("expected a file name") != std::string::npos);
+    fs::create_directories(folder.path() / "taken");
+    CHECK(complaint_of([&] { write_file(folder.path() / "taken", [](std::ostream& out) { out << 1; }); }).find("taken") !=
+          std::string::npos);
+    CHECK(complaint_of([&] { VtkSeries(folder.path(), "a/b"); }).find("\"a/b\"") != std::string::npos);
+    CHECK(complaint_of([&] { VtkSeries(folder.path(), ""); }).find("expected a file name") != std::string::npos);
 }
 
 TEST_CASE("colliders are written again only when one of them came, went or moved", "[unit][output]") {
-    const Folder folder("colliders");
+    const TemporaryFolder folder;
     OutputSample sample(2, 0, 4);
-    VtkSeries series(folder.path, "run");
+    VtkSeries series(folder.path(), "run");
     Frame frame = sample.frame(0);
     series.write_frame(frame);
     frame.time = 1;
     series.write_frame(frame);
-    CHECK(folder.count("run_colliders_") == 1);
+    CHECK(count_files(folder, "run_colliders_") == 1);
     frame.colliders.back().pose.position.x() += 1e-9;
     series.write_frame(frame);
-    CHECK(folder.count("run_colliders_") == 2);
+    CHECK(count_files(folder, "run_colliders_") == 2);
     frame.colliders.pop_back();
     series.write_frame(frame);
-    CHECK(folder.count("run_colliders_") == 3);
-    CHECK(folder.count("run_bodies_") == 4);
-    CHECK(folder.count("run.pvd") == 0);
+    CHECK(count_files(folder, "run_colliders_") == 3);
+    CHECK(count_files(folder, "run_bodies_") == 4);
+    CHECK(count_files(folder, "run.pvd") == 0);
     series.write_index();
-    const std::string index = content(folder.path / "run.pvd");
+    const std::string index = content(folder.path() / "run.pvd");
     // Every time names all three parts, the second one the colliders of the first.
     CHECK(index.find("timestep=\"1\" group=\"\" part=\"2\" name=\"colliders\" file=\"run_colliders_0000.vtp\"") != std::string::npos);
 }
 
 TEST_CASE("a frame of nothing is written, too", "[unit][output]") {
-    const Folder folder("nothing");
-    VtkSeries series(folder.path, "run");
+    const TemporaryFolder folder;
+    VtkSeries series(folder.path(), "run");
     series.write_frame(Frame{});
     series.write_index();
-    CHECK(content(folder.path / "run_bodies_0000.vtu").find("NumberOfPoints=\"0\" NumberOfCells=\"0\"") != std::string::npos);
-    CHECK(content(folder.path / "run_contacts_0000.vtp").find("NumberOfVerts=\"0\"") != std::string::npos);
+    CHECK(content(folder.path() / "run_bodies_0000.vtu").find("NumberOfPoints=\"0\" NumberOfCells=\"0\"") != std::string::npos);
+    CHECK(content(folder.path() / "run_contacts_0000.vtp").find("NumberOfVerts=\"0\"") != std::string::npos);
 }
 
 TEST_CASE("a contact force is its impulse over the step, and none without a step", "[unit][output]") {

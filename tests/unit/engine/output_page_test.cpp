@@ -11,6 +11,7 @@
 #include "engine/output/page/page_document.h"
 #include "output_sample.h"
 #include "skerry/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -40,12 +41,11 @@ struct Reader {
 };
 
 std::string page_of(const PageData& data, const PageSummary& summary) {
-    const std::filesystem::path file = std::filesystem::temp_directory_path() / "skerry_output_test_page.html";
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "page.html";
     write_page(file, data, summary);
     std::ifstream in(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    std::filesystem::remove(file);
-    return text;
+    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 nlohmann::json run_of(const std::string& page) {

@@ -7,6 +7,7 @@
 #include "engine/output/collect_frame.h"
 #include "skerry/output.h"
 #include "skerry/world.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -56,8 +57,8 @@ TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world
 }
 
 TEST_CASE("a world that bodies join and leave is written as a series and as a page", "[unit][output]") {
-    const fs::path folder = fs::temp_directory_path() / "skerry_output_test_world";
-    fs::remove_all(folder);
+    const TemporaryFolder temporary;
+    const fs::path& folder = temporary.path();
     BodyHandle box;
     World world = box_on_floor(box);
     {
@@ -82,5 +83,4 @@ TEST_CASE("a world that bodies join and leave is written as a series and as a pa
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     CHECK(text.find("{\"name\":\"box\",\"vertices\":26,") != std::string::npos);
     CHECK(text.find("{\"name\":\"ball\",") != std::string::npos);
-    fs::remove_all(folder);
 }
