@@ -6,8 +6,8 @@
 
 #include "skerry/error.h"
 #include "skerry/problem.h"
-#include "systems/solver/block_operator.h"
-#include "systems/solver/run_method.h"
+#include "systems/solver/methods/run_method.h"
+#include "systems/solver/operators/block_operator.h"
 
 namespace skerry {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "systems/solver/lumped_operator.h"
+#include "systems/solver/operators/lumped_operator.h"
 
 namespace skerry {
 

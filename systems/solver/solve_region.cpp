@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/solver/methods/run_method.h"
 #include "systems/solver/push_out_region.h"
-#include "systems/solver/run_method.h"
 
 namespace skerry {
 namespace {

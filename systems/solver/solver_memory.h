@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "components/column.h"
-#include "systems/solver/lumped_operator.h"
+#include "systems/solver/operators/lumped_operator.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {

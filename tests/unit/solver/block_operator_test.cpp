@@ -1,11 +1,11 @@
-#include "systems/solver/block_operator.h"
+#include "systems/solver/operators/block_operator.h"
 
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
 #include <vector>
 
-#include "systems/solver/run_method.h"
+#include "systems/solver/methods/run_method.h"
 
 using namespace skerry;
 

@@ -1,4 +1,4 @@
-#include "systems/solver/friction_law.h"
+#include "systems/solver/operators/friction_law.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>

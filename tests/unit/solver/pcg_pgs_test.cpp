@@ -1,8 +1,8 @@
-#include "systems/solver/pcg_pgs.h"
+#include "systems/solver/methods/pcg_pgs.h"
 
 #include <catch2/catch.hpp>
 
-#include "systems/solver/lumped_operator.h"
+#include "systems/solver/operators/lumped_operator.h"
 #include "tests/unit/solver/contact_scene.h"
 
 using namespace skerry;

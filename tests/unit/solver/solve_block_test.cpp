@@ -1,10 +1,10 @@
-#include "systems/solver/solve_block.h"
+#include "systems/solver/operators/solve_block.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "systems/solver/block_operator.h"
+#include "systems/solver/operators/block_operator.h"
 
 using namespace skerry;
 

@@ -7,8 +7,8 @@
 
 #include "components/options.h"
 #include "components/types.h"
-#include "systems/solver/friction_law.h"
-#include "systems/solver/solve_block.h"
+#include "systems/solver/operators/friction_law.h"
+#include "systems/solver/operators/solve_block.h"
 
 namespace skerry {
 

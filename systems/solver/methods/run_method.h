@@ -2,8 +2,8 @@
 #pragma once
 
 #include "components/options.h"
-#include "systems/solver/pcg_pgs.h"
-#include "systems/solver/pgs.h"
+#include "systems/solver/methods/pcg_pgs.h"
+#include "systems/solver/methods/pgs.h"
 
 namespace skerry {
 

@@ -1,4 +1,4 @@
-#include "systems/solver/solve_block.h"
+#include "systems/solver/operators/solve_block.h"
 
 #include <algorithm>
 #include <cmath>

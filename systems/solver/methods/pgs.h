@@ -1,7 +1,7 @@
 // Block projected Gauss-Seidel: the paper's (14), (15) with the exact solution of each contact in its turn.
 #pragma once
 
-#include "systems/solver/contact_operator.h"
+#include "systems/solver/operators/contact_operator.h"
 
 namespace skerry {
 

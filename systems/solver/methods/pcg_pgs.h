@@ -2,7 +2,7 @@
 // phase stagnates, since projecting after a step destroys conjugacy (methods.md 1.3 f).
 #pragma once
 
-#include "systems/solver/pgs.h"
+#include "systems/solver/methods/pgs.h"
 
 namespace skerry {
 

@@ -7,7 +7,7 @@
 
 #include "components/options.h"
 #include "components/types.h"
-#include "systems/solver/friction_law.h"
+#include "systems/solver/operators/friction_law.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {

@@ -1,9 +1,9 @@
-#include "systems/solver/block_operator.h"
+#include "systems/solver/operators/block_operator.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "systems/solver/contact_operator.h"
+#include "systems/solver/operators/contact_operator.h"
 
 namespace skerry {
 

@@ -1,9 +1,9 @@
-#include "systems/solver/lumped_operator.h"
+#include "systems/solver/operators/lumped_operator.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "systems/solver/contact_operator.h"
+#include "systems/solver/operators/contact_operator.h"
 
 namespace skerry {
 
