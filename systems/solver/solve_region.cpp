@@ -50,12 +50,9 @@ LoadedRegion load_region(const RegionStage& stage, std::span<const Index> row, I
     region.memory.velocity = velocity.first(node_count);
     region.memory.node = node.first(node_count);
     region.memory.free_velocity = stage.out.velocity_next;
-    const bool multiplies = stage.settings.method == SolverMethod::pcg_pgs;
-    region.memory.workspace[0] = data.workspace[0].span().subspan(first, count);
-    if (multiplies) {
-        region.memory.scratch = data.scratch.span().subspan(4 * first, node_count);
-        for (std::size_t slot = 1; slot < 4; ++slot) region.memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
-    }
+    region.memory.scratch = data.scratch.span().subspan(4 * first, node_count);
+    for (std::size_t slot = 0; slot < workspace_slots(stage.settings.method); ++slot)
+        region.memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
     return region;
 }
 

@@ -14,15 +14,13 @@ void make_room_for(const RegionTable& regions, std::size_t node_count, const Sol
     const std::size_t contacts = regions.contacts.item.size();
     make_room(memory.contact, contacts);
     make_room(memory.impulse, contacts);
-    make_room(memory.workspace[0], contacts);
     make_room(memory.push_impulse, contacts);
     make_room(memory.push_bias, contacts);
     make_room(memory.node, 4 * contacts);
     make_room(memory.velocity, 4 * contacts);
     make_room(memory.scratch, 4 * contacts);
     make_room(memory.place, node_count);
-    if (settings.method == SolverMethod::pcg_pgs)
-        for (std::size_t slot = 1; slot < 4; ++slot) make_room(memory.workspace[slot], contacts);
+    for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(memory.workspace[slot], contacts);
 }
 
 void solve_task(const RegionStage& stage, const RegionTask& task, RegionTable& regions) {

@@ -39,4 +39,10 @@ void make_room(Column<T>& column, std::size_t count) {
     if (column.size() < count) column.resize(count);
 }
 
+/// How many vectors by contact a method works with; the first keeps the best iterate.
+inline std::size_t workspace_slots(SolverMethod method) {
+    if (method == SolverMethod::pgs) return 1;
+    return method == SolverMethod::ags ? 2 : 4;
+}
+
 }  // namespace skerry

@@ -14,8 +14,7 @@ inline Index conjugate_gradient_limit(Index contacts, Index max_iterations) {
     return std::min({3 * contacts, Index(50), max_iterations / 2});
 }
 
-template <class V>
-Real sum_of_products(std::span<const V> a, std::span<const V> b) {
+inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     Real sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
     return sum;
@@ -25,18 +24,17 @@ Real sum_of_products(std::span<const V> a, std::span<const V> b) {
 /// changes for (20), (21). Returns false when the direction is used up.
 template <ContactOperator Op>
 bool advance_conjugate_gradients(Op& op, ConjugateBeta formula, Real& impulse_change, Real& residual_size) {
-    using V = typename Op::Vector;
-    const std::span<V> impulse = op.impulse(), residual = op.workspace(1), direction = op.workspace(2), product = op.workspace(3);
+    const std::span<Vec4> impulse = op.impulse(), residual = op.workspace(1), direction = op.workspace(2), product = op.workspace(3);
     op.multiply(direction, product);
-    const Real squared = sum_of_products<V>(residual, residual);
-    const Real curvature = sum_of_products<V>(direction, product);
+    const Real squared = sum_of_products(residual, residual);
+    const Real curvature = sum_of_products(direction, product);
     if (!(curvature > 0) || !(squared > 0)) return false;
     const Real alpha = squared / curvature;
     Real squared_next = 0, with_previous = 0;
     impulse_change = residual_size = 0;
     for (std::size_t i = 0; i < impulse.size(); ++i) {
-        const V before = impulse[i];
-        const V residual_before = residual[i];
+        const Vec4 before = impulse[i];
+        const Vec4 residual_before = residual[i];
         impulse[i] = op.project(static_cast<Index>(i), before + alpha * direction[i]);
         residual[i] = op.feasible(static_cast<Index>(i), residual_before - alpha * product[i]);
         squared_next += residual[i].dot(residual[i]);
@@ -50,22 +48,20 @@ bool advance_conjugate_gradients(Op& op, ConjugateBeta formula, Real& impulse_ch
     return true;
 }
 
-template <class V>
-Real largest_entry(std::span<const V> vectors) {
+inline Real largest_entry(std::span<const Vec4> vectors) {
     Real largest = 0;
-    for (const V& v : vectors) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+    for (const Vec4& v : vectors) largest = std::max(largest, v.cwiseAbs().maxCoeff());
     return largest;
 }
 
 template <ContactOperator Op>
 SolveResult solve_pcg_pgs(Op& op, const SolveLimits& limits, ConjugateBeta formula = ConjugateBeta::polak_ribiere) {
-    using V = typename Op::Vector;
     BestIterate<Op> best(op);
     op.residual(op.workspace(1));
     std::ranges::copy(op.workspace(1), op.workspace(2).begin());
     // (20), (21) relative to the size of the data; the first phase is asked for less than the second (eps_cg > eps_gs, delta_cg > delta_gs)
     const Real looser = 10 * limits.tolerance;
-    const Real residual_start = largest_entry<V>(op.workspace(1));
+    const Real residual_start = largest_entry(op.workspace(1));
     const Index phase_limit = conjugate_gradient_limit(op.size(), limits.max_iterations);
     Index iteration = 0, check = 1;
     bool going_on = true;
@@ -74,7 +70,7 @@ SolveResult solve_pcg_pgs(Op& op, const SolveLimits& limits, ConjugateBeta formu
         Real impulse_change = 0, residual_size = 0;
         going_on = advance_conjugate_gradients(op, formula, impulse_change, residual_size);
         if (limits.fixed_iterations) continue;
-        if (impulse_change < looser * largest_entry<V>(op.impulse()) || residual_size < looser * residual_start) going_on = false;
+        if (impulse_change < looser * largest_entry(op.impulse()) || residual_size < looser * residual_start) going_on = false;
         if (going_on && iteration < check && iteration < phase_limit) continue;
         check = next_check(iteration);
         op.refresh();

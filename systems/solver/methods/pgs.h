@@ -11,8 +11,7 @@ template <ContactOperator Op>
 SolveResult sweep_until_solved(Op& op, const SolveLimits& limits, Index first, BestIterate<Op>& best) {
     Index check = first;
     for (Index iteration = first; iteration <= limits.max_iterations; ++iteration) {
-        Real change = 0;
-        for (Index i = 0; i < op.size(); ++i) change += op.step(i, limits.relaxation);
+        const Real change = op.sweep(limits.relaxation);
         const bool due = iteration >= check || iteration == limits.max_iterations || op.suggests_check(change, limits.tolerance);
         if (limits.fixed_iterations || !due) continue;
         const Real error = op.error();

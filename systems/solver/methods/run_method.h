@@ -2,6 +2,7 @@
 #pragma once
 
 #include "components/options.h"
+#include "systems/solver/methods/ags.h"
 #include "systems/solver/methods/pcg_pgs.h"
 #include "systems/solver/methods/pgs.h"
 
@@ -14,6 +15,8 @@ SolveResult run_method(SolverMethod method, Op& op, const SolveLimits& limits) {
             return solve_pgs(op, limits);
         case SolverMethod::pcg_pgs:
             return solve_pcg_pgs(op, limits);
+        case SolverMethod::ags:
+            return solve_ags(op, limits);
     }
     return {};
 }

@@ -3,46 +3,81 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/solver/operators/contact_operator.h"
-
 namespace skerry {
 
 static_assert(ContactOperator<BlockOperator>);
 
 namespace {
 
+BlockMemory::Columns padded_columns(const Mat3& block) {
+    return {padded(block.col(0)), padded(block.col(1)), padded(block.col(2))};
+}
+
+/// start + sum of the blocks of a row times the vectors of their contacts. Three sums side by side: one alone would wait for itself.
+inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, const Vec4* vector) {
+    Vec4 first = start, second = Vec4::Zero(), third = Vec4::Zero();
+    const BlockMemory::Columns* block = memory.block.data();
+    const Index* neighbor = memory.neighbor.data();
+    for (Index k = memory.offset[place], end = memory.offset[place + 1]; k < end; ++k) {
+        const Vec4& other = vector[neighbor[k]];
+        first += block[k][0] * other[0];
+        second += block[k][1] * other[1];
+        third += block[k][2] * other[2];
+    }
+    return first + (second + third);
+}
+
+inline Vec4 times(const BlockMemory::Columns& block, const Vec4& vector) {
+    return block[0] * vector[0] + (block[1] * vector[1] + block[2] * vector[2]);
+}
+
 /// The paper's scalar rows in turn: normal, then each tangent with the new bound (eq. 6, 15).
-Vec3 step_pyramid(const Mat3& block, const Vec3& impulse, Vec3 u, Real mu, Real relaxation) {
-    Vec3 next = impulse;
+Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u, Real mu, Real relaxation) {
+    Vec4 next = impulse;
     for (int k = 0; k < 3; ++k) {
-        if (!(block(k, k) > 0)) continue;
-        const Real wanted = impulse[k] - relaxation * u[k] / block(k, k);
+        if (!(block[k][k] > 0)) continue;
+        const Real wanted = impulse[k] - relaxation * u[k] / block[k][k];
         next[k] = k == 0 ? std::max(Real(0), wanted) : std::clamp(wanted, -mu * next[0], mu * next[0]);
-        u += (next[k] - impulse[k]) * block.col(k);
+        u += (next[k] - impulse[k]) * block[k];
     }
     return next;
 }
 
 /// Box of the pyramid in the frame of the contact.
-Vec3 clamp_to_pyramid(const Vec3& impulse, Real mu) {
+Vec4 clamp_to_pyramid(const Vec4& impulse, Real mu) {
     const Real normal = std::max(Real(0), impulse[0]);
-    return {normal, std::clamp(impulse[1], -mu * normal, mu * normal), std::clamp(impulse[2], -mu * normal, mu * normal)};
+    return {normal, std::clamp(impulse[1], -mu * normal, mu * normal), std::clamp(impulse[2], -mu * normal, mu * normal), 0};
 }
 
 }  // namespace
 
-void BlockMemory::prepare(const BlockSystem& system) {
-    const std::size_t count = system.q.size();
-    local.resize(count);
+void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> order) {
+    const std::size_t count = order.size();
+    std::vector<Index> place(count);
+    for (std::size_t i = 0; i < count; ++i) place[order[i]] = static_cast<Index>(i);
+    contact.resize(count);
+    offset.assign(count + 1, 0);
+    neighbor.clear();
+    block.clear();
+    neighbor.reserve(system.column.size());
+    block.reserve(system.column.size());
     for (std::size_t i = 0; i < count; ++i) {
+        const Index row = order[i];
         Mat3 diagonal = Mat3::Zero();
-        for (Index k = system.row_offset[i]; k < system.row_offset[i + 1]; ++k)
-            if (system.column[k] == static_cast<Index>(i)) diagonal = system.block[k];
-        local[i] = prepare_block(diagonal);
+        for (Index k = system.row_offset[row]; k < system.row_offset[row + 1]; ++k) {
+            if (system.column[k] == row) {
+                diagonal = system.block[k];
+            } else {
+                neighbor.push_back(place[system.column[k]]);
+                block.push_back(padded_columns(system.block[k]));
+            }
+        }
+        offset[i + 1] = static_cast<Index>(neighbor.size());
+        contact[i] = {padded(system.q[row]), padded_columns(diagonal), padded_columns(0.5 * (diagonal - diagonal.transpose())),
+                      prepare_block(diagonal), system.mu[row]};
     }
-    impulse.assign(count, Vec3::Zero());
-    gathered.resize(count);
-    for (std::vector<Vec3>& slot : workspace) slot.resize(count);
+    impulse.assign(count, Vec4::Zero());
+    for (std::vector<Vec4>& slot : workspace) slot.resize(count);
 }
 
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction) {
@@ -52,79 +87,119 @@ Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction)
         return {impulse[0] - std::max(Real(0), impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
                 impulse[2] - std::clamp(impulse[2] - u[2], -limit, limit)};
     }
-    const Vec3 shifted(u[0] + mu * std::hypot(u[1], u[2]), u[1], u[2]);
-    return impulse - project_onto_cone(Vec3(impulse - shifted), Vec3(Vec3::UnitX()), mu);
+    // P_K of r - u - mu |u_T| n, with the tangents' direction left out until it is needed
+    const Real along = impulse[0] - u[0] - mu * std::sqrt(u[1] * u[1] + u[2] * u[2]);
+    const Real t1 = impulse[1] - u[1], t2 = impulse[2] - u[2];
+    const Real length = std::sqrt(t1 * t1 + t2 * t2);
+    if (mu * length <= -along) return impulse;
+    if (length <= mu * along) return {impulse[0] - along, impulse[1] - t1, impulse[2] - t2};
+    const Real nearest = (along + mu * length) / (1 + mu * mu);
+    const Real shrink = length > 0 ? mu * nearest / length : 0;
+    return {impulse[0] - nearest, impulse[1] - shrink * t1, impulse[2] - shrink * t2};
 }
 
-BlockOperator::BlockOperator(const BlockSystem& system, std::span<const Index> row, Friction friction, Real smallest_size,
-                             BlockMemory& memory)
-    : system_(system), row_(row), friction_(friction), smallest_size_(smallest_size), memory_(memory) {
-    for (std::size_t i = 0; i < row_.size(); ++i) memory_.gathered[i] = memory_.impulse[row_[i]];
+BlockOperator::BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size)
+    : memory_(memory), begin_(begin), end_(end), friction_(friction), smallest_size_(smallest_size), size_(smallest_size) {}
+
+Vec4 BlockOperator::velocity(Index place) const {
+    const BlockMemory::Contact& contact = memory_.contact[place];
+    return add_row(memory_, place, contact.q + times(contact.diagonal, memory_.impulse[place]), memory_.impulse.data());
 }
 
-void BlockOperator::refresh() {
-    for (std::size_t i = 0; i < row_.size(); ++i) memory_.impulse[row_[i]] = memory_.gathered[i];
-}
-
-Vec3 BlockOperator::add_products(Index row, Vec3 start) const {
-    for (Index k = system_.row_offset[row]; k < system_.row_offset[row + 1]; ++k)
-        start.noalias() += system_.block[k] * memory_.impulse[system_.column[k]];
-    return start;
-}
-
-Real BlockOperator::step(Index i, Real relaxation) {
-    const Index row = row_[i];
-    const Real mu = system_.mu[row];
-    const LocalBlock& local = memory_.local[row];
-    const Vec3 u = velocity(row);
-    const Vec3 before = memory_.impulse[row];
-    Vec3 next;
+inline Real BlockOperator::step(Index i, Real relaxation) {
+    const Index place = begin_ + i;
+    BlockMemory::Contact& contact = memory_.contact[place];
+    const Vec4 before = memory_.impulse[place];
+    const Vec4 b = add_row(memory_, place, contact.q, memory_.impulse.data());
+    Vec4 next;
     if (friction_ == Friction::pyramid) {
-        next = step_pyramid(local.matrix, before, u, mu, relaxation);
+        next = step_pyramid(contact.diagonal, before, b + times(contact.diagonal, before), contact.mu, relaxation);
     } else {
-        next = solve_block(local, u - local.matrix * before, mu);
-        if (relaxation != 1) next = project_coulomb(Vec3(before + relaxation * (next - before)), Vec3(Vec3::UnitX()), {mu, mu});
+        // files round W: what a block has beside its symmetric part acts as of the last impulse
+        const Vec4 fixed = b + times(contact.skew, before);
+        next = padded(solve_block(contact.local, fixed.head<3>(), contact.mu));
+        if (relaxation != 1) next = project(i, before + relaxation * (next - before));
     }
-    memory_.impulse[row] = next;
-    memory_.gathered[i] = next;
-    return (next - before).squaredNorm();
+    const Vec4 change = next - before;
+    if (change.isZero(0)) return 0;
+    memory_.impulse[place] = next;
+    const Real size = change.dot(times(contact.diagonal, change));
+    // rho = 1: an impulse shows as it is or as the velocity it makes, whichever is smaller
+    swept_ += std::min(change.squaredNorm(), mobility(i) * size);
+    return size;
 }
 
-Real BlockOperator::error() const {
+Real BlockOperator::sweep(Real relaxation) {
+    return sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
+}
+
+SweepChange BlockOperator::accelerated_sweep(Real relaxation) {
+    return accelerated_sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
+}
+
+bool BlockOperator::suggests_check(Real, Real tolerance) {
+    const bool small = swept_ <= tolerance * tolerance * size_ * size_;
+    swept_ = 0;
+    return small;
+}
+
+Real BlockOperator::error() {
     Real lack = 0, q = 0, r = 0, u = 0;
-    for (const Index row : row_) {
-        const Vec3 velocity_now = velocity(row);
-        const Vec3& impulse_now = memory_.impulse[row];
-        lack += natural_map(impulse_now, velocity_now, system_.mu[row], friction_).squaredNorm();
-        q += system_.q[row].squaredNorm();
+    for (Index place = begin_; place < end_; ++place) {
+        const BlockMemory::Contact& contact = memory_.contact[place];
+        const Vec4 velocity_now = velocity(place);
+        const Vec4& impulse_now = memory_.impulse[place];
+        lack += natural_map(impulse_now.head<3>(), velocity_now.head<3>(), contact.mu, friction_).squaredNorm();
+        q += contact.q.squaredNorm();
         r += impulse_now.squaredNorm();
         u += velocity_now.squaredNorm();
     }
-    if (lack == 0) return 0;
-    const Real size = std::max({q, r, u, smallest_size_ * smallest_size_});
-    return std::sqrt(lack / size);
+    size_ = std::sqrt(std::max({q, r, u, smallest_size_ * smallest_size_}));
+    return lack == 0 ? 0 : std::sqrt(lack) / size_;
 }
 
-void BlockOperator::residual(std::span<Vec3> out) const {
-    for (std::size_t i = 0; i < row_.size(); ++i) out[i] = -velocity(row_[i]);
+void BlockOperator::remember() {
+    std::ranges::copy(impulse(), workspace(1).begin());
 }
 
-void BlockOperator::multiply(std::span<const Vec3> in, std::span<Vec3> out) {
-    // through the system's impulses, since rows refer to contacts of the system; put back afterwards
-    for (std::size_t i = 0; i < row_.size(); ++i) memory_.impulse[row_[i]] = in[i];
-    for (std::size_t i = 0; i < row_.size(); ++i) out[i] = add_products(row_[i], Vec3::Zero());
-    for (std::size_t i = 0; i < row_.size(); ++i) memory_.impulse[row_[i]] = memory_.gathered[i];
+void BlockOperator::extrapolate(Real factor) {
+    const std::span<Vec4> present = impulse(), previous = workspace(1);
+    for (std::size_t i = 0; i < present.size(); ++i) {
+        const Vec4 now = present[i];
+        present[i] = now + factor * (now - previous[i]);
+        previous[i] = now;
+    }
 }
 
-Vec3 BlockOperator::project(Index i, const Vec3& impulse) const {
-    const Real mu = system_.mu[row_[i]];
+void BlockOperator::residual(std::span<Vec4> out) const {
+    for (Index i = 0; i < size(); ++i) out[i] = -velocity(begin_ + i);
+}
+
+void BlockOperator::multiply(std::span<const Vec4> in, std::span<Vec4> out) const {
+    for (Index i = 0; i < size(); ++i)
+        out[i] = add_row(memory_, begin_ + i, times(memory_.contact[begin_ + i].diagonal, in[i]), in.data() - begin_);
+}
+
+Vec4 BlockOperator::project(Index i, const Vec4& impulse) const {
+    const Real mu = memory_.contact[begin_ + i].mu;
     if (friction_ == Friction::pyramid) return clamp_to_pyramid(impulse, mu);
-    return project_coulomb(impulse, Vec3(Vec3::UnitX()), {mu, mu});
+    return project_coulomb(impulse, Vec4(Vec4::UnitX()), {mu, mu});
 }
 
-Vec3 BlockOperator::feasible(Index i, const Vec3& residual) const {
-    const Real mu = system_.mu[row_[i]];
-    return feasible_direction(residual, memory_.gathered[i], Vec3(Vec3::UnitX()), {mu, mu}, friction_);
+Vec4 BlockOperator::feasible(Index i, const Vec4& residual) const {
+    return feasible_direction(residual, memory_.impulse[begin_ + i], normal(i), limits(i), friction_);
+}
+
+void BlockOperator::assemble(Eigen::MatrixXd& matrix) const {
+    matrix.setZero(3 * size(), 3 * size());
+    const auto put = [&](Index i, Index j, const BlockMemory::Columns& block) {
+        for (int c = 0; c < 3; ++c) matrix.block<3, 1>(3 * i, 3 * j + c) = block[c].head<3>();
+    };
+    for (Index i = 0; i < size(); ++i) {
+        put(i, i, memory_.contact[begin_ + i].diagonal);
+        for (Index k = memory_.offset[begin_ + i]; k < memory_.offset[begin_ + i + 1]; ++k)
+            put(i, memory_.neighbor[k] - begin_, memory_.block[k]);
+    }
 }
 
 }  // namespace skerry

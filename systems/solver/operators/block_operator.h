@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "components/column.h"
 #include "components/options.h"
 #include "components/types.h"
-#include "systems/solver/operators/friction_law.h"
+#include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/solve_block.h"
 
 namespace skerry {
@@ -21,50 +22,78 @@ struct BlockSystem {
     std::span<const Real> mu;
 };
 
-/// Working memory for all contacts of a system.
+/// A system in the order in which it is swept, blocks side by side and padded to vector registers. The last place of every vector is zero.
 struct BlockMemory {
-    std::vector<LocalBlock> local;
-    std::vector<Vec3> impulse;                   // N s, by contact of the system
-    std::vector<Vec3> gathered;                  // N s, by contact of the region
-    std::array<std::vector<Vec3>, 4> workspace;  // by contact of the region
+    struct Contact {
+        Vec4 q;
+        std::array<Vec4, 3> diagonal;  // columns of W_ii
+        std::array<Vec4, 3> skew;      // of what the local solution leaves out: half of W_ii - W_ii^T
+        LocalBlock local;
+        Real mu;
+    };
+    using Columns = std::array<Vec4, 3>;
 
-    void prepare(const BlockSystem& system);
+    std::vector<Contact> contact;
+    std::vector<Index> offset;    // contacts + 1
+    std::vector<Index> neighbor;  // place of the other contact
+    std::vector<Columns> block;   // W_ij, i != j
+    std::vector<Vec4> impulse;    // N s
+    std::array<std::vector<Vec4>, 4> workspace;
+
+    /// `order`: contacts of the system in the order of the sweep, those of a region one after the other. Impulses start at zero.
+    void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
 /// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB or by the paper's pyramid.
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
-/// One region of a system: the contacts `row`, which no other region's rows refer to.
+/// One region: the contacts at the places [begin, end) of the memory, to which no other region's blocks refer.
 class BlockOperator {
 public:
-    using Vector = Vec3;
-
     /// `smallest_size`: the error is not measured against less than this; the region's share of a larger whole.
-    BlockOperator(const BlockSystem& system, std::span<const Index> row, Friction friction, Real smallest_size, BlockMemory& memory);
+    BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size);
 
-    Index size() const { return static_cast<Index>(row_.size()); }
-    /// By contact of the region; the system's impulses follow at refresh().
-    std::span<Vec3> impulse() { return {memory_.gathered.data(), row_.size()}; }
-    std::span<Vec3> workspace(Index slot) { return {memory_.workspace[slot].data(), row_.size()}; }
-    void refresh();
-    Real step(Index i, Real relaxation);
+    Index size() const { return end_ - begin_; }
+    std::span<Vec4> impulse() { return part(memory_.impulse); }
+    std::span<Vec4> workspace(Index slot) { return part(memory_.workspace[slot]); }
+    void refresh() {}
+    void refresh_all() {}
+    Real sweep(Real relaxation);
+    SweepChange accelerated_sweep(Real relaxation);
+    Real inner(Index i, const Vec4& a, const Vec4& b) const {
+        const BlockMemory::Columns& w = memory_.contact[begin_ + i].diagonal;
+        return a.dot(w[0] * b[0] + w[1] * b[1] + w[2] * b[2]);
+    }
     /// |F| / max(|q|, |r|, |u|): the measure of FCLIB and Siconos (methods.md 2.1), of this region.
-    Real error() const;
-    bool suggests_check(Real, Real) const { return false; }  // rho = 1: the change of a sweep says little about this measure
-    void residual(std::span<Vec3> out) const;
-    void multiply(std::span<const Vec3> in, std::span<Vec3> out);
-    Vec3 project(Index i, const Vec3& impulse) const;
-    Vec3 feasible(Index i, const Vec3& residual) const;
+    Real error();
+    /// max(|q|, |r|, |u|) at the last error().
+    Real measured_size() const { return size_; }
+    bool suggests_check(Real change, Real tolerance);
+    void remember();
+    void extrapolate(Real factor);
+    void residual(std::span<Vec4> out) const;
+    void multiply(std::span<const Vec4> in, std::span<Vec4> out) const;
+    Vec4 project(Index i, const Vec4& impulse) const;
+    Vec4 feasible(Index i, const Vec4& residual) const;
+    Vec4 normal(Index) const { return Vec4::UnitX(); }
+    FrictionLimits limits(Index i) const { return {memory_.contact[begin_ + i].mu, memory_.contact[begin_ + i].mu}; }
+    Real mobility(Index i) const {
+        const BlockMemory::Columns& w = memory_.contact[begin_ + i].diagonal;
+        return (w[0][0] + w[1][1] + w[2][2]) / 3;
+    }
+    void assemble(Eigen::MatrixXd& matrix) const;
 
 private:
-    Vec3 add_products(Index row, Vec3 start) const;
-    Vec3 velocity(Index row) const { return add_products(row, system_.q[row]); }
+    Real step(Index i, Real relaxation);
+    std::span<Vec4> part(std::vector<Vec4>& all) const { return {all.data() + begin_, static_cast<std::size_t>(end_ - begin_)}; }
+    Vec4 velocity(Index place) const;
 
-    const BlockSystem& system_;
-    std::span<const Index> row_;
+    BlockMemory& memory_;
+    Index begin_, end_;
     Friction friction_;
     Real smallest_size_;
-    BlockMemory& memory_;
+    Real swept_ = 0;  // squared estimate of |F| from the changes of this sweep
+    Real size_ = 0;   // max(|q|, |r|, |u|) at the last measure
 };
 
 }  // namespace skerry

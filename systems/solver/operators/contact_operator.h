@@ -8,24 +8,41 @@
 #include <span>
 
 #include "components/types.h"
+#include "systems/solver/operators/friction_law.h"
 
 namespace skerry {
 
-/// u = W r + q with a friction law, and a present impulse r. Errors are relative and mean the same for every algorithm.
+/// What a sweep did.
+struct SweepChange {
+    Real size;     // sum of change . W_ii change
+    Real against;  // -sum of change . W_ii (impulse - previous): positive when the sweep turns back
+};
+
+/// u = W r + q with a friction law, and a present impulse r. Errors are relative and mean the same for every algorithm. W_ii is the diagonal
+/// block of contact i.
 template <class Op>
-concept ContactOperator = requires(Op op, const Op constant, Index i, Real number, std::span<typename Op::Vector> out,
-                                   std::span<const typename Op::Vector> in, typename Op::Vector vector) {
+concept ContactOperator = requires(Op op, const Op constant, Index i, Real number, std::span<Vec4> out, std::span<const Vec4> in,
+                                   const Vec4& vector, Eigen::MatrixXd matrix) {
     { constant.size() } -> std::convertible_to<Index>;
-    { op.impulse() } -> std::convertible_to<std::span<typename Op::Vector>>;       // writing to it asks for refresh()
-    op.refresh();                                                                  // carried state again from the impulse
-    { op.step(i, number) } -> std::convertible_to<Real>;                           // one contact; squared size of the change
-    { constant.error() } -> std::convertible_to<Real>;                             // of the present impulse
-    { constant.suggests_check(number, number) } -> std::convertible_to<bool>;      // change of a sweep, tolerance
-    op.residual(out);                                                              // -u, the paper's b - A lambda
-    op.multiply(in, out);                                                          // W d
-    { constant.project(i, vector) } -> std::convertible_to<typename Op::Vector>;   // friction law
-    { constant.feasible(i, vector) } -> std::convertible_to<typename Op::Vector>;  // W(lambda) of (19)
-    { op.workspace(i) } -> std::convertible_to<std::span<typename Op::Vector>>;    // slot 0: best iterate; 1..3: the algorithm's
+    { op.impulse() } -> std::convertible_to<std::span<Vec4>>;     // writing to it asks for refresh()
+    op.refresh();                                                 // carried state again from the impulse
+    { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;  // slot 0: best iterate; 1..3: the algorithm's
+    { op.sweep(number) } -> std::convertible_to<Real>;            // each contact exactly in its turn, relaxed; sum of change . W_ii change
+    { op.accelerated_sweep(number) } -> std::same_as<SweepChange>;       // the same, compared with the previous
+    { constant.inner(i, vector, vector) } -> std::convertible_to<Real>;  // a . W_ii b
+    { op.error() } -> std::convertible_to<Real>;                         // of the present impulse
+    { op.suggests_check(number, number) } -> std::convertible_to<bool>;  // size of a sweep's change, tolerance
+    op.remember();                                                       // previous (slot 1) = present
+    op.extrapolate(number);                                              // present += number (present - previous), previous = present
+    op.refresh_all();                                                    // refresh() for both
+    op.residual(out);                                                    // -u, the paper's b - A lambda
+    op.multiply(in, out);                                                // W d
+    { constant.project(i, vector) } -> std::convertible_to<Vec4>;        // friction law
+    { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;       // W(lambda) of (19)
+    { constant.normal(i) } -> std::convertible_to<Vec4>;                 // unit
+    { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
+    { constant.mobility(i) } -> std::convertible_to<Real>;  // s/kg, a number for W_ii: a third of its trace; 0: moves nothing
+    constant.assemble(matrix);                              // W, dense, 3 size() rows
 };
 
 struct SolveLimits {
@@ -40,6 +57,28 @@ struct SolveResult {
     Real error = 0;
     bool converged = false;
 };
+
+/// Both kinds of sweep, over the contacts in their order. Step: what one contact does, and change . W_ii change of it.
+template <class Op, class Step>
+Real sweep_in_order(Op& op, const Step& step) {
+    Real change = 0;
+    for (Index i = 0; i < op.size(); ++i) change += step(i);
+    return change;
+}
+
+template <class Op, class Step>
+SweepChange accelerated_sweep_in_order(Op& op, const Step& step) {
+    const std::span<const Vec4> impulse = op.impulse(), previous = op.workspace(1);
+    SweepChange sum{0, 0};
+    for (Index i = 0; i < op.size(); ++i) {
+        const Vec4 before = impulse[i];
+        const Real size = step(i);
+        if (size == 0) continue;
+        sum.size += size;
+        sum.against -= op.inner(i, impulse[i] - before, impulse[i] - previous[i]);
+    }
+    return sum;
+}
 
 /// The next iteration at which the error is measured: 1, 2, 4, 7, 11, 16, ..., then every 16th part more. A measure costs half a sweep.
 inline Index next_check(Index iteration) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/solver/operators/contact_operator.h"
-
 namespace skerry {
 
 static_assert(ContactOperator<LumpedOperator>);
@@ -25,9 +23,31 @@ Real contact_bias(const RegionInputs& inputs, Index row, const SolverSettings& s
     return impact ? std::min(closing, restitution * approach) : closing;
 }
 
-void LumpedOperator::refresh() {
-    for (std::size_t n = 0; n < memory_.node.size(); ++n) memory_.velocity[n] = padded(memory_.free_velocity[memory_.node[n]]);
-    for (std::size_t i = 0; i < memory_.contact.size(); ++i) apply_impulse(memory_.contact[i], memory_.impulse[i], memory_.velocity.data());
+void LumpedOperator::refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
+    for (std::size_t n = 0; n < memory_.node.size(); ++n) velocity[n] = padded(memory_.free_velocity[memory_.node[n]]);
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i) apply_impulse(memory_.contact[i], impulse[i], velocity.data());
+}
+
+void LumpedOperator::refresh_all() {
+    refresh();
+    refresh(memory_.workspace[1], memory_.scratch);  // one without the other lets their difference grow
+}
+
+void LumpedOperator::remember() {
+    std::ranges::copy(memory_.impulse, memory_.workspace[1].begin());
+    std::ranges::copy(memory_.velocity, memory_.scratch.begin());
+}
+
+void LumpedOperator::extrapolate(Real factor) {
+    const auto move = [factor](std::span<Vec4> present, std::span<Vec4> previous) {
+        for (std::size_t i = 0; i < present.size(); ++i) {
+            const Vec4 now = present[i];
+            present[i] = now + factor * (now - previous[i]);
+            previous[i] = now;
+        }
+    };
+    move(memory_.impulse, memory_.workspace[1]);
+    move(memory_.velocity, memory_.scratch);  // velocities are affine in the impulses
 }
 
 Real LumpedOperator::error() const {
@@ -53,6 +73,19 @@ void LumpedOperator::multiply(std::span<const Vec4> in, std::span<Vec4> out) {
     for (std::size_t i = 0; i < memory_.contact.size(); ++i) apply_impulse(memory_.contact[i], in[i], memory_.scratch.data());
     for (std::size_t i = 0; i < memory_.contact.size(); ++i)
         out[i] = add_node_velocities(memory_.contact[i], memory_.scratch.data(), Vec4::Zero());
+}
+
+void LumpedOperator::assemble(Eigen::MatrixXd& matrix) const {
+    matrix.setZero(3 * size(), 3 * size());
+    for (Index i = 0; i < size(); ++i)
+        for (Index j = 0; j < size(); ++j) {
+            const LumpedContact &a = memory_.contact[i], &b = memory_.contact[j];
+            Real coupling = 0;
+            for (Index k = 0; k < a.node_count; ++k)
+                for (Index l = 0; l < b.node_count; ++l)
+                    if (a.node[k] == b.node[l]) coupling += a.weight[k] * b.step[l];
+            matrix.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(coupling);
+        }
 }
 
 }  // namespace skerry

@@ -7,7 +7,7 @@
 
 #include "components/options.h"
 #include "components/types.h"
-#include "systems/solver/operators/friction_law.h"
+#include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -78,15 +78,13 @@ Real contact_bias(const RegionInputs& inputs, Index row, const SolverSettings& s
 /// One region. The memory belongs to the caller.
 class LumpedOperator {
 public:
-    using Vector = Vec4;
-
     struct Memory {
         std::span<const LumpedContact> contact;
         std::span<Vec4> impulse;                   // N s
         std::span<Vec4> velocity;                  // m/s, of the region's nodes, moved by the impulse
         std::span<const Index> node;               // rows of NodeTable
         std::span<const Vec3> free_velocity;       // m/s, by row of NodeTable
-        std::span<Vec4> scratch;                   // by node of the region; empty unless the algorithm multiplies
+        std::span<Vec4> scratch;                   // by node of the region: previous velocities, or those of a product
         std::array<std::span<Vec4>, 4> workspace;  // by contact
     };
 
@@ -96,14 +94,21 @@ public:
     Index size() const { return static_cast<Index>(memory_.contact.size()); }
     std::span<Vec4> impulse() { return memory_.impulse; }
     std::span<Vec4> workspace(Index slot) { return memory_.workspace[slot]; }
-    void refresh();
-    Real step(Index i, Real relaxation) {
-        return solve_contact(memory_.contact[i], friction_, relaxation, memory_.velocity.data(), memory_.impulse[i]);
+    void refresh() { refresh(memory_.impulse, memory_.velocity); }
+    void refresh_all();
+    void remember();
+    void extrapolate(Real factor);
+    Real sweep(Real relaxation) {
+        return sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
+    }
+    SweepChange accelerated_sweep(Real relaxation) {
+        return accelerated_sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
     }
     /// e_nat of methods.md 2.1.
     Real error() const;
     /// A sweep's change is about the natural map of its start: worth a look once it is as small.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
+    Real inner(Index i, const Vec4& a, const Vec4& b) const { return memory_.contact[i].diagonal * a.dot(b); }
     void residual(std::span<Vec4> out) const;
     void multiply(std::span<const Vec4> in, std::span<Vec4> out);
     Vec4 project(Index i, const Vec4& impulse) const {
@@ -113,7 +118,17 @@ public:
         return feasible_direction(residual, memory_.impulse[i], memory_.contact[i].normal, memory_.contact[i].friction, friction_);
     }
 
+    Vec4 normal(Index i) const { return memory_.contact[i].normal; }
+    FrictionLimits limits(Index i) const { return memory_.contact[i].friction; }
+    Real mobility(Index i) const { return memory_.contact[i].node_count > 0 ? memory_.contact[i].diagonal : 0; }
+    void assemble(Eigen::MatrixXd& matrix) const;
+
 private:
+    Real step(Index i, Real relaxation) {
+        return solve_contact(memory_.contact[i], friction_, relaxation, memory_.velocity.data(), memory_.impulse[i]);
+    }
+    void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
+
     Memory memory_;
     Friction friction_;
     Real scale_;

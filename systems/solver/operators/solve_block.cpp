@@ -7,7 +7,7 @@
 namespace skerry {
 namespace {
 
-/// The letters of methods.md 2.3: impulse as a function of s = |u_t| / |r_t|, and its derivative.
+/// The letters of methods.md 2.3: impulse as a function of s = |u_t| / |r_t|, and the derivatives.
 struct SlipCurve {
     const LocalBlock& block;
     Real bn, b[2];  // m/s; tangents after elimination, along the principal axes
@@ -16,25 +16,32 @@ struct SlipCurve {
     Real rt[2], rt_length, rn, rt_slope, rn_slope;
 
     void evaluate(Real s) {
-        Real pull = 0, pull_slope = 0, squared = 0, weighted = 0;
-        for (int k = 0; k < 2; ++k) {
-            const Real stiffness = block.eigenvalue[k] + s;
-            rt[k] = -b[k] / stiffness;
-            pull += block.coupling[k] * rt[k];
-            pull_slope -= block.coupling[k] * rt[k] / stiffness;
-            squared += rt[k] * rt[k];
-            weighted += rt[k] * rt[k] / stiffness;
-        }
-        rt_length = std::sqrt(squared);
-        rt_slope = rt_length > 0 ? -weighted / rt_length : 0;
-        rn = -(bn + pull) / block.normal;
-        rn_slope = -pull_slope / block.normal;
+        const Real compliance[2] = {1 / (block.eigenvalue[0] + s), 1 / (block.eigenvalue[1] + s)};
+        rt[0] = -b[0] * compliance[0];
+        rt[1] = -b[1] * compliance[1];
+        const Real pull = block.coupling[0] * rt[0] + block.coupling[1] * rt[1];
+        const Real pull_slope = -(block.coupling[0] * rt[0] * compliance[0] + block.coupling[1] * rt[1] * compliance[1]);
+        rt_length = std::sqrt(rt[0] * rt[0] + rt[1] * rt[1]);
+        rt_slope = rt_length > 0 ? -(rt[0] * rt[0] * compliance[0] + rt[1] * rt[1] * compliance[1]) / rt_length : 0;
+        rn = -(bn + pull) * block.inverse_normal;
+        rn_slope = -pull_slope * block.inverse_normal;
     }
     bool inside_cone() const { return rt_length <= mu * rn; }
+    bool on_cone() const {
+        const Real limit = mu * rn;
+        return rn > 0 && std::abs(rt_length - limit) <= 8 * std::numeric_limits<Real>::epsilon() * limit;
+    }
+    /// The change of s that Newton's method asks for on 1/|rt| - 1/(mu rn), which is nearly linear in s. Needs rn > 0.
+    Real newton_step() const {
+        const Real limit = mu * rn;
+        const Real value = 1 / rt_length - 1 / limit;
+        const Real slope = -rt_slope / (rt_length * rt_length) + mu * rn_slope / (limit * limit);
+        return -value / slope;
+    }
 };
 
-/// The s > 0 at which the impulse lies on the cone: Newton on 1/|rt| - 1/(mu rn), nearly linear in s, kept inside a bracket.
-void find_slip(SlipCurve& curve) {
+/// The s > 0 at which the impulse lies on the cone, kept inside a bracket.
+Real find_slip_safely(SlipCurve& curve) {
     const LocalBlock& block = curve.block;
     const Real b_length = std::hypot(curve.b[0], curve.b[1]);
     const Real coupling_length = std::hypot(block.coupling[0], block.coupling[1]);
@@ -47,40 +54,54 @@ void find_slip(SlipCurve& curve) {
     curve.evaluate(s);
     constexpr int iteration_limit = 100;  // bisection alone needs about 60
     for (int iteration = 0; iteration < iteration_limit; ++iteration) {
-        const bool usable = curve.rn > 0;
-        const Real limit = curve.mu * curve.rn;
-        if (usable && std::abs(curve.rt_length - limit) <= 4 * std::numeric_limits<Real>::epsilon() * limit) return;
+        if (curve.on_cone()) break;
         (curve.inside_cone() ? high : low) = s;
-        if (!(high - low > std::numeric_limits<Real>::epsilon() * high)) return;
+        if (!(high - low > std::numeric_limits<Real>::epsilon() * high)) break;
         Real next = 0.5 * (low + high);
-        if (usable) {
-            const Real value = 1 / curve.rt_length - 1 / limit;
-            const Real slope = -curve.rt_slope / (curve.rt_length * curve.rt_length) + curve.mu * curve.rn_slope / (limit * limit);
-            const Real newton = s - value / slope;
+        if (curve.rn > 0) {
+            const Real newton = s + curve.newton_step();
             if (newton > low && newton < high) next = newton;
         }
         s = next;
         curve.evaluate(s);
     }
+    return s;
+}
+
+/// From the last solution it takes one or two steps. Any root is a solution; what does not settle at once is searched safely.
+Real find_slip(SlipCurve& curve, Real start) {
+    Real s = start;
+    constexpr int fast_limit = 6;
+    for (int iteration = 0; iteration < fast_limit && s > 0; ++iteration) {
+        curve.evaluate(s);
+        if (!(curve.rn > 0)) break;
+        if (curve.on_cone()) return s;
+        const Real step = curve.newton_step();
+        s += step;
+        if (std::abs(step) <= 4 * std::numeric_limits<Real>::epsilon() * s) return s;  // as far as rounding lets it
+    }
+    return find_slip_safely(curve);
 }
 
 }  // namespace
 
 LocalBlock prepare_block(const Mat3& matrix) {
     LocalBlock block;
-    block.matrix = 0.5 * (matrix + matrix.transpose());
-    block.normal = block.matrix(0, 0);
+    block.normal = matrix(0, 0);
     block.cosine = 1;
     block.sine = 0;
+    block.slip = 0;
     if (!(block.normal > 0)) {
+        block.inverse_normal = 0;
         block.coupling[0] = block.coupling[1] = 0;
         block.eigenvalue[0] = block.eigenvalue[1] = 1;
         return block;
     }
-    const Real w1 = block.matrix(0, 1), w2 = block.matrix(0, 2);
-    const Real a = block.matrix(1, 1) - w1 * w1 / block.normal;
-    const Real c = block.matrix(2, 2) - w2 * w2 / block.normal;
-    const Real d = block.matrix(1, 2) - w1 * w2 / block.normal;
+    block.inverse_normal = 1 / block.normal;
+    const Real w1 = 0.5 * (matrix(0, 1) + matrix(1, 0)), w2 = 0.5 * (matrix(0, 2) + matrix(2, 0));
+    const Real a = matrix(1, 1) - w1 * w1 / block.normal;
+    const Real c = matrix(2, 2) - w2 * w2 / block.normal;
+    const Real d = 0.5 * (matrix(1, 2) + matrix(2, 1)) - w1 * w2 / block.normal;
     // one Jacobi rotation
     if (d != 0) {
         const Real theta = (c - a) / (2 * d);
@@ -94,23 +115,31 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[1] = c;
     }
     // a rank-deficient block leaves rounding here, of either sign
-    const Real smallest = 1e-14 * (block.normal + block.matrix(1, 1) + block.matrix(2, 2));
+    const Real smallest = 1e-14 * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);
     block.coupling[0] = block.cosine * w1 - block.sine * w2;
     block.coupling[1] = block.sine * w1 + block.cosine * w2;
     return block;
 }
 
-Vec3 solve_block(const LocalBlock& block, const Vec3& b, Real mu) {
-    if (b[0] >= 0 || !(block.normal > 0)) return Vec3::Zero();
-    if (mu == 0) return {-b[0] / block.normal, 0, 0};
-    const Real b1 = b[1] - block.matrix(0, 1) * b[0] / block.normal;
-    const Real b2 = b[2] - block.matrix(0, 2) * b[0] / block.normal;
-    SlipCurve curve{block, b[0], {block.cosine * b1 - block.sine * b2, block.sine * b1 + block.cosine * b2}, mu, {}, 0, 0, 0, 0};
+Vec3 solve_block(LocalBlock& block, const Vec3& b, Real mu) {
+    if (b[0] >= 0 || block.inverse_normal == 0) return Vec3::Zero();
+    const Real pressed = -b[0] * block.inverse_normal;  // N s, without friction
+    if (mu == 0) return {pressed, 0, 0};
+    SlipCurve curve{block,
+                    b[0],
+                    {block.cosine * b[1] - block.sine * b[2] + block.coupling[0] * pressed,
+                     block.sine * b[1] + block.cosine * b[2] + block.coupling[1] * pressed},
+                    mu,
+                    {},
+                    0,
+                    0,
+                    0,
+                    0};
     curve.evaluate(0);
     Real shrink = 1;
     if (!curve.inside_cone()) {
-        find_slip(curve);
+        block.slip = find_slip(curve, block.slip);
         shrink = curve.mu * curve.rn / curve.rt_length;  // onto the cone to the last bit
     }
     const Real r1 = shrink * curve.rt[0], r2 = shrink * curve.rt[1];
