@@ -12,7 +12,7 @@ namespace skerry {
 enum class MaterialModel { linear, corotational, stable_neo_hookean };
 enum class Friction { cone, pyramid };
 enum class ContactRegions { separate, global, paper_algorithm_1 };
-enum class SolverMethod { pgs, pcg_pgs, ags };
+enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
 enum class WarmStart { off, on };
 
@@ -44,10 +44,12 @@ struct EnumNames<ContactRegions> {
 };
 template <>
 struct EnumNames<SolverMethod> {
-    static constexpr std::array<std::pair<SolverMethod, std::string_view>, 3> table{{
+    static constexpr std::array<std::pair<SolverMethod, std::string_view>, 5> table{{
+        {SolverMethod::automatic, "automatic"},
+        {SolverMethod::ags, "ags"},
         {SolverMethod::pgs, "pgs"},
         {SolverMethod::pcg_pgs, "pcg_pgs"},
-        {SolverMethod::ags, "ags"},
+        {SolverMethod::newton, "newton"},
     }};
 };
 template <>

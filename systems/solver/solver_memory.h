@@ -42,7 +42,7 @@ void make_room(Column<T>& column, std::size_t count) {
 /// How many vectors by contact a method works with; the first keeps the best iterate.
 inline std::size_t workspace_slots(SolverMethod method) {
     if (method == SolverMethod::pgs) return 1;
-    return method == SolverMethod::ags ? 2 : 4;
+    return method == SolverMethod::ags || method == SolverMethod::automatic ? 2 : 4;
 }
 
 }  // namespace skerry

@@ -40,46 +40,80 @@ private:
     Real relaxation_ = 1;
 };
 
+/// Accelerated sweeps that can stop and go on where they were.
+template <ContactOperator Op>
+class AcceleratedSweeps {
+public:
+    explicit AcceleratedSweeps(Op& op) : best_(op), op_(op) { op_.remember(); }
+
+    /// Goes on until the error is within the tolerance or `last` iterations have been done in all. `error` is that of the last measure;
+    /// unless converged, the impulse is that of the last sweep.
+    SolveResult run_to(Index last, const SolveLimits& limits) {
+        while (iteration_ < last) {
+            if (iteration_ > 0) extrapolate();
+            ++iteration_;
+            const SweepChange change = op_.accelerated_sweep(watchdog_.relaxation() * limits.relaxation);
+            change_ = change;
+            if (limits.fixed_iterations) continue;
+            const bool due = iteration_ >= check_ || iteration_ == last;
+            if (!due && !op_.suggests_check(change.size, limits.tolerance)) continue;
+            error_ = op_.error();
+            if (error_ <= limits.tolerance) return {iteration_, error_, true};
+            if (!std::isfinite(error_)) return {iteration_, error_, false};
+            best_.offer(error_);
+            if (iteration_ >= check_) check_ = next_check(iteration_);
+        }
+        if (limits.fixed_iterations) error_ = op_.error();
+        return {iteration_, error_, error_ <= limits.tolerance};
+    }
+
+    Index iterations() const { return iteration_; }
+    /// Forgets the momentum: the impulse has been changed from outside.
+    void start_anew() {
+        momentum_ = 1;
+        smallest_change_ = infinite;
+        op_.remember();
+        change_ = {infinite, 0};
+    }
+    /// Puts the best impulse back.
+    SolveResult give_up() { return {iteration_, best_.restore(), false}; }
+
+private:
+    static constexpr Real infinite = std::numeric_limits<Real>::infinity();
+
+    void extrapolate() {
+        constexpr Real guard = 2;               // 10 is 15 % faster on easy problems and fails on jammed ones
+        constexpr Index refresh_interval = 64;  // extrapolation adds up rounding
+        const Real next_momentum = (1 + std::sqrt(1 + 4 * momentum_ * momentum_)) / 2;
+        Real extrapolation = (momentum_ - 1) / next_momentum;
+        momentum_ = next_momentum;
+        smallest_change_ = std::min(smallest_change_, change_.size);
+        const bool was_plain = watchdog_.plain();
+        watchdog_.observe(iteration_, change_.size);
+        if (was_plain || watchdog_.plain() || change_.against > 0 || change_.size > guard * smallest_change_) {
+            momentum_ = 1;
+            extrapolation = 0;
+            smallest_change_ = change_.size;
+        }
+        if (iteration_ % refresh_interval == 0) op_.refresh_all();
+        op_.extrapolate(extrapolation);
+    }
+
+    BestIterate<Op> best_;
+    Op& op_;
+    Watchdog watchdog_;
+    Real momentum_ = 1, smallest_change_ = infinite, error_ = infinite;
+    SweepChange change_{infinite, 0};
+    Index iteration_ = 0, check_ = 1;
+};
+
 /// Sweeps from the operator's present impulse. Leaves the last impulse when it converged or the count is fixed, else the best one seen.
 template <ContactOperator Op>
 SolveResult solve_ags(Op& op, const SolveLimits& limits) {
-    constexpr Real guard = 2;               // 10 is 15 % faster on easy problems and fails on jammed ones
-    constexpr Index refresh_interval = 64;  // extrapolation adds up rounding
-    constexpr Real infinite = std::numeric_limits<Real>::infinity();
-    BestIterate<Op> best(op);
-    Watchdog watchdog;
-    Real momentum = 1, smallest_change = infinite;
-    Index check = 1;
-    op.remember();
-    for (Index iteration = 1; iteration <= limits.max_iterations; ++iteration) {
-        const auto [change, against] = op.accelerated_sweep(watchdog.relaxation() * limits.relaxation);
-        const bool due = iteration >= check || iteration == limits.max_iterations || op.suggests_check(change, limits.tolerance);
-        if (due && !limits.fixed_iterations) {
-            const Real error = op.error();
-            if (error <= limits.tolerance) return {iteration, error, true};
-            if (!std::isfinite(error)) return {iteration, error, false};
-            best.offer(error);
-            if (iteration >= check) check = next_check(iteration);
-        }
-        if (iteration == limits.max_iterations) break;
-
-        const Real next_momentum = (1 + std::sqrt(1 + 4 * momentum * momentum)) / 2;
-        Real extrapolation = (momentum - 1) / next_momentum;
-        momentum = next_momentum;
-        smallest_change = std::min(smallest_change, change);
-        const bool was_plain = watchdog.plain();
-        watchdog.observe(iteration, change);
-        if (was_plain || watchdog.plain() || against > 0 || change > guard * smallest_change) {
-            momentum = 1;
-            extrapolation = 0;
-            smallest_change = change;
-        }
-        if (iteration % refresh_interval == 0) op.refresh_all();
-        op.extrapolate(extrapolation);
-    }
-    if (!limits.fixed_iterations) return {limits.max_iterations, best.restore(), false};
-    const Real error = op.error();
-    return {limits.max_iterations, error, error <= limits.tolerance};
+    AcceleratedSweeps<Op> sweeps(op);
+    const SolveResult result = sweeps.run_to(limits.max_iterations, limits);
+    if (result.converged || limits.fixed_iterations || !std::isfinite(result.error)) return result;
+    return sweeps.give_up();
 }
 
 }  // namespace skerry

@@ -3,6 +3,8 @@
 
 #include "components/options.h"
 #include "systems/solver/methods/ags.h"
+#include "systems/solver/methods/automatic.h"
+#include "systems/solver/methods/newton.h"
 #include "systems/solver/methods/pcg_pgs.h"
 #include "systems/solver/methods/pgs.h"
 
@@ -11,6 +13,10 @@ namespace skerry {
 template <ContactOperator Op>
 SolveResult run_method(SolverMethod method, Op& op, const SolveLimits& limits) {
     switch (method) {
+        case SolverMethod::automatic:
+            return solve_automatic(op, limits);
+        case SolverMethod::newton:
+            return solve_newton(op, limits);
         case SolverMethod::pgs:
             return solve_pgs(op, limits);
         case SolverMethod::pcg_pgs:

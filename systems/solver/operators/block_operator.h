@@ -9,6 +9,7 @@
 #include "components/options.h"
 #include "components/types.h"
 #include "systems/solver/operators/contact_operator.h"
+#include "systems/solver/operators/newton_memory.h"
 #include "systems/solver/operators/solve_block.h"
 
 namespace skerry {
@@ -39,6 +40,7 @@ struct BlockMemory {
     std::vector<Columns> block;   // W_ij, i != j
     std::vector<Vec4> impulse;    // N s
     std::array<std::vector<Vec4>, 4> workspace;
+    NewtonMemory newton;
 
     /// `order`: contacts of the system in the order of the sweep, those of a region one after the other. Impulses start at zero.
     void prepare(const BlockSystem& system, std::span<const Index> order);
@@ -81,6 +83,8 @@ public:
         const BlockMemory::Columns& w = memory_.contact[begin_ + i].diagonal;
         return (w[0][0] + w[1][1] + w[2][2]) / 3;
     }
+    NewtonMemory& newton_memory() { return memory_.newton; }
+    Index couplings() const { return memory_.offset[end_] - memory_.offset[begin_]; }
     void assemble(Eigen::MatrixXd& matrix) const;
 
 private:

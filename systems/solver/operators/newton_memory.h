@@ -1,0 +1,19 @@
+// What dense Newton steps work with (systems/solver/methods/newton.h). It stands with the operators since they keep it.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// Working memory of the method; grows to the largest region seen.
+struct NewtonMemory {
+    Eigen::MatrixXd operator_matrix;  // W
+    Eigen::MatrixXd jacobian;         // of the active contacts
+    Eigen::VectorXd rest, change;
+    std::vector<Index> active;  // contacts that are not open
+};
+
+}  // namespace skerry
