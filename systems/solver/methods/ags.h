@@ -52,11 +52,10 @@ public:
         while (iteration_ < last) {
             if (iteration_ > 0) extrapolate();
             ++iteration_;
-            const SweepChange change = op_.accelerated_sweep(watchdog_.relaxation() * limits.relaxation);
-            change_ = change;
+            change_ = op_.accelerated_sweep(watchdog_.relaxation() * limits.relaxation);
             if (limits.fixed_iterations) continue;
-            const bool due = iteration_ >= check_ || iteration_ == last;
-            if (!due && !op_.suggests_check(change.size, limits.tolerance)) continue;
+            const bool suggested = op_.suggests_check(change_.size, limits.tolerance);  // once a sweep
+            if (!suggested && iteration_ < check_ && iteration_ < last) continue;
             error_ = op_.error();
             if (error_ <= limits.tolerance) return {iteration_, error_, true};
             if (!std::isfinite(error_)) return {iteration_, error_, false};

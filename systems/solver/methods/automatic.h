@@ -36,7 +36,7 @@ template <ContactOperator Op>
 requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     if (limits.fixed_iterations) return solve_ags(op, limits);
     AcceleratedSweeps<Op> sweeps(op);
-    constexpr Index trial_steps = 5;
+    constexpr Index trial_steps = 2;
     constexpr Index least_sweeps = 16;
     const Real trial = trial_steps * newton_step_cost(op.size()) / sweep_cost(op.size(), op.couplings());  // sweeps
     Real pause = std::max<Real>(trial, least_sweeps);

@@ -12,8 +12,9 @@ SolveResult sweep_until_solved(Op& op, const SolveLimits& limits, Index first, B
     Index check = first;
     for (Index iteration = first; iteration <= limits.max_iterations; ++iteration) {
         const Real change = op.sweep(limits.relaxation);
-        const bool due = iteration >= check || iteration == limits.max_iterations || op.suggests_check(change, limits.tolerance);
-        if (limits.fixed_iterations || !due) continue;
+        if (limits.fixed_iterations) continue;
+        const bool suggested = op.suggests_check(change, limits.tolerance);  // once a sweep
+        if (!suggested && iteration < check && iteration < limits.max_iterations) continue;
         const Real error = op.error();
         if (error <= limits.tolerance) return {iteration, error, true};
         if (!std::isfinite(error)) return {iteration, error, false};

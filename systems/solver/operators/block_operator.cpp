@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace skerry {
 
@@ -138,9 +139,8 @@ SweepChange BlockOperator::accelerated_sweep(Real relaxation) {
 }
 
 bool BlockOperator::suggests_check(Real, Real tolerance) {
-    const bool small = swept_ <= tolerance * tolerance * size_ * size_;
-    swept_ = 0;
-    return small;
+    last_swept_ = std::exchange(swept_, 0);
+    return calibration_ * last_swept_ <= tolerance * tolerance * size_ * size_;
 }
 
 Real BlockOperator::error() {
@@ -155,6 +155,7 @@ Real BlockOperator::error() {
         u += velocity_now.squaredNorm();
     }
     size_ = std::sqrt(std::max({q, r, u, smallest_size_ * smallest_size_}));
+    if (last_swept_ > 0) calibration_ = lack / last_swept_;
     return lack == 0 ? 0 : std::sqrt(lack) / size_;
 }
 

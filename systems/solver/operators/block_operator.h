@@ -96,8 +96,10 @@ private:
     Index begin_, end_;
     Friction friction_;
     Real smallest_size_;
-    Real swept_ = 0;  // squared estimate of |F| from the changes of this sweep
-    Real size_ = 0;   // max(|q|, |r|, |u|) at the last measure
+    Real swept_ = 0;        // squared estimate of |F| from the changes of this sweep
+    Real last_swept_ = 0;   // the same of the sweep before, whose |F| error() measures
+    Real calibration_ = 1;  // |F|^2 over the estimate at the last measure
+    Real size_ = 0;         // max(|q|, |r|, |u|) at the last measure
 };
 
 }  // namespace skerry

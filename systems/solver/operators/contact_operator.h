@@ -31,7 +31,7 @@ concept ContactOperator = requires(Op op, const Op constant, Index i, Real numbe
     { op.accelerated_sweep(number) } -> std::same_as<SweepChange>;       // the same, compared with the previous
     { constant.inner(i, vector, vector) } -> std::convertible_to<Real>;  // a . W_ii b
     { op.error() } -> std::convertible_to<Real>;                         // of the present impulse
-    { op.suggests_check(number, number) } -> std::convertible_to<bool>;  // size of a sweep's change, tolerance
+    { op.suggests_check(number, number) } -> std::convertible_to<bool>;  // after each sweep: its change, tolerance
     op.remember();                                                       // previous (slot 1) = present
     op.extrapolate(number);                                              // present += number (present - previous), previous = present
     op.refresh_all();                                                    // refresh() for both
@@ -80,9 +80,9 @@ SweepChange accelerated_sweep_in_order(Op& op, const Step& step) {
     return sum;
 }
 
-/// The next iteration at which the error is measured: 1, 2, 4, 7, 11, 16, ..., then every 16th part more. A measure costs half a sweep.
+/// The next iteration at which the error is measured: 1, 2, 4, 7, 11, 16, ..., then every 8th part more. A measure costs half a sweep.
 inline Index next_check(Index iteration) {
-    return iteration + 1 + std::min(iteration / 2, 4 + iteration / 16);
+    return iteration + 1 + std::min(iteration / 2, 4 + iteration / 8);
 }
 
 /// The best impulse seen at the checks, by error (methods.md 1.3 h).
