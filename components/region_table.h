@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "components/column.h"
+#include "components/contact_table.h"
 #include "components/ragged.h"
 #include "components/types.h"
 
@@ -11,25 +12,61 @@ namespace skerry {
 
 enum class RegionStatus : std::uint8_t { converged, certified, iteration_limit, not_finite };
 
+/// What a region was spared; or'ed.
+enum RegionShortcut : std::uint8_t {
+    shortcut_none = 0,
+    shortcut_closed_form = 1,   // one contact
+    shortcut_separating = 2,    // no contact closes: zero impulses solve it
+    shortcut_certified = 4,     // the warm start solves it
+    shortcut_frictionless = 8,  // one row a contact
+    shortcut_in_lanes = 16      // small: solved side by side with others
+};
+
 /// One row per region, numbered by its first contact.
 struct RegionTable {
     Ragged<Index> contacts;    // rows of ContactTable, ascending
+    Column<ContactKey> id;     // key of its first contact: a region that keeps it is the same region in the next step
     Column<Index> iterations;  // sweeps; 0 when the warm start already solves it
     Column<Real> error;        // e_nat, methods.md 2.1
     Column<RegionStatus> status;
+    Column<RegionShortcut> shortcut;
+    Column<Index> frozen;     // contact steps left out since nothing changed there
     Column<Real> dissipated;  // J, taken out by its contacts in this step
-    Column<Index> order;      // regions by predicted cost, largest first, ties by number
+    Column<Index> order;      // in which they are started: large ones by predicted cost, small ones by size, single contacts last
     bool independent = true;  // no two regions share a moving node; false only from paper_algorithm_1: then solved one by one
 
     std::size_t size() const { return contacts.size(); }
     void for_each_column(auto&& visit) {
         visit("contacts.offset", contacts.offset);
         visit("contacts.item", contacts.item);
+        visit("id", id);
         visit("iterations", iterations);
         visit("error", error);
         visit("status", status);
+        visit("shortcut", shortcut);
+        visit("frozen", frozen);
         visit("dissipated", dissipated);
         visit("order", order);
+    }
+};
+
+/// What is remembered of regions from step to step, by ascending id. It tells how long a region will take, and nothing else: no result
+/// depends on it, so it is no part of the state.
+struct RegionHistoryTable {
+    Column<ContactKey> id;
+    Column<Index> contacts;  // how many
+    Column<Real> sweeps;     // moving average
+    Column<Index> age;       // steps since the number of its contacts changed
+
+    void for_each_column(auto&& visit) {
+        visit("id", id);
+        visit("contacts", contacts);
+        visit("sweeps", sweeps);
+        visit("age", age);
+    }
+    std::size_t size() const { return id.size(); }
+    void resize(std::size_t count) {
+        for_each_column([count](const char*, auto& column) { column.resize(count); });
     }
 };
 

@@ -2,9 +2,7 @@
 // simulated second, and two threads against one, taken in turns.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -12,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "profiling/measure.h"
 #include "skerry/scene.h"
 
 using namespace skerry;
+using namespace skerry::profiling;
 
 namespace {
 
@@ -24,26 +24,20 @@ struct Run {
     WorldReport report;
 };
 
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 Run run(const std::filesystem::path& scene_file, int threads, double seconds, double frame) {
     SceneOverrides overrides;
     overrides.threads = threads;
     Scene scene = load_scene(scene_file, overrides);
     if (seconds <= 0) seconds = scene.seconds;
     Run result;
-    const auto begin = std::chrono::steady_clock::now();
-    const double cpu_begin = cpu_seconds();
+    const double begin = wall_seconds();
+    const double cpu_begin = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
     for (double left = seconds; left > 1e-12; left -= frame) {
         const StepReport step = scene.world.advance(std::min(left, frame));
         if (!step.ok()) throw std::runtime_error(scene_file.string() + ": " + step.message());
     }
-    result.cpu = cpu_seconds() - cpu_begin;
-    result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.cpu = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin;
+    result.wall = wall_seconds() - begin;
     result.report = scene.world.report();
     return result;
 }
@@ -63,8 +57,7 @@ template <class Value>
 double median_of(const std::vector<Run>& runs, Value value) {
     std::vector<double> values;
     for (const Run& r : runs) values.push_back(value(r));
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
+    return median(std::move(values));
 }
 
 nlohmann::json print_scene(const std::string& name, const std::map<int, std::vector<Run>>& runs) {

@@ -81,4 +81,23 @@ std::vector<Real> Hdf5File::reals(const std::string& path) const {
     return values;
 }
 
+std::string Hdf5File::text_or_nothing(const std::string& path) const {
+    if (!has(path)) return {};
+    const Hdf5Handle data(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!data.ok()) return {};
+    const Hdf5Handle type(H5Dget_type(data.id()), H5Tclose);
+    const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
+    if (!type.ok() || !space.ok() || H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1) return {};
+    if (H5Tis_variable_str(type.id()) > 0) {
+        char* text = nullptr;
+        if (H5Dread(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) < 0 || !text) return {};
+        const std::string result = text;
+        H5free_memory(text);
+        return result;
+    }
+    std::string text(H5Tget_size(type.id()), '\0');
+    if (H5Dread(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return {};
+    return text.substr(0, text.find('\0'));  // with or without the zero at the end
+}
+
 }  // namespace skerry

@@ -57,6 +57,8 @@ public:
     Index integer(const std::string& path) const;
     std::vector<Index> integers(const std::string& path) const;
     std::vector<Real> reals(const std::string& path) const;  // all finite
+    /// Text that a file may have: empty when it has none.
+    std::string text_or_nothing(const std::string& path) const;
 
     [[noreturn]] void complain(const std::string& path, const std::string& found, const std::string& expected,
                                const std::string& hint = {}) const;

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <string>
 
+#include "engine/problem/check_arrays.h"
+#include "engine/problem/measure_problem.h"
 #include "skerry/error.h"
 #include "skerry/problem.h"
 #include "systems/solver/methods/run_method.h"
@@ -53,27 +55,6 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     regions.offset[0] = 0;
 }
 
-struct Measured {
-    ProblemError error;
-    Real size = 0;  // max(|q|, |r|, |u|)
-};
-
-Measured measure(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction) {
-    Real lack = 0, q = 0, r = 0, u = 0;
-    for (std::size_t i = 0; i < problem.q.size(); ++i) {
-        Vec3 velocity = problem.q[i];
-        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
-            velocity += problem.block[k] * reaction[problem.column[k]];
-        lack += natural_map(reaction[i], velocity, problem.mu[i], friction).squaredNorm();
-        q += problem.q[i].squaredNorm();
-        r += reaction[i].squaredNorm();
-        u += velocity.squaredNorm();
-    }
-    const Real size = std::sqrt(std::max({q, r, u}));
-    if (lack == 0) return {{0, 0, 0}, size};
-    return {{std::sqrt(lack), std::sqrt(lack) / size, std::sqrt(lack / q)}, size};
-}
-
 /// Everything that a solve writes, kept from one repetition to the next.
 struct Work {
     ProblemRegions regions;
@@ -84,29 +65,35 @@ struct Work {
 /// Solves all regions. The error is one of all regions together, so none is asked for more than its share of it; since the sizes that it
 /// is measured against are known at the end only, the regions may have to go on from where they are, asked for half.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, Work& work) {
-    const BlockSystem system = view(problem);
+    const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);
-    work.memory.prepare(system);
-    work.used.assign(static_cast<std::size_t>(work.regions.size()), 0);
+    work.memory.prepare(view(problem), regions.contact, settings.friction);
+    work.used.assign(static_cast<std::size_t>(regions.size()), 0);
     SolveLimits limits;
     limits.tolerance = settings.tolerance;
-    Real size = measure(problem, work.memory.impulse, settings.friction).size;
-    const Real contacts = static_cast<Real>(problem.contacts());
+    limits.relaxation = settings.relaxation;
+    BlockOperator whole(work.memory, 0, problem.contacts(), settings.friction, 0);
+    if (whole.error() <= settings.tolerance) return;
     constexpr int round_limit = 8;
     for (int round = 0; round < round_limit; ++round) {
-        for (Index region = 0; region < work.regions.size(); ++region) {
-            const std::span<const Index> rows = work.regions[region];
-            const Real share = size * std::sqrt(static_cast<Real>(rows.size()) / contacts);
-            BlockOperator op(system, rows, settings.friction, share, work.memory);
+        for (Index region = 0; region < regions.size(); ++region) {
+            const Index begin = regions.offset[region], end = regions.offset[region + 1];
+            const Real share = whole.measured_size() * std::sqrt(static_cast<Real>(end - begin) / static_cast<Real>(problem.contacts()));
+            BlockOperator op(work.memory, begin, end, settings.friction, share);
             limits.max_iterations = settings.max_iterations - work.used[region];
-            if (limits.max_iterations <= 0 || op.error() <= limits.tolerance) continue;
+            if (limits.max_iterations <= 0 || (round > 0 && op.error() <= limits.tolerance)) continue;
             work.used[region] += run_method(settings.method, op, limits).iterations;
         }
-        const Measured now = measure(problem, work.memory.impulse, settings.friction);
-        if (now.error.relative <= settings.tolerance) return;
-        size = now.size;
+        if (whole.error() <= settings.tolerance) return;
         limits.tolerance /= 2;
     }
+}
+
+/// The impulses in the order of the problem.
+std::vector<Vec3> reactions(const Work& work) {
+    std::vector<Vec3> reaction(work.regions.contact.size());
+    for (std::size_t i = 0; i < reaction.size(); ++i) reaction[work.regions.contact[i]] = work.memory.impulse[i].head<3>();
+    return reaction;
 }
 
 double seconds_of(const ContactProblem& problem, const ProblemSettings& settings, Work& work) {
@@ -116,27 +103,21 @@ double seconds_of(const ContactProblem& problem, const ProblemSettings& settings
 }
 
 void check(const ContactProblem& problem, const ProblemSettings& settings) {
-    const std::size_t count = problem.q.size();
-    const auto expect = [&](bool good, const char* field, const std::string& found, const std::string& expected) {
-        if (!good)
-            Complaint{.file = {}, .object = "problem " + problem.name, .field = field, .found = found, .expected = expected, .hint = {}}
-                .raise();
+    const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
+        Complaint{.file = {}, .object = "problem " + problem.name, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
     };
-    expect(problem.mu.size() == count, "mu", std::to_string(problem.mu.size()) + " values", std::to_string(count));
-    expect(problem.row_offset.size() == count + 1, "row_offset", std::to_string(problem.row_offset.size()) + " values",
-           std::to_string(count + 1));
-    const std::size_t blocks = problem.block.size();
-    expect(problem.column.size() == blocks && static_cast<std::size_t>(problem.row_offset.back()) == blocks, "column",
-           std::to_string(problem.column.size()) + " values", std::to_string(blocks) + " (blocks)");
-    for (const Index column : problem.column)
-        expect(column >= 0 && static_cast<std::size_t>(column) < count, "column", std::to_string(column), "a contact");
-    expect(settings.tolerance >= 0, "tolerance", std::to_string(settings.tolerance), ">= 0");
-    expect(settings.max_iterations >= 1, "max_iterations", std::to_string(settings.max_iterations), ">= 1");
+    if (!(settings.tolerance >= 0)) refuse("tolerance", std::to_string(settings.tolerance), ">= 0");
+    if (settings.max_iterations < 1) refuse("max_iterations", std::to_string(settings.max_iterations), ">= 1");
+    if (!(settings.relaxation > 0 && settings.relaxation < 2)) refuse("relaxation", std::to_string(settings.relaxation), "> 0 and < 2");
+    const auto rough = std::ranges::find_if(problem.mu, [](Real mu) { return mu != 0; });
+    if (needs_frictionless(settings.method) && rough != problem.mu.end())
+        refuse("method", std::string(name_of(settings.method)) + " and mu = " + std::to_string(*rough), "mu = 0, or a method with friction");
 }
 
 }  // namespace
 
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings) {
+    check_arrays(problem);
     check(problem, settings);
     Work work;
     const double first = seconds_of(problem, settings, work);
@@ -148,28 +129,21 @@ ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettin
     std::nth_element(seconds.begin(), seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2), seconds.end());
 
     ProblemSolution solution;
-    const ProblemError error = measure(problem, work.memory.impulse, settings.friction).error;
-    solution.reaction = work.memory.impulse;
+    solution.reaction = reactions(work);
+    const ProblemError error = measure_problem(problem, solution.reaction, settings.friction);
     solution.regions = work.regions.size();
     solution.iterations = work.used.empty() ? 0 : *std::max_element(work.used.begin(), work.used.end());
     solution.seconds = seconds[seconds.size() / 2];
     solution.error = error.relative;
     solution.error_absolute = error.absolute;
     solution.error_over_q = error.over_q;
+    solution.energy_gap = error.energy_gap;
     solution.converged = error.relative <= settings.tolerance;
+    for (Index region = 0; region < work.regions.size(); ++region) {
+        solution.largest_region = std::max(solution.largest_region, static_cast<Index>(work.regions[region].size()));
+        solution.unconverged += !solution.converged && work.used[region] >= settings.max_iterations;
+    }
     return solution;
-}
-
-ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction) {
-    if (reaction.size() != problem.q.size())
-        Complaint{.file = {},
-                  .object = "problem " + problem.name,
-                  .field = "reaction",
-                  .found = std::to_string(reaction.size()) + " values",
-                  .expected = std::to_string(problem.q.size()),
-                  .hint = {}}
-            .raise();
-    return measure(problem, reaction, Friction::cone).error;
 }
 
 }  // namespace skerry

@@ -1,9 +1,12 @@
 // What the program can do. Every command returns its exit code.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "skerry/problem.h"
 #include "skerry/scene.h"
@@ -17,12 +20,24 @@ enum ExitCode : int {
 };
 inline constexpr int exit_signal = 128;  // plus the number of the signal
 
+/// What one file of exported contact problems holds.
+enum class ProblemsOf { step, region };
+template <>
+struct EnumNames<ProblemsOf> {
+    static constexpr std::array<std::pair<ProblemsOf, std::string_view>, 2> table{{
+        {ProblemsOf::step, "step"},
+        {ProblemsOf::region, "region"},
+    }};
+};
+
 struct RunOptions {
     std::filesystem::path scene;
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
-    std::filesystem::path out, stats, page, trace;  // empty: not written
+    std::filesystem::path out, stats, page, trace, problems;  // empty: not written
+    ProblemsOf problems_of = ProblemsOf::step;
+    std::optional<int> problems_every;  // steps
     bool quiet = false;
 };
 int run(const RunOptions& options);

@@ -7,6 +7,7 @@
 
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
+#include "engine/program/problem_export.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
 #include "engine/program/run_result.h"
@@ -116,13 +117,16 @@ void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool sh
     result.probes = probes.records();
 }
 
-void write_results(const RunOptions& options, const RunResult& result, const World& world) {
+void write_results(const RunOptions& options, const RunResult& result, const ProblemExport& problems, const World& world) {
     if (!options.stats.empty()) write_file(options.stats, [&](std::ostream& out) { out << statistics_of(result).dump(1) << "\n"; });
     if (!options.trace.empty()) write_file(options.trace, [&](std::ostream& out) { world.write_trace(out); });
     if (!options.quiet) {
         std::cout << summary_of(result);
         for (const auto* file : {&options.out, &options.page, &options.stats, &options.trace})
             if (!file->empty()) std::cout << "  wrote         " << file->string() << "\n";
+        if (!options.problems.empty())
+            std::cout << "  wrote         " << problems.files() << " contact problems of " << problems.steps() << " steps to "
+                      << options.problems.string() << "\n";
         std::cout.flush();
     }
 }
@@ -141,21 +145,28 @@ int run(const RunOptions& options) {
     result.threads = make_executor(world.settings().backend, world.settings().threads)->worker_count();
     for (const BodyHandle body : world.bodies()) result.mean_edge += world.mean_edge(body) / static_cast<Real>(world.bodies().size());
 
-    if (!options.out.empty()) require_writable_folder(options.out);
+    for (const auto* folder : {&options.out, &options.problems})
+        if (!folder->empty()) require_writable_folder(*folder);
     for (const auto* file : {&options.stats, &options.page, &options.trace})
         if (!file->empty()) require_writable_file(*file);
     FrameOutput output(options, scene);
     if (!options.trace.empty()) world.set_tracing(true);
 
-    run_frames(scene, course_of(options, scene), output, !options.quiet, result);
+    const Course course = course_of(options, scene);
+    ProblemExport problems(options, scene.name, course.seconds);
+    if (!options.problems.empty()) problems.watch(world);
+
+    run_frames(scene, course, output, !options.quiet, result);
 
     result.report = world.report();
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
     output.close(world);
     result.frames = output.frames();
-    result.seconds_output = output.seconds();
-    write_results(options, result, world);
+    // problems are written within the steps
+    result.seconds_wall -= problems.seconds();
+    result.seconds_output = output.seconds() + problems.seconds();
+    write_results(options, result, problems, world);
     if (result.status == "ok") return exit_ok;
     std::cerr << "skerry: " << result.status << "\n";
     return caught_signal != 0 ? exit_signal + caught_signal : exit_failed;

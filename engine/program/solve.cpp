@@ -1,6 +1,8 @@
+#include <cstdint>
 #include <cstdio>
 #include <iostream>
 #include <ostream>
+#include <string>
 
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
@@ -25,7 +27,10 @@ void write_reactions(const std::filesystem::path& file, const ProblemSolution& s
 Json to_json(const SolveOptions& options, const ContactProblem& problem, const ProblemSolution& solution) {
     return {{"problem", problem.name},
             {"contacts", problem.contacts()},
+            {"condensed_freedoms", problem.freedoms},
             {"regions", solution.regions},
+            {"largest_region", solution.largest_region},
+            {"unconverged", solution.unconverged},
             {"method", name_of(options.settings.method)},
             {"friction", name_of(options.settings.friction)},
             {"tolerance", options.settings.tolerance},
@@ -34,17 +39,25 @@ Json to_json(const SolveOptions& options, const ContactProblem& problem, const P
             {"error", solution.error},
             {"error_absolute", solution.error_absolute},
             {"error_over_q", solution.error_over_q},
+            {"energy_gap", solution.energy_gap},
             {"converged", solution.converged}};
 }
 
+std::string count(std::int64_t number) {
+    return grouped(static_cast<std::uint64_t>(number));
+}
+
 void print(const SolveOptions& options, const ContactProblem& problem, const ProblemSolution& solution) {
-    std::cout << problem.name << ": " << grouped(static_cast<std::uint64_t>(problem.contacts())) << " contacts in "
-              << grouped(static_cast<std::uint64_t>(solution.regions)) << " regions\n"
-              << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction) << "\n"
-              << "  iterations    " << grouped(static_cast<std::uint64_t>(solution.iterations)) << " in "
-              << with_unit(solution.seconds, "s") << "\n"
-              << "  error         " << short_number(solution.error) << " of " << short_number(options.settings.tolerance)
-              << (solution.converged ? "" : ": not converged") << "\n";
+    std::cout << problem.name << ": " << count(problem.contacts()) << " contacts in " << count(solution.regions)
+              << " regions, the largest of " << count(solution.largest_region) << " contacts\n";
+    if (problem.freedoms > 0)
+        std::cout << "  condensed     from a global problem of " << count(problem.freedoms) << " freedoms to its contacts\n";
+    std::cout << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction) << "\n"
+              << "  iterations    " << count(solution.iterations) << " in " << with_unit(solution.seconds, "s") << "\n"
+              << "  error         " << short_number(solution.error) << " of " << short_number(options.settings.tolerance) << " (absolute "
+              << short_number(solution.error_absolute) << ", over |q| " << short_number(solution.error_over_q) << ")\n"
+              << "  energy gap    " << with_unit(solution.energy_gap, "J") << "\n";
+    if (!solution.converged) std::cout << "  not converged in " << count(solution.unconverged) << " regions\n";
 }
 
 }  // namespace

@@ -184,6 +184,7 @@ void apply(const SceneOverrides& overrides, Settings& settings) {
     if (overrides.method) settings.method = *overrides.method;
     if (overrides.friction) settings.friction = *overrides.friction;
     if (overrides.tolerance) settings.tolerance = *overrides.tolerance;
+    if (overrides.relaxation) settings.relaxation = *overrides.relaxation;
     if (overrides.step_size) settings.step_size = *overrides.step_size;
 }
 

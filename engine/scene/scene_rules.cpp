@@ -135,9 +135,19 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("tolerance", &S::tolerance, {.meaning = "relative error of a region", .limits = above(0)})
             .key("max_iterations", &S::max_iterations, {.meaning = "sweeps of a region", .limits = at_least(1)})
             .key("fixed_iterations", &S::fixed_iterations, {.meaning = "do exactly max_iterations sweeps"})
+            .key("relaxation", &S::relaxation,
+                 {.meaning = "of the sweeps; above 1 they go further than each contact asks",
+                  .limits = {.at_least = {}, .above = 0, .at_most = {}, .below = 2}})
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step that moves nodes by more than this fraction of an element is refused", .limits = above(0)})
-            .key("contact_budgets", &S::contact_budgets, {.meaning = "skip what cannot have come close; false searches everything"});
+            .key("contact_budgets", &S::contact_budgets, {.meaning = "skip what cannot have come close; false searches everything"})
+            .key("certify_warm_start", &S::certify_warm_start, {.meaning = "no sweep where last step's impulses still solve a region"})
+            .key("skip_separating", &S::skip_separating, {.meaning = "no impulse where no contact of a region closes"})
+            .key("frictionless_rows", &S::frictionless_rows,
+                 {.meaning = "one row a contact instead of three where a region has no friction"})
+            .key("freeze_contacts", &S::freeze_contacts, {.meaning = "no work on contacts that have come to rest within a solve"})
+            .key("small_regions_in_lanes", &S::small_regions_in_lanes,
+                 {.meaning = "regions of 2 to 12 contacts are solved eight at a time"});
     return rule;
 }
 

@@ -45,6 +45,20 @@ void add_collider_travel(WorldState& world) {
     }
 }
 
+void count_shortcuts(const RegionTable& regions, std::size_t r, RunCounters& counters) {
+    const RegionShortcut shortcut = regions.shortcut[r];
+    counters.closed_form += (shortcut & shortcut_closed_form) != 0;
+    counters.certified += (shortcut & shortcut_certified) != 0;
+    counters.separating += (shortcut & shortcut_separating) != 0;
+    counters.frictionless += (shortcut & shortcut_frictionless) != 0;
+    counters.in_lanes += (shortcut & shortcut_in_lanes) != 0;
+    counters.frozen += static_cast<std::uint64_t>(regions.frozen[r]);
+    if ((shortcut & (shortcut_closed_form | shortcut_certified | shortcut_separating)) != 0) return;
+    ++counters.swept;
+    const Index size = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
+    counters.contact_steps += static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(regions.iterations[r]);
+}
+
 void count(WorldState& world) {
     RunCounters& counters = world.counters;
     const RegionTable& regions = world.regions;
@@ -59,8 +73,7 @@ void count(WorldState& world) {
         const Index size = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
         counters.largest_region = std::max(counters.largest_region, size);
         counters.iterations += static_cast<std::uint64_t>(regions.iterations[r]);
-        counters.closed_form += size == 1;
-        counters.certified += regions.status[r] == RegionStatus::certified;
+        count_shortcuts(regions, r, counters);
         counters.unconverged += regions.status[r] == RegionStatus::iteration_limit;
         counters.worst_error = std::max(counters.worst_error, regions.error[r]);
     }
@@ -170,6 +183,7 @@ StepReport World::advance(Real dt) {
         // A remainder of rounding size joins the last step.
         const Real steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
         const Real h = left / steps;
+        const Real start = world.step.time;
         take_step(world, h);
         if (world.step.verdict.fault == StepFault::too_fast && h > stable / most_shortening) {
             fast_limit = h / 2;
@@ -190,6 +204,7 @@ StepReport World::advance(Real dt) {
             world.steps_since_watch = 0;
             watch_stable_step(world);
         }
+        show_contact_problem(world, start);
     }
     return report;
 }

@@ -80,10 +80,11 @@ void validate(const Settings& settings) {
     require(settings.threads >= 0, "settings", "threads", settings.threads, "a number of threads, or 0 for those of the caller");
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance, "a number > 0 and < 1");
     require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
+    require(settings.relaxation > 0 && settings.relaxation < 2, "settings", "relaxation", settings.relaxation, "a number > 0 and < 2");
     require(settings.max_strain_step > 0, "settings", "max_strain_step", settings.max_strain_step, "a fraction > 0");
 }
 
-void validate(const MaterialSettings& material) {
+void validate(const MaterialSettings& material, const Settings& settings) {
     const std::string object = "material";
     require(material.young_modulus > 0, object, "young_modulus", material.young_modulus, "a modulus > 0 (Pa)");
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio", material.poisson_ratio,
@@ -94,6 +95,8 @@ void validate(const MaterialSettings& material) {
     const Real still = material.static_friction.value_or(std::max(material.friction, dynamic));
     require(dynamic >= 0, object, "dynamic_friction", dynamic, "a number >= 0");
     require(still >= dynamic, object, "static_friction", still, "a number not below dynamic_friction");
+    // what a collider adds counts by the geometric mean: none where the body has none
+    require(still == 0 || !needs_frictionless(settings.method), object, "friction", still, "0: the method of the settings knows no friction");
     require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution, "a number from 0 to 1");
     require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
 }

@@ -44,6 +44,12 @@ WorldState::WorldState(const Settings& wanted) : settings(wanted), executor(make
     step.solver.tolerance = settings.tolerance;
     step.solver.max_iterations = settings.max_iterations;
     step.solver.fixed_iterations = settings.fixed_iterations;
+    step.solver.relaxation = settings.relaxation;
+    step.solver.certify_warm_start = settings.certify_warm_start;
+    step.solver.skip_separating = settings.skip_separating;
+    step.solver.frictionless_rows = settings.frictionless_rows;
+    step.solver.freeze_contacts = settings.freeze_contacts;
+    step.solver.small_regions_in_lanes = settings.small_regions_in_lanes;
     build_step(*this);
 }
 
@@ -73,7 +79,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 MaterialHandle World::add_material(const MaterialSettings& material) {
-    validate(material);
+    validate(material, state_->settings);
     MaterialTable& table = state_->materials;
     const std::size_t row = table.slot.size();
     table.for_each_column([row](const char*, auto& column) { column.resize(row + 1); });

@@ -115,6 +115,12 @@ WorldReport World::report() const {
     report.unconverged = counters.unconverged;
     report.certified = counters.certified;
     report.closed_form = counters.closed_form;
+    report.separating = counters.separating;
+    report.frictionless = counters.frictionless;
+    report.in_lanes = counters.in_lanes;
+    report.frozen = counters.frozen;
+    report.contact_steps = counters.contact_steps;
+    report.swept = counters.swept;
     report.solved = counters.regions;
     report.broad_searches = world.search.broad_searches;
     report.pair_searches = world.search.pair_searches;

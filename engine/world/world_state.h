@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -55,6 +56,7 @@ struct StepState {
 struct RunCounters {
     std::uint64_t steps = 0, inline_steps = 0, shortened = 0;
     std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
+    std::uint64_t separating = 0, frictionless = 0, in_lanes = 0, frozen = 0, contact_steps = 0, swept = 0;
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0, dissipated = 0, max_penetration = 0, max_gap_violation = 0;
 };
@@ -69,6 +71,20 @@ struct BodyRecord {
 struct ColliderRecord {
     std::string name;
     Shape shape;
+};
+
+/// Node velocities that a step overwrites and its contact problem is made of.
+struct KeptVelocities {
+    Column<Vec3> velocity;       // m/s, at the start of the step
+    Column<Vec3> velocity_next;  // m/s, predicted
+};
+
+/// Who wants to see contact problems. Idle, it costs a skipped stage.
+struct ProblemWatch {
+    std::function<void(const StepProblem&)> take;
+    std::uint64_t every = 1;
+
+    bool wants(std::uint64_t step) const { return take && step % every == 0; }
 };
 
 struct WorldState {
@@ -108,6 +124,8 @@ struct WorldState {
     Trace trace;
     bool tracing = false;
 
+    ProblemWatch problem_watch;
+    KeptVelocities kept_velocities;
     Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
     Column<Real> stiffness_sum;          // scratch of stable_step
     std::uint64_t steps_since_watch = 0;
@@ -138,6 +156,12 @@ Real stable_step(const WorldState& world, Index* body = nullptr);
 /// Looks at the stable step of every body again.
 void watch_stable_step(WorldState& world);
 
+// watch_problems.cpp
+/// Copies what the contact problem of this step is made of.
+void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, KeptVelocities& kept);
+/// Hands over the contact problem of the step just taken, if somebody wants it.
+void show_contact_problem(const WorldState& world, Real time);
+
 // edit_bodies.cpp
 /// Appends a surface with or without tetrahedra as a body; returns its row.
 struct NewBody {
@@ -166,7 +190,7 @@ void erase_collider(WorldState& world, Index row);
 
 // validate.cpp
 void validate(const Settings& settings);
-void validate(const MaterialSettings& material);
+void validate(const MaterialSettings& material, const Settings& settings);
 void validate(const Mesh& mesh, const BodySettings& body);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);

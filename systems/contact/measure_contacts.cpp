@@ -20,7 +20,7 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
 
 /// What the tangential impulse uses up: its length for the cone, the larger of its two components for the pyramid.
 Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction friction) {
-    if (friction == Friction::cone) return tangential.norm();
+    if (friction != Friction::pyramid) return tangential.norm();
     const TangentFrame frame = tangent_frame(normal);
     return std::max(std::abs(tangential.dot(frame.first)), std::abs(tangential.dot(frame.second)));
 }

@@ -14,24 +14,21 @@ namespace {
 
 /// Starts a new set of stamps and makes room for all nodes. Nothing is cleared per step: a stamp of an earlier step is no stamp.
 void begin_step(std::size_t node_count, UnionFind& memory) {
-    if (memory.parent.size() < node_count) {
-        memory.parent.resize(node_count);
-        memory.stamp.resize(node_count);
-        memory.label.resize(node_count);
-    }
+    if (memory.node.size() < node_count) memory.node.resize(node_count);
     if (memory.now == std::numeric_limits<std::uint32_t>::max()) {
-        std::fill(memory.stamp.begin(), memory.stamp.end(), 0u);
+        for (UnionNode& node : memory.node) node.stamp = 0;
         memory.now = 0;
     }
     ++memory.now;
 }
 
-Index find_root(Column<Index>& parent, Index node) {
-    while (parent[node] != node) {
-        parent[node] = parent[parent[node]];  // path halving
-        node = parent[node];
+Index find_root(Column<UnionNode>& node, Index at) {
+    while (node[at].parent != at) {
+        const Index next = node[node[at].parent].parent;
+        if (next != node[at].parent) node[at].parent = next;  // path halving; most paths are short already, and need no write
+        at = next;
     }
-    return node;
+    return at;
 }
 
 /// Joins the moving nodes of a contact. The smaller root wins, so that roots do not depend on the order of the joins.
@@ -39,17 +36,17 @@ Index find_root(Column<Index>& parent, Index node) {
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, UnionFind& memory) {
     Index root = no_index;
     for (std::size_t a = 0; a < 4; ++a) {
-        const Index node = stencil.node[a];
-        if (stencil.weight[a] == 0 || !(inverse_mass[node] > 0)) continue;
-        if (memory.stamp[node] != memory.now) {
-            memory.stamp[node] = memory.now;
-            memory.parent[node] = node;
-            memory.label[node] = no_index;
+        const Index at = stencil.node[a];
+        if (stencil.weight[a] == 0 || !(inverse_mass[at] > 0)) continue;
+        if (memory.node[at].stamp != memory.now) memory.node[at] = {at, memory.now, no_index};
+        const Index other = find_root(memory.node, at);
+        if (root == other) continue;
+        if (root == no_index) {
+            root = other;
+            continue;
         }
-        const Index other = find_root(memory.parent, node);
-        if (root == no_index) root = other;
         const Index winner = std::min(root, other);
-        memory.parent[std::max(root, other)] = winner;
+        memory.node[std::max(root, other)].parent = winner;
         root = winner;
     }
     return root;
@@ -59,13 +56,26 @@ Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, UnionFin
 Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, UnionFind& memory,
                           std::span<Index> contact_region) {
     begin_step(inverse_mass.size(), memory);
-    for (std::size_t i = 0; i < stencil.size(); ++i) contact_region[i] = unite(stencil[i], inverse_mass, memory);
+    constexpr std::size_t ahead = 12;  // contacts: by then their nodes have come from the memory
+    const auto fetch = [&](const Stencil& next) {
+        for (const Index node : next.node) {
+            __builtin_prefetch(&memory.node[node], 1);
+            __builtin_prefetch(&inverse_mass[node]);
+        }
+    };
+    for (std::size_t i = 0; i < stencil.size(); ++i) {
+        if (i + ahead < stencil.size()) fetch(stencil[i + ahead]);
+        contact_region[i] = unite(stencil[i], inverse_mass, memory);
+    }
     Index region_count = 0;
-    for (Index& region : contact_region) {
+    for (std::size_t i = 0; i < contact_region.size(); ++i) {
+        if (i + ahead < contact_region.size() && contact_region[i + ahead] != no_index)
+            __builtin_prefetch(&memory.node[contact_region[i + ahead]]);
+        Index& region = contact_region[i];
         if (region == no_index) continue;
-        const Index root = find_root(memory.parent, region);
-        if (memory.label[root] == no_index) memory.label[root] = region_count++;
-        region = memory.label[root];
+        const Index root = find_root(memory.node, region);
+        if (memory.node[root].label == no_index) memory.node[root].label = region_count++;
+        region = memory.node[root].label;
     }
     return region_count;
 }
@@ -100,6 +110,8 @@ void resize_results(Index region_count, RegionTable& regions) {
     regions.iterations.assign(count, 0);
     regions.error.assign(count, 0);
     regions.status.assign(count, RegionStatus::converged);
+    regions.shortcut.assign(count, shortcut_none);
+    regions.frozen.assign(count, 0);
     regions.dissipated.assign(count, 0);
     regions.order.assign(count, 0);
 }

@@ -9,12 +9,17 @@
 
 namespace skerry {
 
+/// One node of the union-find. The three fields are used together, at places all over the memory.
+struct UnionNode {
+    Index parent;
+    std::uint32_t stamp;  // parent is of this step
+    Index label;          // region of a root
+};
+
 /// Memory of the union-find, kept between steps.
 struct UnionFind {
-    Column<Index> parent;         // by node
-    Column<std::uint32_t> stamp;  // by node: parent is of this step
+    Column<UnionNode> node;
     std::uint32_t now = 0;
-    Column<Index> label;  // by node: region of a root
 };
 
 /// Fills `regions.contacts` and `contact_region`. Two contacts are in one region if a chain of shared moving nodes (inverse mass > 0) joins

@@ -3,52 +3,116 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/solver/lanes/lane_queue.h"
+
 namespace skerry {
 namespace {
 
-// microseconds, measured on one 2.5 GHz core; only their ratios matter
-constexpr Real region_cost = 0.3, single_cost = 0.06, contact_sweep_cost = 0.025;
-constexpr Real task_cost = 30;  // starting a task costs about 1
+// microseconds; T = c0 + c1 K S of methods.md 3.3. Measured with chains of 2 to 12 contacts and sheets of 18 to 1922 on one core of a
+// shared machine (AVX-512): only ratios matter for the order, sizes only for how much one task gets.
+constexpr Real single_cost = 0.06;
+constexpr Real region_cost = 0.1, contact_cost = 0.06;  // load, look at the warm start, write back
+constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
+constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1
+constexpr Real tasks_per_worker = 4;                  // the last to finish is then late by an eighth of the whole at most
+
+constexpr Real no_history = -1;
+constexpr Real forgetting = 0.3;  // weight of the latest step in the moving average
+constexpr Real caution = 1.2;     // times the average
+constexpr Real fewest_sweeps = 4;
 
 Index contact_count(const RegionTable& regions, Index region) {
     return regions.contacts.offset[region + 1] - regions.contacts.offset[region];
 }
 
-Real predicted_cost(Index contacts, const SolverSettings& settings) {
-    if (contacts == 1 && !settings.fixed_iterations) return single_cost;
-    const Real sweeps = settings.fixed_iterations ? settings.max_iterations : 8 + 2 * std::sqrt(static_cast<Real>(contacts));
-    return region_cost + contact_sweep_cost * static_cast<Real>(contacts) * sweeps;
+bool fits_lanes(Index contacts) {
+    return contacts > 1 && contacts <= largest_lane_region;
 }
 
-/// The cost grows with the contacts: sorting by their number is enough, and the many regions of one contact need no sorting.
-void sort_regions(RegionTable& regions) {
+Real predicted_sweeps(Index contacts, Real average, const SolverSettings& settings) {
+    if (settings.fixed_iterations) return settings.max_iterations;
+    if (average != no_history) return std::max(fewest_sweeps, caution * average);
+    return 8 + 2 * std::sqrt(static_cast<Real>(contacts));
+}
+
+Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettings& settings) {
+    if (contacts == 1 && !settings.fixed_iterations) return single_cost;
+    const Real sweep = lanes && fits_lanes(contacts) ? lane_contact_sweep_cost : contact_sweep_cost;
+    return region_cost + static_cast<Real>(contacts) * (contact_cost + sweep * predicted_sweeps(contacts, average, settings));
+}
+
+/// Large regions by cost; small ones need no sorting: a counting sort by size keeps equal sizes together, largest first.
+void sort_regions(const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
-    Index several = 0;
-    for (Index r = 0; r < count; ++r)
-        if (contact_count(regions, r) > 1) regions.order[several++] = r;
-    std::sort(regions.order.begin(), regions.order.begin() + several, [&](Index a, Index b) {
-        const Index count_a = contact_count(regions, a), count_b = contact_count(regions, b);
-        return count_a != count_b ? count_a > count_b : a < b;
-    });
-    for (Index r = 0; r < count; ++r)
-        if (contact_count(regions, r) == 1) regions.order[several++] = r;
+    std::array<Index, largest_lane_region + 2> begin{};  // of each size; large ones first
+    const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contact_count(regions, r)); };
+    for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];
+    const Index large = begin[1];
+    for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
+    for (Index r = 0; r < count; ++r) regions.order[begin[static_cast<std::size_t>(place(r))]++] = r;
+    std::sort(regions.order.begin(), regions.order.begin() + large,
+              [&](Index a, Index b) { return cost[a] != cost[b] ? cost[a] > cost[b] : a < b; });
 }
 
 }  // namespace
 
-void schedule_regions(const SolverSettings& settings, RegionTable& regions, Column<RegionTask>& task) {
-    sort_regions(regions);
-    task.clear();
+void recall_regions(std::span<const ContactKey> key, SolverMemory::Data& memory, RegionTable& regions) {
+    const std::size_t count = regions.size();
+    regions.id.resize(key.empty() ? 0 : count);
+    RegionHistoryTable& present = memory.present;
+    const RegionHistoryTable& history = memory.history;
+    present.resize(count);
+    std::size_t old = 0;
+    for (std::size_t r = 0; r < count; ++r) {
+        const Index contacts = contact_count(regions, static_cast<Index>(r));
+        present.contacts[r] = contacts;
+        present.sweeps[r] = no_history;
+        present.age[r] = 0;
+        if (key.empty()) continue;
+        // contacts are in key order and regions in that of their first contacts: both lists ascend
+        const ContactKey id = key[regions.contacts[r][0]];
+        regions.id[r] = present.id[r] = id;
+        while (old < history.size() && history.id[old] < id) ++old;
+        if (old == history.size() || history.id[old] != id) continue;
+        present.sweeps[r] = history.sweeps[old];
+        if (history.contacts[old] == contacts) present.age[r] = history.age[old] + 1;
+    }
+}
+
+void schedule_regions(const SolverSettings& settings, int workers, SolverMemory::Data& memory, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
+    const bool lanes = lanes_allowed(settings) && regions.independent;
+    make_room(memory.cost, regions.size());
+    Real total = 0;
+    for (Index r = 0; r < count; ++r) {
+        // regions that share a node see each other's result: their order must not depend on what is remembered
+        const Real average = regions.independent ? memory.present.sweeps[r] : no_history;
+        memory.cost[r] = predicted_cost(contact_count(regions, r), average, lanes, settings);
+        total += memory.cost[r];
+    }
+    sort_regions(memory.cost, regions);
+    const Real share = total / (tasks_per_worker * workers);
+    const Real task_cost = workers == 1 ? total : std::clamp(share, smallest_task, largest_task);
+    memory.task.clear();
     Index begin = 0;
     Real cost = 0;
     for (Index k = 0; k < count; ++k) {
-        cost += predicted_cost(contact_count(regions, regions.order[k]), settings);
+        cost += memory.cost[regions.order[k]];
         if (cost < task_cost && k + 1 < count) continue;
-        task.push_back({begin, k + 1});
+        memory.task.push_back({begin, k + 1});
         begin = k + 1;
         cost = 0;
     }
+}
+
+void remember_regions(SolverMemory::Data& memory, const RegionTable& regions) {
+    RegionHistoryTable& present = memory.present;
+    if (regions.id.empty()) present.resize(0);
+    for (std::size_t r = 0; r < present.size(); ++r) {
+        const Real now = regions.iterations[r];
+        present.sweeps[r] = present.sweeps[r] == no_history ? now : (1 - forgetting) * present.sweeps[r] + forgetting * now;
+    }
+    std::swap(memory.history, present);
 }
 
 }  // namespace skerry

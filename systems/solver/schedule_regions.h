@@ -1,4 +1,5 @@
-// Which regions are solved together, and in which order they are started (methods.md 3.3).
+// Which regions are solved together, and in which order they are started (methods.md 3.3). What is predicted and remembered here changes
+// when a region is solved, never what comes out.
 #pragma once
 
 #include "components/column.h"
@@ -7,8 +8,14 @@
 
 namespace skerry {
 
-/// Writes regions.order (largest predicted cost first, ties by number) and packs it into tasks that are worth starting. The tasks do not
-/// change what is computed, only when.
-void schedule_regions(const SolverSettings& settings, RegionTable& regions, Column<RegionTask>& task);
+/// Writes regions.id from the keys of the contacts, and finds what each region needed in the last step. Without keys nothing is known.
+void recall_regions(std::span<const ContactKey> key, SolverMemory::Data& memory, RegionTable& regions);
+
+/// Writes regions.order and packs it into tasks that are worth starting: regions that do not fit into lanes one by one, largest predicted
+/// cost first; small ones by size, so that lanes fill; then single contacts.
+void schedule_regions(const SolverSettings& settings, int workers, SolverMemory::Data& memory, RegionTable& regions);
+
+/// Notes what each region needed, for the next step.
+void remember_regions(SolverMemory::Data& memory, const RegionTable& regions);
 
 }  // namespace skerry

@@ -4,103 +4,36 @@
 #include <cmath>
 
 #include "systems/solver/methods/run_method.h"
+#include "systems/solver/methods/solve_frictionless.h"
 #include "systems/solver/push_out_region.h"
 
 namespace skerry {
 namespace {
 
-/// The region's part of the memory, and what loading it has shown.
-struct LoadedRegion {
-    LumpedOperator::Memory memory;
-    Real scale = 0;        // sqrt(J), of e_nat
-    bool separate = true;  // no contact closes: zero impulses solve it
-};
-
-/// Copies contacts and moving nodes side by side. A node's place in the list is remembered by node; regions share no moving node, so
-/// none overwrites what another needs, and an entry left from elsewhere shows by the list not agreeing.
-LoadedRegion load_region(const RegionStage& stage, std::span<const Index> row, Index base) {
-    SolverMemory::Data& data = stage.memory;
-    const std::size_t first = static_cast<std::size_t>(base), count = row.size();
-    const std::span<Index> node = data.node.span().subspan(4 * first, 4 * count);
-    const std::span<Vec4> velocity = data.velocity.span().subspan(4 * first, 4 * count);
-    std::size_t node_count = 0;
-    const auto local = [&](Index global) {
-        Index& place = data.place[global];
-        if (static_cast<std::size_t>(place) < node_count && node[place] == global) return place;
-        place = static_cast<Index>(node_count);
-        node[node_count] = global;
-        velocity[node_count++] = padded(stage.out.velocity_next[global]);
-        return place;
-    };
-    LoadedRegion region;
-    Real energy = 0, inverse_diagonals = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-        LumpedContact& contact = data.contact[first + k];
-        contact = load_contact(stage.inputs, row[k], stage.out.velocity_next, stage.settings, stage.h, local);
-        const Vec4 u = contact_velocity(contact, velocity.data());
-        energy += contact.inverse_diagonal * u.squaredNorm();
-        inverse_diagonals += contact.inverse_diagonal;
-        region.separate &= contact.node_count == 0 || contact.normal.dot(u) >= 0;
-        data.impulse[first + k].setZero();
-    }
-    // methods.md 2.1; the floor keeps a region at rest from being asked for more than its weight makes sense of
-    region.scale = std::max(std::sqrt(energy), 1e-3 * stage.inputs.gravity * stage.h * std::sqrt(inverse_diagonals));
-    region.memory.contact = data.contact.span().subspan(first, count);
-    region.memory.impulse = data.impulse.span().subspan(first, count);
-    region.memory.velocity = velocity.first(node_count);
-    region.memory.node = node.first(node_count);
-    region.memory.free_velocity = stage.out.velocity_next;
-    region.memory.scratch = data.scratch.span().subspan(4 * first, node_count);
-    for (std::size_t slot = 0; slot < workspace_slots(stage.settings.method); ++slot)
-        region.memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
-    return region;
-}
-
-void take_warm_start(const RegionStage& stage, std::span<const Index> row, const LumpedOperator::Memory& memory) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
+void take_warm_start(const RegionStage& stage, const LoadedRegion& region) {
+    const LumpedOperator::Memory& memory = region.memory;
+    for (std::size_t k = 0; k < region.row.size(); ++k) {
         if (memory.contact[k].node_count == 0) continue;
-        memory.impulse[k] = padded(stage.out.impulse[row[k]]);
+        memory.impulse[k] = warm_impulse(memory.contact[k], stage.out.impulse[region.row[k]]);
         apply_impulse(memory.contact[k], memory.impulse[k], memory.velocity.data());
     }
 }
 
-/// From the warm start, unless it is so far off that zero is nearer. A solved warm start costs no sweep.
-RegionOutcome run_region(const RegionStage& stage, std::span<const Index> row, LoadedRegion& region) {
-    const SolverSettings& settings = stage.settings;
-    const SolveLimits limits{settings.tolerance, settings.max_iterations, settings.fixed_iterations, settings.relaxation};
-    LumpedOperator op(region.memory, settings.friction, region.scale);
-    if (settings.warm_start == WarmStart::on) {
-        take_warm_start(stage, row, region.memory);
-        if (!settings.fixed_iterations) {
-            const Real error = op.error();
-            if (error <= settings.tolerance) return {0, error, RegionStatus::certified, 0};
-            constexpr Real suspicious = 0.5;  // a start from zero has an error of about 1
-            if (!(error <= suspicious)) {
-                // workspace 0 keeps the warm start while zero is looked at
-                BestIterate<LumpedOperator> better(op);
-                better.offer(error);
-                std::fill(region.memory.impulse.begin(), region.memory.impulse.end(), Vec4::Zero());
-                op.refresh();
-                if (error < op.error()) better.restore();
-            }
-        }
-    }
-    const SolveResult result = run_method(settings.method, op, limits);
-    RegionStatus status = result.converged ? RegionStatus::converged : RegionStatus::iteration_limit;
-    if (!std::isfinite(result.error)) status = RegionStatus::not_finite;
-    return {result.iterations, result.error, status, 0};
+/// Whether the method is solve_ags, which the shortcuts have in forms of their own.
+bool accelerated(const SolverSettings& settings) {
+    return (settings.method == SolverMethod::ags || settings.method == SolverMethod::automatic) && !settings.fixed_iterations;
 }
 
-/// J, taken out by a contact (methods.md 4.3).
-Real dissipated_by(const RegionStage& stage, Index row) {
-    const Vec3& impulse = stage.out.impulse[row];
-    if (impulse.isZero(0)) return 0;
-    const Stencil& stencil = stage.inputs.stencil[row];
-    Vec3 twice_mean = -2 * stage.inputs.surface_velocity[row];
-    for (std::size_t a = 0; a < 4; ++a)
-        if (stencil.weight[a] != 0)
-            twice_mean += stencil.weight[a] * (stage.inputs.velocity[stencil.node[a]] + stage.out.velocity_next[stencil.node[a]]);
-    return -0.5 * impulse.dot(twice_mean);
+/// Lets contacts rest whose change is worth no more than a tenth of their share of the tolerance (methods.md 2.7).
+void allow_freezing(const RegionStage& stage, LoadedRegion& region) {
+    const SolverSettings& settings = stage.settings;
+    if (!settings.freeze_contacts || settings.fixed_iterations) return;
+    const std::size_t first = static_cast<std::size_t>(region.base), count = region.row.size();
+    const Real share = 0.1 * settings.tolerance * region.scale;
+    region.memory.still = share * share / static_cast<Real>(count);
+    region.memory.resting = stage.memory.resting.span().subspan(first, count);
+    region.memory.last_velocity = stage.memory.last_velocity.span().subspan(first, count);
+    std::fill(region.memory.resting.begin(), region.memory.resting.end(), LumpedOperator::velocity_unknown);
 }
 
 /// Writes impulses and velocities, and returns what the region dissipated.
@@ -119,20 +52,123 @@ void write_push(const RegionStage& stage, std::span<const Index> node, std::span
 
 }  // namespace
 
-RegionOutcome solve_region(const RegionStage& stage, std::span<const Index> row, Index base) {
-    LoadedRegion region = load_region(stage, row, base);
-    const LumpedOperator::Memory& memory = region.memory;
-    RegionOutcome outcome{0, 0, RegionStatus::certified, 0};
-    if (!region.separate || stage.settings.fixed_iterations) outcome = run_region(stage, row, region);
-    outcome.dissipated = write_back(stage, row, memory);
-    if (outcome.status == RegionStatus::not_finite) return outcome;
-    const std::size_t first = static_cast<std::size_t>(base);
-    const PushMemory push{stage.memory.push_impulse.span().subspan(first, row.size()),
-                          stage.memory.push_bias.span().subspan(first, row.size()),
-                          stage.memory.scratch.span().subspan(4 * first, memory.node.size())};
-    if (push_out_region(memory.contact, row, stage.inputs.gap, memory.velocity, stage.inputs.gravity, stage.settings, stage.h, push))
-        write_push(stage, memory.node, push.velocity);
+// A node's place in the list is remembered by node; regions share no moving node, so none overwrites what another needs, and an entry
+// left from elsewhere shows by the list not agreeing.
+LoadedRegion load_region(const RegionStage& stage, std::span<const Index> row, Index base) {
+    SolverMemory::Data& data = stage.memory;
+    const std::size_t first = static_cast<std::size_t>(base), count = row.size();
+    const std::span<Index> node = data.node.span().subspan(4 * first, 4 * count);
+    const std::span<Vec4> velocity = data.velocity.span().subspan(4 * first, 4 * count);
+    std::size_t node_count = 0;
+    const auto local = [&](Index global) {
+        Index& place = data.place[global];
+        if (static_cast<std::size_t>(place) < node_count && node[place] == global) return place;
+        place = static_cast<Index>(node_count);
+        node[node_count] = global;
+        velocity[node_count++] = padded(stage.out.velocity_next[global]);
+        return place;
+    };
+    LoadedRegion region{.row = row, .base = base, .memory = {}};
+    const bool keep_free_velocity = workspace_slots(stage.settings.method) > 1;
+    Real energy = 0, inverse_diagonals = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        LumpedContact& contact = data.contact[first + k];
+        contact = load_contact(stage.inputs, row[k], stage.out.velocity_next, stage.settings, stage.h, local);
+        const Vec4 u = contact_velocity(contact, velocity.data());
+        energy += contact.inverse_diagonal * u.squaredNorm();
+        inverse_diagonals += contact.inverse_diagonal;
+        region.separate &= contact.node_count == 0 || separates(contact, stage.settings.friction, u);
+        region.frictionless &= contact.friction.stick == 0;
+        region.one_friction &= contact.friction.stick == contact.friction.slide;
+        data.impulse[first + k].setZero();
+        if (keep_free_velocity) data.workspace[free_velocity_slot][first + k] = u;
+    }
+    // methods.md 2.1; the floor keeps a region at rest from being asked for more than its weight makes sense of
+    region.scale = std::max(std::sqrt(energy), 1e-3 * stage.inputs.gravity * stage.h * std::sqrt(inverse_diagonals));
+    region.memory.contact = data.contact.span().subspan(first, count);
+    region.memory.impulse = data.impulse.span().subspan(first, count);
+    region.memory.velocity = velocity.first(node_count);
+    region.memory.node = node.first(node_count);
+    region.memory.free_velocity = stage.out.velocity_next;
+    region.memory.scratch = data.scratch.span().subspan(4 * first, node_count);
+    for (std::size_t slot = 0; slot < workspace_slots(stage.settings.method); ++slot)
+        region.memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
+    return region;
+}
+
+bool start_region(const RegionStage& stage, LoadedRegion& region, RegionOutcome& outcome) {
+    const SolverSettings& settings = stage.settings;
+    if (settings.fixed_iterations) {
+        if (settings.warm_start == WarmStart::on) take_warm_start(stage, region);
+        return false;
+    }
+    if (region.separate && settings.skip_separating) {
+        outcome = {.status = RegionStatus::certified, .shortcut = shortcut_separating};
+        return true;
+    }
+    if (settings.warm_start == WarmStart::off) return false;
+    take_warm_start(stage, region);
+    LumpedOperator op(region.memory, settings.friction, region.scale);
+    const Real error = op.error();
+    if (error <= settings.tolerance && settings.certify_warm_start) {
+        outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
+        return true;
+    }
+    constexpr Real suspicious = 0.5;  // a start from zero has an error of about 1
+    if (error <= suspicious) return false;
+    // workspace 0 keeps the warm start while zero is looked at
+    BestIterate<LumpedOperator> better(op);
+    better.offer(error);
+    std::fill(region.memory.impulse.begin(), region.memory.impulse.end(), Vec4::Zero());
+    op.refresh();
+    if (error < op.error()) better.restore();
+    return false;
+}
+
+RegionOutcome sweep_region(const RegionStage& stage, LoadedRegion& region) {
+    const SolverSettings& settings = stage.settings;
+    const SolveLimits limits{settings.tolerance, settings.max_iterations, settings.fixed_iterations, settings.relaxation};
+    RegionOutcome outcome;
+    SolveResult result;
+    if (region.frictionless && settings.frictionless_rows && accelerated(settings)) {
+        const std::size_t first = static_cast<std::size_t>(region.base), count = region.row.size();
+        result = solve_frictionless(
+            region.memory, region.scale, limits,
+            {stage.memory.push_impulse.span().subspan(first, count), stage.memory.push_bias.span().subspan(first, count)});
+        outcome.shortcut = shortcut_frictionless;
+    } else {
+        allow_freezing(stage, region);
+        LumpedOperator op(region.memory, settings.friction, region.scale);
+        result = run_method(settings.method, op, limits);
+        outcome.frozen = op.frozen();
+    }
+    outcome.iterations = result.iterations;
+    outcome.error = result.error;
+    outcome.status = result.converged ? RegionStatus::converged : RegionStatus::iteration_limit;
+    if (!std::isfinite(result.error)) outcome.status = RegionStatus::not_finite;
     return outcome;
+}
+
+void finish_region(const RegionStage& stage, const LoadedRegion& region, RegionOutcome& outcome) {
+    const LumpedOperator::Memory& memory = region.memory;
+    outcome.dissipated = write_back(stage, region.row, memory);
+    if (outcome.status == RegionStatus::not_finite) return;
+    const std::size_t first = static_cast<std::size_t>(region.base), count = region.row.size();
+    const PushMemory push{stage.memory.push_impulse.span().subspan(first, count), stage.memory.push_bias.span().subspan(first, count),
+                          stage.memory.scratch.span().subspan(4 * first, memory.node.size())};
+    if (push_out_region(memory.contact, region.row, stage.inputs.gap, memory.velocity, stage.inputs.gravity, stage.settings, stage.h, push))
+        write_push(stage, memory.node, push.velocity);
+}
+
+Real dissipated_by(const RegionStage& stage, Index row) {
+    const Vec3& impulse = stage.out.impulse[row];
+    if (impulse.isZero(0)) return 0;
+    const Stencil& stencil = stage.inputs.stencil[row];
+    Vec3 twice_mean = -2 * stage.inputs.surface_velocity[row];
+    for (std::size_t a = 0; a < 4; ++a)
+        if (stencil.weight[a] != 0)
+            twice_mean += stencil.weight[a] * (stage.inputs.velocity[stencil.node[a]] + stage.out.velocity_next[stencil.node[a]]);
+    return -0.5 * impulse.dot(twice_mean);
 }
 
 RegionOutcome solve_single(const RegionStage& stage, Index row) {
@@ -150,7 +186,7 @@ RegionOutcome solve_single(const RegionStage& stage, Index row) {
     Vec4 impulse = Vec4::Zero();
     const Real size = solve_contact(contact, stage.settings.friction, 1, velocity.data(), impulse);
     const LumpedOperator::Memory memory{{&contact, 1}, {&impulse, 1}, {velocity.data(), node_count}, {node.data(), node_count}, {}, {}, {}};
-    RegionOutcome outcome{1, 0, RegionStatus::converged, 0};
+    RegionOutcome outcome{.iterations = 1, .shortcut = shortcut_closed_form};
     outcome.dissipated = write_back(stage, {&row, 1}, memory);
     if (!std::isfinite(size)) {
         outcome.status = RegionStatus::not_finite;

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "components/check.h"
+#include "systems/solver/coloured/solve_large_regions.h"
+#include "systems/solver/lanes/lane_queue.h"
 #include "systems/solver/schedule_regions.h"
 #include "systems/solver/solve_region.h"
 #include "systems/solver/solver_memory.h"
@@ -16,6 +18,8 @@ void make_room_for(const RegionTable& regions, std::size_t node_count, const Sol
     make_room(memory.impulse, contacts);
     make_room(memory.push_impulse, contacts);
     make_room(memory.push_bias, contacts);
+    make_room(memory.resting, contacts);
+    make_room(memory.last_velocity, contacts);
     make_room(memory.node, 4 * contacts);
     make_room(memory.velocity, 4 * contacts);
     make_room(memory.scratch, 4 * contacts);
@@ -23,17 +27,51 @@ void make_room_for(const RegionTable& regions, std::size_t node_count, const Sol
     for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(memory.workspace[slot], contacts);
 }
 
-void solve_task(const RegionStage& stage, const RegionTask& task, RegionTable& regions) {
+void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, RegionTable& regions) {
+    LaneQueue queue(stage, regions);
     for (Index k = task.begin; k < task.end; ++k) {
-        const Index region = regions.order[k];
-        const std::span<const Index> row = regions.contacts[region];
-        const bool closed_form = row.size() == 1 && !stage.settings.fixed_iterations;
-        const RegionOutcome outcome = closed_form ? solve_single(stage, row[0]) : solve_region(stage, row, regions.contacts.offset[region]);
-        regions.iterations[region] = outcome.iterations;
-        regions.error[region] = outcome.error;
-        regions.status[region] = outcome.status;
-        regions.dissipated[region] = outcome.dissipated;
+        const Index number = regions.order[k];
+        const std::span<const Index> row = regions.contacts[number];
+        if (is_large(stage.settings, row.size())) continue;
+        if (row.size() == 1 && !stage.settings.fixed_iterations) {
+            write_outcome(solve_single(stage, row[0]), number, regions);
+            continue;
+        }
+        LoadedRegion region = load_region(stage, row, regions.contacts.offset[number]);
+        RegionOutcome outcome;
+        const bool done = start_region(stage, region, outcome);
+        if (!done && lanes && queue.takes(region)) {
+            queue.push(number, region);
+            continue;
+        }
+        if (!done) outcome = sweep_region(stage, region);
+        finish_region(stage, region, outcome);
+        write_outcome(outcome, number, regions);
     }
+    queue.flush();
+}
+
+void make_rows(RegionTable& regions) {
+    const std::size_t count = regions.size();
+    regions.iterations.resize(count);
+    regions.error.resize(count);
+    regions.status.resize(count);
+    regions.shortcut.resize(count);
+    regions.frozen.resize(count);
+    regions.dissipated.resize(count);
+    regions.order.resize(count);
+}
+
+void solve_tasks(Executor& executor, const RegionStage& stage, RegionTable& regions) {
+    solve_large_regions(executor, stage, regions);
+    const Column<RegionTask>& tasks = stage.memory.task;
+    const bool lanes = lanes_allowed(stage.settings) && regions.independent;
+    // regions that share a node (the paper's algorithm makes some) see each other's result: one after the other, in order
+    if (!regions.independent || tasks.size() == 1) {
+        for (const RegionTask& task : tasks) solve_task(stage, task, lanes, regions);
+        return;
+    }
+    executor.run_blocks(static_cast<Index>(tasks.size()), [&](Index t) { solve_task(stage, tasks[t], lanes, regions); });
 }
 
 }  // namespace
@@ -49,23 +87,16 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
     SolverMemory::Data& data = memory.data();
     // advance_positions has used the last push; a refused step has not
     if (data.pushed.exchange(false)) std::fill(out.push_out.begin(), out.push_out.end(), Vec3::Zero());
-    const std::size_t region_count = regions.size();
-    regions.iterations.resize(region_count);
-    regions.error.resize(region_count);
-    regions.status.resize(region_count);
-    regions.dissipated.resize(region_count);
-    regions.order.resize(region_count);
-    if (region_count == 0) return false;
-
-    make_room_for(regions, contacts.inverse_mass.size(), settings, data);
-    schedule_regions(settings, regions, data.task);
-    const RegionStage stage{contacts, settings, h, out, data};
-    // regions that share a node (the paper's algorithm makes some) see each other's result: one after the other, in order
-    if (!regions.independent || data.task.size() == 1) {
-        for (const RegionTask& task : data.task) solve_task(stage, task, regions);
-        return true;
+    make_rows(regions);
+    recall_regions(contacts.key, data, regions);
+    if (regions.size() == 0) {
+        remember_regions(data, regions);
+        return false;
     }
-    executor.run_blocks(static_cast<Index>(data.task.size()), [&](Index t) { solve_task(stage, data.task[t], regions); });
+    make_room_for(regions, contacts.inverse_mass.size(), settings, data);
+    schedule_regions(settings, executor.worker_count(), data, regions);
+    solve_tasks(executor, {contacts, settings, h, out, data}, regions);
+    remember_regions(data, regions);
     return true;
 }
 

@@ -5,6 +5,8 @@
 #include <atomic>
 
 #include "components/column.h"
+#include "components/region_table.h"
+#include "systems/solver/coloured/solve_large_regions.h"
 #include "systems/solver/operators/lumped_operator.h"
 #include "systems/solver/solve_regions.h"
 
@@ -19,17 +21,24 @@ struct SolverMemory::Data {
     // by contact
     Column<LumpedContact> contact;
     Column<Vec4> impulse;  // N s
-    std::array<Column<Vec4>, 4> workspace;
-    Column<Real> push_impulse;  // N s, of the split impulse
-    Column<Real> push_bias;     // m/s
+    std::array<Column<Vec4>, workspace_limit> workspace;
+    Column<Real> push_impulse;     // N s, of the split impulse; before that the normal impulses of frictionless regions
+    Column<Real> push_bias;        // m/s; likewise the previous ones
+    Column<std::uint8_t> resting;  // sweeps without a change
+    Column<Vec4> last_velocity;    // m/s
     // four places by contact: a region never has more nodes
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // m/s
     Column<Vec4> scratch;   // m/s
     // by row of NodeTable
     Column<Index> place;  // in its region's list of nodes, if that list agrees
+    // by region
+    Column<Real> cost;           // microseconds, predicted
+    RegionHistoryTable history;  // of the last step; then
+    RegionHistoryTable present;  // of this one
     // by task
     Column<RegionTask> task;
+    LargeRegions large;
     std::atomic<bool> pushed = false;  // some region wrote push_out in this step
 };
 
@@ -39,10 +48,24 @@ void make_room(Column<T>& column, std::size_t count) {
     if (column.size() < count) column.resize(count);
 }
 
+/// Where loading leaves the velocities of the contacts without impulses, until the method uses the place itself.
+inline constexpr std::size_t free_velocity_slot = 1;
+
 /// How many vectors by contact a method works with; the first keeps the best iterate.
 inline std::size_t workspace_slots(SolverMethod method) {
-    if (method == SolverMethod::pgs) return 1;
-    return method == SolverMethod::ags || method == SolverMethod::automatic ? 2 : 4;
+    switch (method) {
+        case SolverMethod::pgs:
+            return 1;
+        case SolverMethod::ags:
+        case SolverMethod::automatic:
+            return 2;
+        case SolverMethod::nncg:
+            return 3;
+        case SolverMethod::apgd:
+            return 6;
+        default:
+            return 4;
+    }
 }
 
 }  // namespace skerry

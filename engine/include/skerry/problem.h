@@ -1,6 +1,7 @@
 // Frictional contact problems from files (FCLIB), and their solution on their own.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -20,40 +21,69 @@ struct ContactProblem {
     std::vector<Mat3> block;        // s/kg
     std::vector<Vec3> q;            // m/s
     std::vector<Real> mu;
+    std::string description;  // what its file says of it
+    Index freedoms = 0;       // of the global problem that it was condensed from; 0: it came as a local one
 
     Index contacts() const { return static_cast<Index>(q.size()); }
 };
 
 struct ProblemSettings {
-    SolverMethod method = SolverMethod::pgs;
+    SolverMethod method = SolverMethod::automatic;
     Friction friction = Friction::cone;
     Real tolerance = 1e-6;  // on `error`
     Index max_iterations = 100000;
+    Real relaxation = 1;  // of the sweeps, > 0 and < 2; only for methods that sweep
 };
 
 struct ProblemSolution {
     std::vector<Vec3> reaction;  // N s, in the frames of the problem
     Index regions = 0;
-    Index iterations = 0;     // the most of any region
-    double seconds = 0;       // of the solve alone; median of repeated solves when it is short
-    Real error = 0;           // of FCLIB and Siconos: |e| / max(|q|, |r|, |u|)
-    Real error_absolute = 0;  // |e|
-    Real error_over_q = 0;    // |e| / |q|
+    Index iterations = 0;      // the most of any region
+    double seconds = 0;        // of the solve alone; median of repeated solves when it is short
+    Real error = 0;            // of FCLIB and Siconos: |e| / max(|q|, |r|, |u|)
+    Real error_absolute = 0;   // |e|
+    Real error_over_q = 0;     // |e| / |q|
+    Real energy_gap = 0;       // J, Coulomb gap: sum of r_N u_N + mu r_N |u_T| + r_T . u_T; 0 where Coulomb's law holds
+    Index largest_region = 0;  // contacts
+    Index unconverged = 0;     // regions that ran into the limit of iterations; 0 when converged
     bool converged = false;
 };
 
-/// Reads the local problem of an FCLIB file (HDF5). Throws SceneError.
+/// Reads the problem of an FCLIB file (HDF5): a local one as it is; a global one (M v = H r + f, u = H^T v + w) condensed to its contacts,
+/// W = H^T M^-1 H and q = H^T M^-1 f + w. Throws SceneError.
 ContactProblem read_problem(const std::filesystem::path& file);
+
+/// Writes a local problem as FCLIB writes it, W in compressed columns, so that other solvers can read it; with reactions (one a contact) a
+/// solution, too. The same problem gives the same bytes. The file appears complete or not at all. Throws SceneError when the problem is
+/// empty, when its arrays disagree, or when the file cannot be written.
+void write_problem(const ContactProblem& problem, const std::filesystem::path& file, std::span<const Vec3> reaction = {});
+
+/// The problem of some contacts alone (in ascending order), the others' reactions taken as zero. Exact for a region.
+ContactProblem part_of(const ContactProblem& problem, std::span<const Index> contacts);
 
 /// Separates the problem into regions and solves them from r = 0. With Friction::pyramid the errors of the solution are those of the
 /// pyramid (the tangential components of the natural map clamped one by one), which is what `converged` asks for. Throws SceneError
-/// when the arrays of the problem disagree.
+/// when the arrays of the problem disagree, or when the method knows no friction and the problem has some. With Friction::cone_convex the
+/// errors are those of the associated law in the same way; problem_error says how far that is from Coulomb's.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
-/// |e| of methods.md 2.1 (FCLIB and Siconos, rho = 1) for given reactions.
+/// |e| of methods.md 2.1 (FCLIB and Siconos, rho = 1) for given reactions, and the Coulomb gap.
 struct ProblemError {
     Real absolute, relative, over_q;
+    Real energy_gap;  // J
 };
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
+
+/// The contact problem of one step of a world, as its solver got it, and the impulses that the step went on with. The frame of a contact is
+/// its normal and two tangents that depend on the normal alone, right-handed. Contacts that nothing could move are left out.
+struct StepProblem {
+    std::uint64_t step = 0;  // number of the step, from 1
+    Real time = 0;           // s, at its start
+    Real step_size = 0;      // s
+    ContactProblem problem;
+    std::vector<Vec3> impulse;   // N s, in the frames of the problem
+    std::vector<Index> contact;  // by contact of the problem: its place in World::contacts()
+    std::vector<Index> region;   // by contact of the problem
+};
 
 }  // namespace skerry

@@ -81,10 +81,16 @@ struct WorldReport {
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
-    std::uint64_t unconverged = 0;  // regions
-    std::uint64_t certified = 0;    // regions whose warm start needed no sweep
-    std::uint64_t closed_form = 0;  // regions of one contact
-    std::uint64_t solved = 0;       // regions
+    std::uint64_t unconverged = 0;    // regions
+    std::uint64_t certified = 0;      // regions whose warm start needed no sweep
+    std::uint64_t closed_form = 0;    // regions of one contact
+    std::uint64_t separating = 0;     // regions whose contacts all came apart
+    std::uint64_t frictionless = 0;   // regions without friction, solved in one row a contact
+    std::uint64_t in_lanes = 0;       // regions solved side by side with others
+    std::uint64_t frozen = 0;         // contact steps left out since nothing changed there
+    std::uint64_t contact_steps = 0;  // contacts times sweeps, of regions that were swept
+    std::uint64_t swept = 0;          // regions that needed sweeps
+    std::uint64_t solved = 0;         // regions
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
     std::uint64_t inline_steps = 0;  // too small to pay for threads
     std::uint64_t shortened = 0;     // steps tried again at half the length, since a body was too fast

@@ -18,6 +18,7 @@ struct SceneOverrides {
     std::optional<SolverMethod> method{};
     std::optional<Friction> friction{};
     std::optional<Real> tolerance{};
+    std::optional<Real> relaxation{};
     std::optional<Real> step_size{};
 };
 

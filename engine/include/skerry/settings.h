@@ -97,14 +97,21 @@ struct Settings {
     Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
     int threads = 0;                       // 0: those of the caller's task arena
     ContactRegions contact_regions = ContactRegions::separate;
-    SolverMethod method = SolverMethod::pgs;
+    SolverMethod method = SolverMethod::ags;
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;          // relative error of a region, docs/architecture.md
     int max_iterations = 200;       // sweeps of a region
     bool fixed_iterations = false;  // do exactly max_iterations sweeps
+    Real relaxation = 1;            // of the sweeps, > 0 and < 2; only for methods that sweep
     Real max_strain_step = 0.2;     // a step that moves nodes by more than this fraction of an element is refused
     bool contact_budgets = true;    // skip what cannot have come close; off searches everything
+    // What the solver leaves out where it can; off changes no result beyond the tolerance.
+    bool certify_warm_start = true;      // no sweep where last step's impulses still solve a region
+    bool skip_separating = true;         // no impulse where no contact closes
+    bool frictionless_rows = true;       // one row a contact instead of three where there is no friction
+    bool freeze_contacts = false;        // no work on contacts that have come to rest within a solve; pays in no scene measured so far
+    bool small_regions_in_lanes = true;  // regions of 2 to 12 contacts are solved eight at a time (method ags, friction cone)
 };
 
 }  // namespace skerry

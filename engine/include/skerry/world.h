@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <span>
@@ -14,6 +15,8 @@
 #include "skerry/settings.h"
 
 namespace skerry {
+
+struct StepProblem;  // problem.h
 
 /// A simulation. Not safe for use from several threads at once; different worlds are independent. Functions that take a handle throw
 /// SceneError when it is stale, functions that take settings when a value is out of range.
@@ -75,6 +78,9 @@ public:
     Energy energy() const;
     /// Hash of everything that the next step depends on; equal on any number of threads and on every backend.
     std::uint64_t state_hash() const;
+    /// From now on hands the contact problem of every step whose number is a multiple of `every`, and which has contacts, to `take`: after
+    /// the step, on the thread that advances. Costs a copy of the velocities in these steps. An empty function stops it.
+    void watch_contact_problems(std::function<void(const StepProblem&)> take, std::uint64_t every = 1);
     /// Starts or stops recording what every worker does.
     void set_tracing(bool on);
     /// Writes what was recorded in the Trace Event Format, which Perfetto and chrome://tracing open.

@@ -59,7 +59,7 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
         if (newton.converged) return {result.iterations + newton_steps, newton.error, true};
         sweeps.start_anew();
         error_before = newton.error;
-        pause *= 3;
+        pause *= 2;
     }
     SolveResult result = sweeps.give_up();
     result.iterations += newton_steps;

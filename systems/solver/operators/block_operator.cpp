@@ -32,13 +32,18 @@ inline Vec4 times(const BlockMemory::Columns& block, const Vec4& vector) {
     return block[0] * vector[0] + (block[1] * vector[1] + block[2] * vector[2]);
 }
 
+/// Not-a-number stays not-a-number.
+inline Real pressing(Real normal) {
+    return std::max(normal, Real(0));
+}
+
 /// The paper's scalar rows in turn: normal, then each tangent with the new bound (eq. 6, 15).
 Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u, Real mu, Real relaxation) {
     Vec4 next = impulse;
     for (int k = 0; k < 3; ++k) {
         if (!(block[k][k] > 0)) continue;
         const Real wanted = impulse[k] - relaxation * u[k] / block[k][k];
-        next[k] = k == 0 ? std::max(Real(0), wanted) : std::clamp(wanted, -mu * next[0], mu * next[0]);
+        next[k] = k == 0 ? pressing(wanted) : std::clamp(wanted, -mu * next[0], mu * next[0]);
         u += (next[k] - impulse[k]) * block[k];
     }
     return next;
@@ -46,13 +51,13 @@ Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u
 
 /// Box of the pyramid in the frame of the contact.
 Vec4 clamp_to_pyramid(const Vec4& impulse, Real mu) {
-    const Real normal = std::max(Real(0), impulse[0]);
+    const Real normal = pressing(impulse[0]);
     return {normal, std::clamp(impulse[1], -mu * normal, mu * normal), std::clamp(impulse[2], -mu * normal, mu * normal), 0};
 }
 
 }  // namespace
 
-void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> order) {
+void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> order, Friction friction) {
     const std::size_t count = order.size();
     std::vector<Index> place(count);
     for (std::size_t i = 0; i < count; ++i) place[order[i]] = static_cast<Index>(i);
@@ -60,6 +65,7 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
     offset.assign(count + 1, 0);
     neighbor.clear();
     block.clear();
+    convex.clear();
     neighbor.reserve(system.column.size());
     block.reserve(system.column.size());
     for (std::size_t i = 0; i < count; ++i) {
@@ -76,6 +82,7 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
         offset[i + 1] = static_cast<Index>(neighbor.size());
         contact[i] = {padded(system.q[row]), padded_columns(diagonal), padded_columns(0.5 * (diagonal - diagonal.transpose())),
                       prepare_block(diagonal), system.mu[row]};
+        if (friction == Friction::cone_convex) convex.push_back(prepare_convex_block(diagonal, system.mu[row]));
     }
     impulse.assign(count, Vec4::Zero());
     for (std::vector<Vec4>& slot : workspace) slot.resize(count);
@@ -84,12 +91,13 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction) {
     if (friction == Friction::pyramid) {
         // each tangent is limited by the normal impulse there is, not by the one the map asks for
-        const Real limit = mu * std::max(Real(0), impulse[0]);
-        return {impulse[0] - std::max(Real(0), impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
+        const Real limit = mu * pressing(impulse[0]);
+        return {impulse[0] - pressing(impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
                 impulse[2] - std::clamp(impulse[2] - u[2], -limit, limit)};
     }
-    // P_K of r - u - mu |u_T| n, with the tangents' direction left out until it is needed
-    const Real along = impulse[0] - u[0] - mu * std::sqrt(u[1] * u[1] + u[2] * u[2]);
+    // P_K of r - u - mu |u_T| n, with the tangents' direction left out until it is needed. The associated law has no such shift
+    const Real shift = friction == Friction::cone ? mu * std::sqrt(u[1] * u[1] + u[2] * u[2]) : 0;
+    const Real along = impulse[0] - u[0] - shift;
     const Real t1 = impulse[1] - u[1], t2 = impulse[2] - u[2];
     const Real length = std::sqrt(t1 * t1 + t2 * t2);
     if (mu * length <= -along) return impulse;
@@ -118,7 +126,8 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     } else {
         // files round W: what a block has beside its symmetric part acts as of the last impulse
         const Vec4 fixed = b + times(contact.skew, before);
-        next = padded(solve_block(contact.local, fixed.head<3>(), contact.mu));
+        next = padded(friction_ == Friction::cone_convex ? solve_convex_block(memory_.convex[place], fixed.head<3>(), contact.mu)
+                                                         : solve_block(contact.local, fixed.head<3>(), contact.mu));
         if (relaxation != 1) next = project(i, before + relaxation * (next - before));
     }
     const Vec4 change = next - before;
@@ -184,7 +193,7 @@ void BlockOperator::multiply(std::span<const Vec4> in, std::span<Vec4> out) cons
 Vec4 BlockOperator::project(Index i, const Vec4& impulse) const {
     const Real mu = memory_.contact[begin_ + i].mu;
     if (friction_ == Friction::pyramid) return clamp_to_pyramid(impulse, mu);
-    return project_coulomb(impulse, Vec4(Vec4::UnitX()), {mu, mu});
+    return project_friction(impulse, normal(i), {mu, mu}, friction_);
 }
 
 Vec4 BlockOperator::feasible(Index i, const Vec4& residual) const {

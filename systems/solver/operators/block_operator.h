@@ -11,6 +11,7 @@
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/newton_memory.h"
 #include "systems/solver/operators/solve_block.h"
+#include "systems/solver/operators/solve_convex_block.h"
 
 namespace skerry {
 
@@ -39,14 +40,16 @@ struct BlockMemory {
     std::vector<Index> neighbor;  // place of the other contact
     std::vector<Columns> block;   // W_ij, i != j
     std::vector<Vec4> impulse;    // N s
-    std::array<std::vector<Vec4>, 4> workspace;
+    std::vector<ConvexBlock> convex;  // by contact, with Friction::cone_convex only
+    std::array<std::vector<Vec4>, workspace_limit> workspace;
     NewtonMemory newton;
 
     /// `order`: contacts of the system in the order of the sweep, those of a region one after the other. Impulses start at zero.
-    void prepare(const BlockSystem& system, std::span<const Index> order);
+    /// `friction`: the law that an operator on this memory will be asked for; only cone_convex needs more than the others.
+    void prepare(const BlockSystem& system, std::span<const Index> order, Friction friction = Friction::cone);
 };
 
-/// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB or by the paper's pyramid.
+/// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB, the paper's pyramid or the associated law.
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// One region: the contacts at the places [begin, end) of the memory, to which no other region's blocks refer.

@@ -12,6 +12,9 @@
 
 namespace skerry {
 
+/// Vectors by contact that an algorithm may ask for.
+inline constexpr std::size_t workspace_limit = 6;
+
 /// What a sweep did.
 struct SweepChange {
     Real size;     // sum of change . W_ii change
@@ -26,7 +29,7 @@ concept ContactOperator = requires(Op op, const Op constant, Index i, Real numbe
     { constant.size() } -> std::convertible_to<Index>;
     { op.impulse() } -> std::convertible_to<std::span<Vec4>>;     // writing to it asks for refresh()
     op.refresh();                                                 // carried state again from the impulse
-    { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;  // slot 0: best iterate; 1..3: the algorithm's
+    { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;  // slot 0: best iterate; the rest: the algorithm's
     { op.sweep(number) } -> std::convertible_to<Real>;            // each contact exactly in its turn, relaxed; sum of change . W_ii change
     { op.accelerated_sweep(number) } -> std::same_as<SweepChange>;       // the same, compared with the previous
     { constant.inner(i, vector, vector) } -> std::convertible_to<Real>;  // a . W_ii b

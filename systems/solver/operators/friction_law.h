@@ -60,12 +60,7 @@ inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     return result;
 }
 
-template <class V>
-inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Friction friction) {
-    return friction == Friction::cone ? project_coulomb(z, normal, mu) : project_pyramid(z, normal, mu);
-}
-
-/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of methods.md 2.1, for the error measures.
+/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of methods.md 2.1, for the error measures and the associated law.
 template <class V>
 inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
@@ -78,21 +73,29 @@ inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     return nearest * normal + (mu * nearest / length) * tangential;
 }
 
+template <class V>
+inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Friction friction) {
+    if (friction == Friction::cone_convex) return project_onto_cone(z, normal, mu.slide);  // one coefficient is all that the law knows
+    return friction == Friction::cone ? project_coulomb(z, normal, mu) : project_pyramid(z, normal, mu);
+}
+
 /// W(lambda) of the paper's (19), read as in methods.md 1.3 e: the part of the residual along which the impulse may move without leaving its
 /// limit. An impulse of zero can only grow; one on the limit of friction does not go on outwards.
 template <class V>
 inline V feasible_direction(const V& residual, const V& impulse, const V& normal, FrictionLimits mu, Friction friction) {
     const Real along = normal.dot(impulse);
     const Real growth = normal.dot(residual);
+    if (friction == Friction::cone_convex && along <= 0) return project_onto_cone(residual, normal, mu.slide);
     if (along <= 0) return std::max(Real(0), growth) * normal;
     if (mu.stick == 0) return growth * normal;
     constexpr Real rounding = 1e-9;
     const Real limit = mu.slide * along * (1 - rounding);
-    if (friction == Friction::cone) {
+    if (friction != Friction::pyramid) {
         const V tangential = impulse - along * normal;
         const Real length = tangential.norm();
         if (length < limit || length == 0) return residual;
-        const V outward = tangential / length;
+        V outward = tangential / length;
+        if (friction == Friction::cone_convex) outward = (outward - mu.slide * normal) / std::sqrt(1 + mu.slide * mu.slide);
         return residual - std::max(Real(0), outward.dot(residual)) * outward;
     }
     V result = residual;

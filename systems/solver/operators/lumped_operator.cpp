@@ -50,7 +50,30 @@ void LumpedOperator::extrapolate(Real factor) {
     move(memory_.velocity, memory_.scratch);  // velocities are affine in the impulses
 }
 
-Real LumpedOperator::error() const {
+Real LumpedOperator::step_unless_frozen(Index i, Real relaxation) {
+    constexpr std::uint8_t sweeps_to_freeze = 2, sweeps_frozen = 8;  // methods.md 2.7
+    std::uint8_t& resting = memory_.resting[i];
+    if (resting >= sweeps_to_freeze && resting != velocity_unknown) {
+        if (resting < sweeps_to_freeze + sweeps_frozen) {
+            ++resting;
+            ++frozen_;
+            return 0;
+        }
+        resting = sweeps_to_freeze - 1;  // looked at once, then frozen again
+    }
+    const LumpedContact& contact = memory_.contact[i];
+    const Vec4 u = contact_velocity(contact, memory_.velocity.data());
+    const Vec4 moved = u - memory_.last_velocity[i];
+    memory_.last_velocity[i] = u;
+    const Real size = step(i, relaxation);
+    const bool known = resting != velocity_unknown;
+    const bool at_rest = known && size <= memory_.still && contact.inverse_diagonal * moved.squaredNorm() <= memory_.still;
+    resting = at_rest ? static_cast<std::uint8_t>(resting + 1) : std::uint8_t{0};
+    return size;
+}
+
+Real LumpedOperator::error() {
+    std::fill(memory_.resting.begin(), memory_.resting.end(), velocity_unknown);
     Real sum = 0;
     for (std::size_t i = 0; i < memory_.contact.size(); ++i) {
         const LumpedContact& contact = memory_.contact[i];

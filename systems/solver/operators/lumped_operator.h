@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "components/options.h"
@@ -66,6 +67,13 @@ inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const V
     return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
 }
 
+/// Whether a contact with this velocity needs no impulse. The associated law presses on what slides unless it lifts off fast enough.
+inline bool separates(const LumpedContact& contact, Friction friction, const Vec4& u) {
+    const Real along = contact.normal.dot(u);
+    if (friction != Friction::cone_convex) return along >= 0;
+    return along >= contact.friction.slide * (u - along * contact.normal).norm();
+}
+
 /// Loads contact `row`; `local(node)` gives the region's row of a moving node. `velocity_next` is what the contact sees before the solve.
 template <class Local>
 LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings,
@@ -78,14 +86,20 @@ Real contact_bias(const RegionInputs& inputs, Index row, const SolverSettings& s
 /// One region. The memory belongs to the caller.
 class LumpedOperator {
 public:
+    /// A contact that has not been looked at since the last measure of the error: its last velocity says nothing.
+    static constexpr std::uint8_t velocity_unknown = 255;
+
     struct Memory {
         std::span<const LumpedContact> contact;
-        std::span<Vec4> impulse;                   // N s
-        std::span<Vec4> velocity;                  // m/s, of the region's nodes, moved by the impulse
-        std::span<const Index> node;               // rows of NodeTable
-        std::span<const Vec3> free_velocity;       // m/s, by row of NodeTable
-        std::span<Vec4> scratch;                   // by node of the region: previous velocities, or those of a product
-        std::array<std::span<Vec4>, 4> workspace;  // by contact
+        std::span<Vec4> impulse;                                 // N s
+        std::span<Vec4> velocity;                                // m/s, of the region's nodes, moved by the impulse
+        std::span<const Index> node;                             // rows of NodeTable
+        std::span<const Vec3> free_velocity;                     // m/s, by row of NodeTable
+        std::span<Vec4> scratch;                                 // by node of the region: previous velocities, or those of a product
+        std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
+        std::span<std::uint8_t> resting{};  // by contact: sweeps without a change, at first velocity_unknown. None: no contact is frozen
+        std::span<Vec4> last_velocity{};    // m/s, by contact, while one may rest
+        Real still = 0;                     // J, a smaller change is none
     };
 
     /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse.
@@ -99,13 +113,18 @@ public:
     void remember();
     void extrapolate(Real factor);
     Real sweep(Real relaxation) {
+        if (may_freeze()) return sweep_in_order(*this, [this, relaxation](Index i) { return step_unless_frozen(i, relaxation); });
         return sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
     }
     SweepChange accelerated_sweep(Real relaxation) {
+        if (may_freeze())
+            return accelerated_sweep_in_order(*this, [this, relaxation](Index i) { return step_unless_frozen(i, relaxation); });
         return accelerated_sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
     }
-    /// e_nat of methods.md 2.1.
-    Real error() const;
+    /// e_nat of methods.md 2.1, of all contacts: frozen ones are looked at, and go on.
+    Real error();
+    /// Contact steps left out so far.
+    Index frozen() const { return frozen_; }
     /// A sweep's change is about the natural map of its start: worth a look once it is as small.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return memory_.contact[i].diagonal * a.dot(b); }
@@ -124,6 +143,12 @@ public:
     void assemble(Eigen::MatrixXd& matrix) const;
 
 private:
+    /// Counts the sweep. The first ones are not worth the bookkeeping: most solves end with them.
+    bool may_freeze() {
+        constexpr Index first_sweeps = 8;
+        return !memory_.resting.empty() && ++sweeps_ > first_sweeps;
+    }
+    Real step_unless_frozen(Index i, Real relaxation);
     Real step(Index i, Real relaxation) {
         return solve_contact(memory_.contact[i], friction_, relaxation, memory_.velocity.data(), memory_.impulse[i]);
     }
@@ -132,6 +157,7 @@ private:
     Memory memory_;
     Friction friction_;
     Real scale_;
+    Index sweeps_ = 0, frozen_ = 0;
 };
 
 template <class Local>

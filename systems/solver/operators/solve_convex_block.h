@@ -13,7 +13,7 @@ struct ConvexBlock {
     Real inverse_normal;  // kg/s, of the block's first entry; 0: no mobility along the normal
 };
 
-/// Of the symmetric part of the block. Eigenvalues below 1e-14 of its trace are raised to that.
+/// Of the symmetric part of the block, raised by 1e-14 of its trace so that one of lower rank can be factorised.
 ConvexBlock prepare_convex_block(const Mat3& matrix, Real mu);
 
 /// r. A block without mobility along the normal gives zero.

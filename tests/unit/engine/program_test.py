@@ -5,6 +5,7 @@ Called as: program_test.py PROGRAM SOURCE_FOLDER
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -132,7 +133,7 @@ class ProgramTest(unittest.TestCase):
     def test_output_that_cannot_be_written_is_refused_before_the_run(self):
         blocked = self.write("file", "") / "inside"
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
-        for flag in ("--stats", "--out", "--page", "--trace"):
+        for flag in ("--stats", "--out", "--page", "--trace", "--export-problems"):
             self.assert_refused("run", endless, flag, blocked, said=["file", "no folder"])
         self.assert_refused("run", endless, "--stats", self.folder, said=["a folder"])
         # One bad output among good ones: the good ones do not appear either.
@@ -141,7 +142,8 @@ class ProgramTest(unittest.TestCase):
     def test_bad_command_lines_are_refused(self):
         for arguments in (["run"], ["fly"], [], ["run", self.scene, "--seconds", "-1"], ["run", self.scene, "--seconds", "nan"],
                           ["run", self.scene, "--seconds", "inf"], ["run", self.scene, "--threads", "x"], ["run", self.scene, "--backend", "cuda"],
-                          ["run", self.scene, "--step", "0"], ["run", self.scene, "--nonsense"], ["solve", "x", "--max-iterations", "0"]):
+                          ["run", self.scene, "--step", "0"], ["run", self.scene, "--nonsense"], ["solve", "x", "--max-iterations", "0"],
+                          ["run", self.scene, "--export-every", "0"], ["run", self.scene, "--export-problems-of", "body"]):
             done = self.skerry(*arguments, code=2)
             self.assertNotEqual(done.stderr, "")
 
@@ -207,6 +209,50 @@ class ProgramTest(unittest.TestCase):
     def test_solve_refuses_what_is_not_a_problem(self):
         self.assert_refused("solve", self.write("not.hdf5", "text"), said=["not.hdf5"])
         self.assert_refused("solve", self.folder / "none.hdf5", said=["none.hdf5"])
+
+    def exported(self, folder, *flags):
+        self.skerry("run", self.scene, "--quiet", "--export-problems", self.folder / folder, *flags)
+        return sorted(path.name for path in (self.folder / folder).iterdir())
+
+    def test_contact_problems_of_a_run_are_written_and_solved(self):
+        names = self.exported("problems")
+        self.assertTrue(1 <= len(names) <= 21, names)  # a 20th of the steps each, of which some have no contacts
+        for name in names:
+            self.assertRegex(name, r"^drop-step\d{6}-contacts\d+\.hdf5$")
+            reactions = self.folder / "reactions.txt"
+            found = json.loads(self.skerry("solve", self.folder / "problems" / name, "--json", "--tolerance", 1e-9, "--reactions", reactions).stdout)
+            self.assertEqual(found["problem"], name[:-5])
+            self.assertEqual(found["contacts"], int(re.search(r"contacts(\d+)", name).group(1)))
+            self.assertEqual(len(reactions.read_text().splitlines()), found["contacts"])
+            self.assertTrue(found["converged"])
+            self.assertLess(abs(found["energy_gap"]), 1e-9)
+            for key in "condensed_freedoms largest_region unconverged error error_absolute error_over_q".split():
+                self.assertIn(key, found)
+        said = self.skerry("solve", self.folder / "problems" / names[-1]).stdout
+        for word in ("contacts", "error", "absolute", "|q|", "energy gap"):
+            self.assertIn(word, said)
+
+    def test_which_problems_are_written_can_be_chosen(self):
+        steps = self.exported("steps", "--export-every", 50)
+        self.assertTrue(all(int(name[len("drop-step"):][:6]) % 50 == 0 for name in steps), steps)
+        regions = self.exported("regions", "--export-every", 50, "--export-problems-of", "region")
+        self.assertGreater(len(regions), len(steps))
+        for step in steps:  # the contacts of a step's regions are those of the step
+            begin = step[:len("drop-step000000")]
+            parts = [int(re.search(r"contacts(\d+)-region\d+", name).group(1)) for name in regions if name.startswith(begin)]
+            self.assertEqual(sum(parts), int(re.search(r"contacts(\d+)", step).group(1)))
+        said = self.skerry("run", self.scene, "--export-problems", self.folder / "again", "--export-every", 50).stdout
+        self.assertIn(f"{len(steps)} contact problems of {len(steps)} steps", said)
+        for name in steps:  # the same run gives the same bytes
+            self.assertEqual((self.folder / "again" / name).read_bytes(), (self.folder / "steps" / name).read_bytes())
+
+    def test_exporting_changes_nothing(self):
+        hashes = []
+        for flags in ([], ["--export-problems", self.folder / "problems", "--export-every", 7]):
+            stats = self.folder / "stats.json"
+            self.skerry("run", self.scene, "--quiet", "--stats", stats, *flags)
+            hashes.append(json.loads(stats.read_text())["state_hash"])
+        self.assertEqual(hashes[0], hashes[1])
 
     @unittest.skipUnless(os.environ.get("SKERRY_PROBLEMS"), "SKERRY_PROBLEMS names no folder of FCLIB problems")
     def test_solve_writes_reactions_and_json(self):

@@ -164,6 +164,7 @@ TEST_CASE("without friction the sweep is scalar Gauss-Seidel", "[unit][solver]")
     ContactScene scene;
     add_sheets(scene, 6, 0, 9);
     SolverSettings settings;
+    settings.method = SolverMethod::pgs;
     settings.fixed_iterations = true;
     settings.max_iterations = 25;
     settings.warm_start = WarmStart::off;

@@ -1,0 +1,176 @@
+#include "engine/problem/condense_problem.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/problem/gather_blocks.h"
+
+namespace skerry {
+namespace {
+
+using SparseMatrix = Eigen::SparseMatrix<Real>;
+using Factors = Eigen::SimplicialLDLT<SparseMatrix>;
+
+/// Freedoms by part of M, ascending; `place` of each freedom in its part.
+struct MassParts {
+    std::vector<Index> part, place;  // by freedom
+    std::vector<Index> size;         // by part
+};
+
+MassParts separate(const MatrixEntries& mass) {
+    std::vector<Index> root(static_cast<std::size_t>(mass.rows));
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](Index i) {
+        while (root[i] != i) i = root[i] = root[root[i]];
+        return i;
+    };
+    for (const MatrixEntry& e : mass.entry) {
+        if (e.value == 0) continue;
+        const Index a = find(e.row), b = find(e.column);
+        root[std::max(a, b)] = std::min(a, b);
+    }
+    MassParts parts;
+    parts.part.resize(root.size());
+    parts.place.resize(root.size());
+    for (std::size_t i = 0; i < root.size(); ++i) {
+        const Index r = find(static_cast<Index>(i));
+        if (r == static_cast<Index>(i)) {
+            parts.part[i] = static_cast<Index>(parts.size.size());
+            parts.size.push_back(0);
+        } else {
+            parts.part[i] = parts.part[r];  // roots are smaller than what they stand for
+        }
+        parts.place[i] = parts.size[parts.part[i]]++;
+    }
+    return parts;
+}
+
+/// Entries of a matrix by the part that their row belongs to.
+std::vector<std::vector<MatrixEntry>> by_part(const MassParts& parts, const MatrixEntries& matrix) {
+    std::vector<std::vector<MatrixEntry>> entries(parts.size.size());
+    for (const MatrixEntry& e : matrix.entry) entries[parts.part[e.row]].push_back(e);
+    return entries;
+}
+
+SparseMatrix assemble(const MassParts& parts, Index part, const std::vector<MatrixEntry>& entries) {
+    std::vector<Eigen::Triplet<Real>> triplets;
+    for (const MatrixEntry& e : entries)
+        if (e.value != 0) triplets.emplace_back(parts.place[e.row], parts.place[e.column], e.value);
+    SparseMatrix mass(parts.size[part], parts.size[part]);
+    mass.setFromTriplets(triplets.begin(), triplets.end());
+    return mass;
+}
+
+std::string freedom_text(const MassParts& parts, Index part, Index place) {
+    for (std::size_t i = 0; i < parts.part.size(); ++i)
+        if (parts.part[i] == part && parts.place[i] == place) return "freedom " + std::to_string(i);
+    return {};
+}
+
+MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass) {
+    constexpr Real rounding = 1e-9;  // of an assembled matrix, generously: what is meant to be unsymmetric is far above
+    const SparseMatrix difference = mass - SparseMatrix(mass.transpose());
+    const Eigen::VectorXd diagonal = mass.diagonal();
+    for (Index column = 0; column < difference.outerSize(); ++column)
+        for (SparseMatrix::InnerIterator it(difference, column); it; ++it)
+            if (it.value() * it.value() > rounding * rounding * std::abs(diagonal[it.row()] * diagonal[column]))
+                return {"a matrix that is not symmetric at " + freedom_text(parts, part, static_cast<Index>(it.row())) + " and " +
+                            freedom_text(parts, part, column),
+                        "a symmetric matrix, both halves of it"};
+    return {};
+}
+
+MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass, Factors& factors) {
+    if (MassFault fault = asymmetry(parts, part, mass); !fault.found.empty()) return fault;
+    const char* const expected = "a positive definite matrix";
+    const Eigen::VectorXd diagonal = mass.diagonal();
+    for (Index i = 0; i < diagonal.size(); ++i)
+        if (!(diagonal[i] > 0)) return {std::to_string(diagonal[i]) + " on the diagonal of " + freedom_text(parts, part, i), expected};
+    factors.compute(mass);
+    // a pivot that is nothing but rounding belongs to a singular matrix
+    constexpr Real rounding = 1e-14;
+    const Eigen::VectorXd in_order = factors.permutationP() * diagonal;
+    bool definite = factors.info() == Eigen::Success;
+    if (definite) definite = (factors.vectorD().array() > rounding * in_order.array()).all();
+    if (definite) return {};
+    return {"a matrix that is not positive definite among the freedoms joined to " + freedom_text(parts, part, 0), expected};
+}
+
+/// What one part of M adds to W and q.
+void condense_part(const MassParts& parts, Index part, const Factors& factors, const std::vector<MatrixEntry>& directions,
+                   const std::vector<Real>& force, std::vector<BlockPart>& blocks, ContactProblem& problem) {
+    std::vector<Index> contact;  // that move this part, ascending
+    for (const MatrixEntry& e : directions) contact.push_back(e.column / 3);
+    std::sort(contact.begin(), contact.end());
+    contact.erase(std::unique(contact.begin(), contact.end()), contact.end());
+    const auto count = static_cast<Index>(contact.size());
+    SparseMatrix h(parts.size[part], 3 * count);
+    std::vector<Eigen::Triplet<Real>> triplets;
+    for (const MatrixEntry& e : directions) {
+        const auto local = std::lower_bound(contact.begin(), contact.end(), e.column / 3) - contact.begin();
+        triplets.emplace_back(parts.place[e.row], static_cast<Index>(3 * local) + e.column % 3, e.value);
+    }
+    h.setFromTriplets(triplets.begin(), triplets.end());
+    const Eigen::VectorXd free = factors.solve(Eigen::Map<const Eigen::VectorXd>(force.data(), parts.size[part]));
+    const Eigen::VectorXd velocity = h.transpose() * free;
+    for (Index i = 0; i < count; ++i) problem.q[contact[i]] += velocity.segment<3>(3 * i);
+    // contacts in batches: a large body with many contacts would need the whole of M^-1 H at once
+    constexpr Index batch = 32;
+    for (Index begin = 0; begin < count; begin += batch) {
+        const Index end = std::min(count, begin + batch);
+        // sized first: without automatic resizing Eigen clears a dense matrix before it has the size of the sparse one
+        Eigen::MatrixXd pushed(parts.size[part], 3 * (end - begin));
+        pushed = h.middleCols(3 * begin, 3 * (end - begin));
+        const Eigen::MatrixXd moved = factors.solve(pushed);
+        const Eigen::MatrixXd w = h.transpose() * moved;
+        // one half, mirrored: W is symmetric to the last bit
+        for (Index j = begin; j < end; ++j)
+            for (Index i = 0; i <= j; ++i) {
+                Mat3 block = w.block<3, 3>(3 * i, 3 * (j - begin));
+                if (i == j) block = 0.5 * (block + block.transpose()).eval();
+                blocks.push_back({contact[i], contact[j], block});
+                if (i != j) blocks.push_back({contact[j], contact[i], block.transpose()});
+            }
+    }
+}
+
+/// Drops blocks that are rounding beside the diagonal blocks of their two contacts.
+void drop_rounding(ContactProblem& problem) {
+    constexpr Real rounding = 1e-14;
+    const std::size_t count = problem.q.size();
+    std::vector<Real> diagonal(count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
+            if (static_cast<std::size_t>(problem.column[k]) == i) diagonal[i] = problem.block[k].norm();
+    std::vector<BlockPart> kept;
+    for (std::size_t i = 0; i < count; ++i)
+        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k) {
+            const Index column = problem.column[k];
+            if (problem.block[k].squaredNorm() <= rounding * rounding * diagonal[i] * diagonal[column]) continue;
+            kept.push_back({static_cast<Index>(i), column, problem.block[k]});
+        }
+    gather_blocks(std::move(kept), problem);
+}
+
+}  // namespace
+
+MassFault condense_problem(const GlobalProblem& global, ContactProblem& problem) {
+    const MassParts parts = separate(global.mass);
+    const std::vector<std::vector<MatrixEntry>> mass = by_part(parts, global.mass), directions = by_part(parts, global.directions);
+    std::vector<std::vector<Real>> force(parts.size.size());
+    for (std::size_t i = 0; i < global.force.size(); ++i) force[parts.part[i]].push_back(global.force[i]);
+    std::vector<BlockPart> blocks;
+    for (Index part = 0; part < static_cast<Index>(parts.size.size()); ++part) {
+        Factors factors;
+        if (MassFault fault = factorise(parts, part, assemble(parts, part, mass[part]), factors); !fault.found.empty()) return fault;
+        if (!directions[part].empty()) condense_part(parts, part, factors, directions[part], force[part], blocks, problem);
+    }
+    problem.freedoms = global.mass.rows;
+    gather_blocks(std::move(blocks), problem);
+    drop_rounding(problem);
+    return {};
+}
+
+}  // namespace skerry

@@ -1,0 +1,37 @@
+// An HDF5 file made in memory, with the kinds of data that FCLIB's own writer makes: numbers in one dimension, texts of fixed length.
+#pragma once
+
+#include <hdf5.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/types.h"
+#include "engine/problem/hdf5_file.h"
+
+namespace skerry {
+
+/// Paths are absolute, "/group/field"; groups are made on the way. The same calls give the same bytes. Throws SceneError that names the
+/// file it is meant for.
+class Hdf5Image {
+public:
+    explicit Hdf5Image(std::string name);
+
+    void put(const std::string& path, Index value) { put(path, std::span<const Index>(&value, 1)); }
+    void put(const std::string& path, std::span<const Index> values);
+    void put(const std::string& path, std::span<const Real> values);
+    void put_text(const std::string& path, const std::string& text);
+    /// The whole file.
+    std::vector<char> bytes() const;
+
+private:
+    void put(const std::string& path, hid_t type, const Hdf5Handle& space, const void* values);
+    void expect(bool good, const std::string& path) const;
+
+    QuietHdf5 quiet_;
+    std::string name_;
+    Hdf5Handle file_;
+};
+
+}  // namespace skerry

@@ -1,0 +1,50 @@
+#include "engine/problem/measure_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "skerry/error.h"
+#include "systems/solver/operators/block_operator.h"
+
+namespace skerry {
+namespace {
+
+/// J, what the contact's reaction and velocity miss of complementarity and of friction against the slip. The associated law wants r . u = 0.
+Real coulomb_gap(const Vec3& r, const Vec3& u, Real mu, Friction friction) {
+    if (friction == Friction::cone_convex) return r.dot(u);
+    const Real slip = friction == Friction::cone ? std::hypot(u[1], u[2]) : std::abs(u[1]) + std::abs(u[2]);
+    return r[0] * u[0] + mu * r[0] * slip + r[1] * u[1] + r[2] * u[2];
+}
+
+}  // namespace
+
+ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction) {
+    Real lack = 0, q = 0, r = 0, u = 0, gap = 0;
+    for (std::size_t i = 0; i < problem.q.size(); ++i) {
+        Vec3 velocity = problem.q[i];
+        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
+            velocity += problem.block[k] * reaction[problem.column[k]];
+        lack += natural_map(reaction[i], velocity, problem.mu[i], friction).squaredNorm();
+        gap += coulomb_gap(reaction[i], velocity, problem.mu[i], friction);
+        q += problem.q[i].squaredNorm();
+        r += reaction[i].squaredNorm();
+        u += velocity.squaredNorm();
+    }
+    if (lack == 0) return {0, 0, 0, gap};
+    return {std::sqrt(lack), std::sqrt(lack / std::max({q, r, u})), std::sqrt(lack / q), gap};
+}
+
+ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction) {
+    if (reaction.size() != problem.q.size())
+        Complaint{.file = {},
+                  .object = "problem " + problem.name,
+                  .field = "reaction",
+                  .found = std::to_string(reaction.size()) + " values",
+                  .expected = std::to_string(problem.q.size()),
+                  .hint = {}}
+            .raise();
+    return measure_problem(problem, reaction, Friction::cone);
+}
+
+}  // namespace skerry

@@ -1,0 +1,14 @@
+// How far reactions are from solving a problem (methods.md 2.1).
+#pragma once
+
+#include <span>
+
+#include "skerry/problem.h"
+
+namespace skerry {
+
+/// With Friction::pyramid the measures are those of the pyramid: tangential components are bounded one by one; with
+/// Friction::cone_convex those of the associated law.
+ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction);
+
+}  // namespace skerry

@@ -1,0 +1,43 @@
+#include <vector>
+
+#include "components/types.h"
+#include "engine/problem/check_arrays.h"
+#include "skerry/error.h"
+#include "skerry/problem.h"
+
+namespace skerry {
+
+ContactProblem part_of(const ContactProblem& problem, std::span<const Index> contacts) {
+    check_arrays(problem);
+    std::vector<Index> place(problem.q.size(), no_index);
+    Index previous = -1;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (contacts[i] <= previous || contacts[i] >= problem.contacts())
+            Complaint{.file = {},
+                      .object = "problem " + problem.name,
+                      .field = "contacts",
+                      .found = std::to_string(contacts[i]),
+                      .expected = "contacts of the problem in ascending order",
+                      .hint = {}}
+                .raise();
+        previous = contacts[i];
+        place[contacts[i]] = static_cast<Index>(i);
+    }
+    ContactProblem part;
+    part.name = problem.name;
+    part.description = problem.description;
+    part.row_offset.push_back(0);
+    for (const Index i : contacts) {
+        part.q.push_back(problem.q[i]);
+        part.mu.push_back(problem.mu[i]);
+        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
+            if (const Index column = place[problem.column[k]]; column != no_index) {
+                part.column.push_back(column);
+                part.block.push_back(problem.block[k]);
+            }
+        part.row_offset.push_back(static_cast<Index>(part.column.size()));
+    }
+    return part;
+}
+
+}  // namespace skerry

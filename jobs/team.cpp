@@ -1,0 +1,159 @@
+#include "jobs/team.h"
+
+#include <array>
+#include <thread>
+
+#include "components/check.h"
+#include "jobs/backends.h"
+
+namespace skerry {
+
+namespace {
+
+void pause_briefly() {
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#else
+    std::this_thread::yield();
+#endif
+}
+
+}  // namespace
+
+/// Others are at work on what is waited for, unless the system has put them aside: then it gets this core to go on with them.
+template <class Ready>
+void Team::wait_until(Ready&& ready) const {
+    // pauses, 2 ms in all: who yields sooner, and waits for a microsecond only, gives the core away for a slice of about that length
+    const int patience = may_spin_ ? 50000 : 20;
+    for (int i = 0; !ready(); ++i) {
+        if (i < patience) {
+            pause_briefly();
+        } else {
+            std::this_thread::yield();
+        }
+    }
+}
+
+void Team::gather(Executor& executor, FunctionRef<void()> work) {
+    SKERRY_CHECK(!together_);
+    const int workers = executor.worker_count();
+    if (workers <= 1) {
+        work();
+        return;
+    }
+    may_spin_ = workers <= static_cast<int>(std::thread::hardware_concurrency());
+    members_.store(1, std::memory_order_relaxed);
+    dismissed_.store(false, std::memory_order_relaxed);
+    together_ = true;
+    executor.run_blocks(workers, [&](Index block) {
+        if (block != 0) {
+            help();
+            return;
+        }
+        struct Dismissal {
+            Team& team;
+            ~Dismissal() {
+                team.together_ = false;
+                team.dismissed_.store(true);
+            }
+        } const dismissal{*this};
+        work();
+    });
+}
+
+void Team::run_blocks(Index count, FunctionRef<void(Index)> body) {
+    const std::array<Index, 2> whole{0, count};
+    run_phases(whole, body);
+}
+
+void Team::run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index)> body) {
+    const Index count = phase_offset.empty() ? 0 : phase_offset.back();
+    if (count == 0) return;
+    FirstError error;
+    if (!together_ || count == 1) {
+        for (Index block = 0; block < count; ++block) {
+            try {
+                body(block);
+            } catch (...) {
+                error.keep(block);
+            }
+        }
+        error.rethrow();
+        return;
+    }
+    if (count > claim_count_) {
+        claim_ = std::make_unique<std::atomic<std::uint64_t>[]>(static_cast<std::size_t>(count));
+        claim_count_ = count;
+    }
+    const std::uint64_t number = job_.number + 1;
+    job_ = {phase_offset, &body, &error, number, members_.load(std::memory_order_relaxed)};
+    done_.store(0, std::memory_order_relaxed);
+    open_.store(number);
+    take_part(job_, 0);
+    wait_until([&] { return done_.load(std::memory_order_acquire) == count; });
+    // A helper says that it is inside and then looks whether the job is open; here it is the other way round. So either it sees the job
+    // closed, or it is seen here and waited for.
+    open_.store(0);
+    wait_until([&] { return inside_.load() == 0; });
+    error.rethrow();
+}
+
+void Team::help() {
+    const Index member = members_.fetch_add(1, std::memory_order_relaxed);
+    std::uint64_t last = 0;
+    while (true) {
+        std::uint64_t number = 0;
+        wait_until([&] {
+            number = open_.load(std::memory_order_acquire);
+            return (number != 0 && number != last) || dismissed_.load(std::memory_order_acquire);
+        });
+        if (number == 0 || number == last) return;
+        inside_.fetch_add(1);
+        number = open_.load();
+        if (number != 0 && number != last) {
+            take_part(job_, member);
+            last = number;
+        }
+        inside_.fetch_sub(1, std::memory_order_release);
+    }
+}
+
+void Team::take_part(const Job& job, Index member) {
+    for (std::size_t phase = 0; phase + 1 < job.phase_offset.size(); ++phase) {
+        const Index begin = job.phase_offset[phase], end = job.phase_offset[phase + 1], count = end - begin;
+        if (count == 0) continue;
+        // no block of this phase has started before all earlier ones were done: the count of blocks tells which these are
+        wait_until([&] { return done_.load(std::memory_order_acquire) >= begin; });
+        if (done_.load(std::memory_order_acquire) >= end) continue;
+        const Index share = static_cast<Index>(std::int64_t{count} * (member % job.members) / job.members);
+        const Index own_end = begin + static_cast<Index>(std::int64_t{count} * (member % job.members + 1) / job.members);
+        take_blocks(job, begin + share, own_end);
+        // The others are about to end, and looking at their claims would take these from their caches. Who is late is helped out.
+        constexpr int hesitation = 40;  // pauses, 2 us
+        for (int i = 0; i < hesitation && done_.load(std::memory_order_acquire) < end; ++i) pause_briefly();
+        if (done_.load(std::memory_order_acquire) >= end) continue;
+        take_blocks(job, own_end, end);
+        take_blocks(job, begin, begin + share);
+    }
+}
+
+void Team::take_blocks(const Job& job, Index begin, Index end) {
+    Index finished = 0;
+    for (Index block = begin; block < end; ++block) {
+        if (!claim(block, job.number)) continue;
+        try {
+            (*job.body)(block);
+        } catch (...) {
+            job.error->keep(block);
+        }
+        ++finished;
+    }
+    if (finished > 0) done_.fetch_add(finished, std::memory_order_acq_rel);
+}
+
+bool Team::claim(Index block, std::uint64_t job_number) {
+    std::atomic<std::uint64_t>& taken = claim_[static_cast<std::size_t>(block)];
+    return taken.load(std::memory_order_relaxed) != job_number && taken.exchange(job_number, std::memory_order_relaxed) != job_number;
+}
+
+}  // namespace skerry

@@ -1,0 +1,169 @@
+#include "profiling/generate_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "systems/contact/tangent_frame.h"
+
+namespace skerry::profiling {
+namespace {
+
+/// Numbers that are the same with every standard library: its distributions are not.
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+    Real uniform() { return static_cast<Real>(engine_() >> 11) * 0x1p-53; }
+    Real symmetric(Real limit) { return limit * (2 * uniform() - 1); }
+    Vec3 symmetric_vector(Real limit) {
+        const Real x = symmetric(limit), y = symmetric(limit), z = symmetric(limit);
+        return {x, y, z};
+    }
+    Real normal() {  // Box and Muller
+        const Real radius = std::sqrt(-2 * std::log(1 - uniform()));
+        return radius * std::cos(2 * std::numbers::pi * uniform());
+    }
+
+private:
+    std::mt19937_64 engine_;
+};
+
+struct Sheet {
+    Index first;             // of its nodes
+    Index nodes;             // along an edge
+    Real spacing;            // fine edges
+    std::vector<Real> x, y;  // of its nodes, moved at random
+
+    Index node(Index i, Index j) const { return first + i * nodes + j; }
+};
+
+Sheet add_sheet(const SheetSettings& settings, Index number, Random& random, GeneratedContacts& out) {
+    const bool upper = number % 2 == 1;
+    const Index fine = settings.coarse * (settings.nodes - 1) + 1;
+    Sheet sheet{.first = static_cast<Index>(out.inverse_mass.size()),
+                .nodes = upper ? settings.nodes : fine,
+                .spacing = upper ? static_cast<Real>(settings.coarse) : 1,
+                .x = {},
+                .y = {}};
+    const bool fixed = settings.stacked && number == 0;
+    const bool moves = settings.stacked ? !fixed : upper;
+    const Vec3 mean = !moves ? Vec3(Vec3::Zero()) : settings.stacked ? Vec3(0.2, 0, -1) : Vec3(0.4, 0.1, -1);
+    const Real noise = fixed ? 0 : settings.stacked ? 0.1 : 0.15;
+    for (Index i = 0; i < sheet.nodes; ++i)
+        for (Index j = 0; j < sheet.nodes; ++j) {
+            sheet.x.push_back(sheet.spacing * (i + random.symmetric(0.25)));
+            sheet.y.push_back(sheet.spacing * (j + random.symmetric(0.25)));
+            // a coarse node stands for as much of its sheet as it covers
+            const Real mass = std::exp(0.5 * random.normal()) * sheet.spacing * sheet.spacing * (upper ? settings.mass_ratio : 1);
+            out.inverse_mass.push_back(fixed ? 0 : 1 / mass);
+            out.velocity.push_back(mean + random.symmetric_vector(noise));
+        }
+    return sheet;
+}
+
+/// The points inside `from` against the triangles of `to`, taken as a regular grid: it is the places of the points that are random.
+void add_contacts(const Sheet& from, const Sheet& to, const Vec3& up, const SheetSettings& settings, Random& random,
+                  GeneratedContacts& out) {
+    for (Index i = 1; i + 1 < from.nodes; ++i)
+        for (Index j = 1; j + 1 < from.nodes; ++j) {
+            const std::size_t local = static_cast<std::size_t>(i * from.nodes + j);
+            const Real x = from.x[local] / to.spacing, y = from.y[local] / to.spacing;
+            const Index a = std::clamp(static_cast<Index>(x), 0, to.nodes - 2), b = std::clamp(static_cast<Index>(y), 0, to.nodes - 2);
+            const Real u = std::clamp(x - a, 0.0, 1.0), v = std::clamp(y - b, 0.0, 1.0);
+            Stencil stencil;
+            if (u + v <= 1) {
+                stencil.node = {from.node(i, j), to.node(a, b), to.node(a + 1, b), to.node(a, b + 1)};
+                stencil.weight = {1, -(1 - u - v), -u, -v};
+            } else {
+                stencil.node = {from.node(i, j), to.node(a + 1, b + 1), to.node(a, b + 1), to.node(a + 1, b)};
+                stencil.weight = {1, -(u + v - 1), -(1 - u), -(1 - v)};
+            }
+            out.stencil.push_back(stencil);
+            out.normal.push_back((up + random.symmetric_vector(settings.tilt)).normalized());
+            out.friction.push_back(settings.friction);
+        }
+}
+
+}  // namespace
+
+GeneratedContacts generate_sheets(const SheetSettings& settings) {
+    Random random(settings.seed);
+    GeneratedContacts out;
+    std::vector<Sheet> sheets;
+    for (Index s = 0; s < settings.sheets; ++s) sheets.push_back(add_sheet(settings, s, random, out));
+    for (std::size_t s = 0; s + 1 < sheets.size(); ++s) {
+        add_contacts(sheets[s + 1], sheets[s], Vec3::UnitZ(), settings, random, out);
+        add_contacts(sheets[s], sheets[s + 1], -Vec3::UnitZ(), settings, random, out);
+    }
+    return out;
+}
+
+ContactProblem assemble_problem(const GeneratedContacts& contacts, const std::string& name) {
+    // contacts of each moving node, with their weights
+    std::vector<std::vector<std::pair<Index, Real>>> touching(contacts.inverse_mass.size());
+    std::vector<Mat3> frame;
+    ContactProblem problem;
+    problem.name = name;
+    problem.row_offset.push_back(0);
+    std::vector<std::size_t> kept;
+    for (std::size_t c = 0; c < contacts.stencil.size(); ++c) {
+        const Stencil& stencil = contacts.stencil[c];
+        bool moves = false;
+        for (int a = 0; a < 4; ++a)
+            if (stencil.weight[a] != 0 && contacts.inverse_mass[stencil.node[a]] > 0) {
+                touching[stencil.node[a]].emplace_back(static_cast<Index>(kept.size()), stencil.weight[a]);
+                moves = true;
+            }
+        if (!moves) continue;
+        kept.push_back(c);
+        const TangentFrame tangents = tangent_frame(contacts.normal[c]);
+        frame.emplace_back();
+        frame.back() << contacts.normal[c], tangents.first, tangents.second;
+    }
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        const Stencil& stencil = contacts.stencil[kept[i]];
+        std::map<Index, Real> coupling;
+        Vec3 velocity = Vec3::Zero();
+        for (int a = 0; a < 4; ++a) {
+            const Index node = stencil.node[a];
+            velocity += stencil.weight[a] * contacts.velocity[node];
+            if (stencil.weight[a] == 0 || contacts.inverse_mass[node] == 0) continue;
+            for (const auto& [other, weight] : touching[node]) coupling[other] += stencil.weight[a] * weight * contacts.inverse_mass[node];
+        }
+        for (const auto& [other, value] : coupling) {
+            problem.column.push_back(other);
+            problem.block.push_back(value * frame[i].transpose() * frame[other]);
+        }
+        problem.row_offset.push_back(static_cast<Index>(problem.column.size()));
+        problem.q.push_back(frame[i].transpose() * velocity);
+        problem.mu.push_back(contacts.friction[kept[i]]);
+    }
+    return problem;
+}
+
+std::vector<ContactProblem> generate_problems(bool quick) {
+    struct Named {
+        const char* name;
+        SheetSettings settings;
+        bool large = false;
+    };
+    const Named all[] = {
+        {"patch-8", {.nodes = 4}},
+        {"patch-200", {.nodes = 12}},
+        {"patch-200-mass-ratio-1000", {.nodes = 12, .mass_ratio = 1000}},
+        {"patch-200-tilted", {.nodes = 12, .tilt = 0.6, .friction = 0.8}},
+        {"coarse-8-533", {.nodes = 4, .coarse = 8}, true},
+        {"stack-6-layers-160", {.sheets = 6, .nodes = 6, .stacked = true}, true},
+        {"stack-5-layers-800", {.sheets = 5, .nodes = 12, .stacked = true}, true},
+        {"patch-2888", {.nodes = 40}, true},
+    };
+    std::vector<ContactProblem> problems;
+    for (const Named& one : all)
+        if (!quick || !one.large) problems.push_back(assemble_problem(generate_sheets(one.settings), one.name));
+    return problems;
+}
+
+}  // namespace skerry::profiling

@@ -1,0 +1,70 @@
+#include "systems/solver/coloured/order_region.h"
+
+#include "systems/solver/coloured/coloured_operator.h"
+
+namespace skerry {
+namespace {
+
+/// Writes the moving nodes of all contacts. Returns whether they are those that were there.
+bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& team, ColouredRegion& region) {
+    const bool as_many = region.moving.size() == row.size();
+    region.moving.resize(row.size());
+    if (region.loaded.size() < row.size() / row_block + 1) region.loaded.resize(row.size() / row_block + 1);
+    for_row_blocks(team, row.size(), [&](std::size_t begin, std::size_t end, Index block) {
+        bool same = true;
+        for (std::size_t k = begin; k < end; ++k) {
+            const ContactNodes nodes = moving_nodes(inputs, row[k]);
+            same = same && nodes == region.moving[k];
+            region.moving[k] = nodes;
+        }
+        region.loaded[block].separate = same;
+    });
+    bool same = as_many;
+    for (Index block = 0; block < row_block_count(row.size()); ++block) same = same && region.loaded[block].separate;
+    return same;
+}
+
+/// Numbers the nodes in the order in which contacts name them. A node's number is remembered by node; an entry left from elsewhere shows
+/// by the list not agreeing.
+void number_nodes(std::span<Index> place, ColouredRegion& region) {
+    region.node.clear();
+    region.local.resize(region.moving.size());
+    for (std::size_t k = 0; k < region.moving.size(); ++k) {
+        ContactNodes& local = region.local[k];
+        for (std::size_t a = 0; a < local.size(); ++a) {
+            const Index global = region.moving[k][a];
+            if (global == no_index) {
+                local[a] = no_index;
+                continue;
+            }
+            Index& number = place[global];
+            if (static_cast<std::size_t>(number) >= region.node.size() || region.node[number] != global) {
+                number = static_cast<Index>(region.node.size());
+                region.node.push_back(global);
+            }
+            local[a] = number;
+        }
+    }
+}
+
+}  // namespace
+
+ContactNodes moving_nodes(const RegionInputs& inputs, Index row) {
+    const Stencil& stencil = inputs.stencil[row];
+    ContactNodes nodes{no_index, no_index, no_index, no_index};
+    std::size_t count = 0;
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+        if (stencil.weight[a] != 0 && inputs.inverse_mass[stencil.node[a]] > 0) nodes[count++] = stencil.node[a];
+    return nodes;
+}
+
+bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> place, ColouredRegion& region) {
+    if (read_nodes(inputs, row, team, region)) return false;
+    number_nodes(place, region);
+    colour_contacts(region.local, static_cast<Index>(region.node.size()), region.colouring, region.order);
+    if (region.partial.size() < partial_count(region.order)) region.partial.resize(partial_count(region.order));
+    if (region.loaded.size() < partial_count(region.order)) region.loaded.resize(partial_count(region.order));
+    return true;
+}
+
+}  // namespace skerry

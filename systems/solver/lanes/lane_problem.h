@@ -1,0 +1,111 @@
+// Small regions side by side: each lane holds one region of at most K contacts, in the dense form that lumped masses allow (methods.md 0.1,
+// fact A, and 2.7): u_i = q_i + sum_j C_ij r_j with a number C_ij. T is Real8, or Real for the twin of one lane that a test compares.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "systems/material/lane_math.h"
+#include "systems/solver/operators/lumped_operator.h"
+
+namespace skerry {
+
+/// Contacts of a lane's region are padded to the next of these.
+inline constexpr std::array<int, 6> lane_sizes{2, 3, 4, 6, 8, 12};
+inline constexpr int largest_lane_region = lane_sizes.back();
+
+/// Place in lane_sizes for a region of so many contacts, 2 .. largest_lane_region.
+inline constexpr std::size_t lane_size_class(std::size_t contacts) {
+    std::size_t c = 0;
+    while (static_cast<std::size_t>(lane_sizes[c]) < contacts) ++c;
+    return c;
+}
+
+template <class T, int K>
+struct LaneProblem {
+    T coupling[K][K];              // C, 1/kg
+    LaneVec3<T> normal[K];         // unit; zero for a place that is not used
+    LaneVec3<T> free_velocity[K];  // q, m/s
+    LaneVec3<T> impulse[K];        // N s, the start and then the solution
+    T diagonal[K];                 // D of methods.md 2.2, 1/kg; zero for a place that is not used
+    T inverse_diagonal[K];         // kg; likewise
+    T friction[K];
+    T scale;  // sqrt(J), of e_nat
+};
+
+/// One region as a lane takes it.
+struct LaneRegion {
+    std::span<const LumpedContact> contact;
+    std::span<const Vec4> free_velocity;  // q by contact, m/s
+    std::span<Vec4> impulse;              // N s
+    std::size_t node_count;
+    Real scale;
+};
+
+inline void set_lane(Real& all, int, Real value) {
+    all = value;
+}
+inline void set_lane(Real8& all, int lane, Real value) {
+    all[lane] = value;
+}
+inline Real lane_of(const Real& all, int) {
+    return all;
+}
+inline Real lane_of(const Real8& all, int lane) {
+    return all[lane];
+}
+
+template <class T>
+void set_lane(LaneVec3<T>& all, int lane, const Vec4& value) {
+    set_lane(all.x, lane, value[0]);
+    set_lane(all.y, lane, value[1]);
+    set_lane(all.z, lane, value[2]);
+}
+template <class T>
+Vec4 lane_of(const LaneVec3<T>& all, int lane) {
+    return {lane_of(all.x, lane), lane_of(all.y, lane), lane_of(all.z, lane), 0};
+}
+
+/// Writes C = B M^-1 B^T of the region into its lane. Places that are not used stay as they are.
+template <class T, int K>
+void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
+    std::array<Real, 4 * K> step;  // by node: what an impulse of contact i does to it, per N s
+    std::fill_n(step.begin(), region.node_count, 0);
+    for (std::size_t i = 0; i < region.contact.size(); ++i) {
+        const LumpedContact& one = region.contact[i];
+        for (Index a = 0; a < one.node_count; ++a) step[one.node[a]] += one.step[a];
+        for (std::size_t j = 0; j <= i; ++j) {
+            const LumpedContact& other = region.contact[j];
+            Real coupling = 0;
+            for (Index b = 0; b < other.node_count; ++b) coupling += other.weight[b] * step[other.node[b]];
+            set_lane(problem.coupling[i][j], lane, coupling);
+            set_lane(problem.coupling[j][i], lane, coupling);
+        }
+        for (Index a = 0; a < one.node_count; ++a) step[one.node[a]] = 0;
+    }
+}
+
+/// Clears the problem, so that lanes and places that are not filled ask for nothing.
+template <class T, int K>
+void clear(LaneProblem<T, K>& problem) {
+    problem = LaneProblem<T, K>();
+    problem.scale = T{} + 1;
+}
+
+template <class T, int K>
+void fill_lane(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
+    fill_coupling(region, lane, problem);
+    set_lane(problem.scale, lane, region.scale);
+    for (std::size_t i = 0; i < region.contact.size(); ++i) {
+        const LumpedContact& contact = region.contact[i];
+        if (contact.node_count == 0) continue;  // no impulse of it could move anything
+        set_lane(problem.normal[i], lane, contact.normal);
+        set_lane(problem.free_velocity[i], lane, region.free_velocity[i]);
+        set_lane(problem.impulse[i], lane, region.impulse[i]);
+        set_lane(problem.diagonal[i], lane, contact.diagonal);
+        set_lane(problem.inverse_diagonal[i], lane, contact.inverse_diagonal);
+        set_lane(problem.friction[i], lane, contact.friction.stick);
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,108 @@
+// Accelerated projected gradients (Nesterov; Mazhar et al. 2015; methods.md 2.6): all contacts step at once, so that an iteration is one product
+// with W whatever the couplings are, and nothing depends on the order of the contacts.
+#pragma once
+
+#include "systems/solver/methods/power_iteration.h"
+
+namespace skerry {
+
+/// The projection is that of the operator's friction law: with `cone` the fixed point is the exact Coulomb solution for any step length
+/// (measured against De Saxce's shifted velocity and the projection onto the cone, which it beats; docs/solvers.md), but without a
+/// theorem of convergence; with `cone_convex` the method is the convex one of the literature and converges. An iteration is one product with W,
+/// be its step taken or not. Leaves the last impulse when it converged or the count is fixed, else the best one.
+template <ContactOperator Op>
+class AcceleratedGradients {
+public:
+    AcceleratedGradients(Op& op, const SolveLimits& limits) : op_(op), limits_(limits), best_(op) {}
+
+    SolveResult run() {
+        if (!limits_.fixed_iterations) {
+            const Real error = op_.error();
+            if (error <= limits_.tolerance || !std::isfinite(error)) return {0, error, error <= limits_.tolerance};
+            best_.offer(error);
+        }
+        start();
+        Index check = 1;
+        for (Index iteration = 1; iteration <= limits_.max_iterations; ++iteration) {
+            const bool taken = try_step();
+            const bool last = iteration == limits_.max_iterations;
+            if (!limits_.fixed_iterations && (last || (taken && iteration >= check))) {
+                const Real error = op_.error();
+                if (error <= limits_.tolerance || !std::isfinite(error)) return {iteration, error, error <= limits_.tolerance};
+                best_.offer(error);
+                check = next_check(iteration);
+            }
+            if (taken) extrapolate();
+        }
+        if (!limits_.fixed_iterations) return {limits_.max_iterations, best_.restore(), false};
+        const Real error = op_.error();
+        return {limits_.max_iterations, error, error <= limits_.tolerance};
+    }
+
+private:
+    void start() {
+        constexpr Index power_steps = 10;  // the backtracking makes up for what they lack
+        steepness_ = largest_eigenvalue(op_, power_steps, [](Index, const Vec4& v) { return v; });
+        std::ranges::copy(op_.impulse(), start_.begin());
+        std::ranges::copy(start_, previous_.begin());
+        op_.residual(pull_);
+        std::ranges::copy(pull_, pull_previous_.begin());
+    }
+
+    /// From the extrapolated impulse to the operator's. False when the step was longer than the curvature along it allows.
+    bool try_step() {
+        const std::span<Vec4> impulse = op_.impulse();
+        for (Index i = 0; i < op_.size(); ++i) {
+            const Real mobility = op_.mobility(i);
+            impulse[i] = mobility > 0 ? op_.project(i, start_[i] + pull_[i] / (steepness_ * mobility)) : Vec4(Vec4::Zero());
+        }
+        op_.refresh();
+        op_.residual(pull_next_);
+        Real curvature = 0, size = 0;
+        against_ = 0;
+        for (Index i = 0; i < op_.size(); ++i) {
+            const Vec4 change = impulse[i] - start_[i];
+            curvature += change.dot(pull_[i] - pull_next_[i]);
+            size += op_.mobility(i) * change.squaredNorm();
+            against_ -= op_.mobility(i) * change.dot(impulse[i] - previous_[i]);
+        }
+        if (!(curvature > steepness_ * size)) return true;
+        steepness_ = std::max(1.05 * curvature / size, 1.2 * steepness_);
+        return false;
+    }
+
+    /// Residuals are affine in the impulses: they need no product of their own. A step that turns back ends the momentum.
+    void extrapolate() {
+        const Real next_momentum = (1 + std::sqrt(1 + 4 * momentum_ * momentum_)) / 2;
+        Real beyond = (momentum_ - 1) / next_momentum;
+        momentum_ = next_momentum;
+        if (against_ > 0) {
+            momentum_ = 1;
+            beyond = 0;
+        }
+        const std::span<Vec4> impulse = op_.impulse();
+        for (std::size_t i = 0; i < impulse.size(); ++i) {
+            start_[i] = impulse[i] + beyond * (impulse[i] - previous_[i]);
+            pull_[i] = pull_next_[i] + beyond * (pull_next_[i] - pull_previous_[i]);
+            previous_[i] = impulse[i];
+        }
+        std::swap(pull_previous_, pull_next_);
+        steepness_ *= 0.97;  // the bound along the way is often below the one of the whole space
+    }
+
+    Op& op_;
+    const SolveLimits& limits_;
+    BestIterate<Op> best_;
+    Real steepness_ = 1;  // L: largest eigenvalue of D^-1 W that has shown
+    Real momentum_ = 1, against_ = 0;
+    std::span<Vec4> previous_ = op_.workspace(1), start_ = op_.workspace(3);
+    // -u of the impulse extrapolated to, of the last one and of the present one
+    std::span<Vec4> pull_ = op_.workspace(4), pull_previous_ = op_.workspace(2), pull_next_ = op_.workspace(5);
+};
+
+template <ContactOperator Op>
+SolveResult solve_apgd(Op& op, const SolveLimits& limits) {
+    return AcceleratedGradients<Op>(op, limits).run();
+}
+
+}  // namespace skerry

@@ -1,0 +1,166 @@
+// Modified proportioning with reduced gradient projections (Dostal and Schoeberl 2005; methods.md 2.6): conjugate gradients with the active set
+// done right, for contacts without friction. In the norm of the diagonal: bounds keep their form when rows are scaled.
+#pragma once
+
+#include <limits>
+
+#include "systems/solver/methods/power_iteration.h"
+
+namespace skerry {
+
+/// Minimises x . W x / 2 + q . x over normal impulses x >= 0. Workspace 1 keeps the gradient in place 0, 2 the direction (along the
+/// normals), 3 its product.
+template <ContactOperator Op>
+class ProportionedGradients {
+public:
+    explicit ProportionedGradients(Op& op) : op_(op) {}
+
+    void start() {
+        constexpr Index power_steps = 20;
+        constexpr Real margin = 1.1;  // they come from below
+        const auto normal_part = [this](Index i, const Vec4& v) { return Vec4(op_.normal(i).dot(v) * op_.normal(i)); };
+        for (Index i = 0; i < op_.size(); ++i) {
+            const Real pressed = op_.normal(i).dot(op_.impulse()[i]);
+            op_.impulse()[i] = pressed > 0 && diagonal(i) > 0 ? Vec4(pressed * op_.normal(i)) : Vec4(Vec4::Zero());
+        }
+        // in units of the mobility; those of the diagonal differ by at most the smallest ratio of the two
+        Real smallest_ratio = 1;
+        for (Index i = 0; i < op_.size(); ++i)
+            if (diagonal(i) > 0) smallest_ratio = std::min(smallest_ratio, diagonal(i) / op_.mobility(i));
+        expansion_ = 1.8 * smallest_ratio / (margin * largest_eigenvalue(op_, power_steps, normal_part));
+        refresh();
+        point_along_free();
+    }
+
+    /// One step; false when there is no direction left.
+    bool advance() {
+        Real chopped = 0, reduced = 0;
+        for (Index i = 0; i < op_.size(); ++i) {
+            const Real d = diagonal(i), g = gradient_[i][0], x = pressed(i);
+            if (!(d > 0)) continue;
+            if (x > 0) reduced += g * std::min(d * x / expansion_, g) / d;
+            if (!(x > 0) && g < 0) chopped += g * g / d;
+        }
+        if (chopped <= reduced) return minimise_in_face();
+        for (Index i = 0; i < op_.size(); ++i) {
+            const bool leaves = !(pressed(i) > 0) && gradient_[i][0] < 0 && diagonal(i) > 0;
+            direction_[i] = leaves ? Vec4((gradient_[i][0] / diagonal(i)) * op_.normal(i)) : Vec4(Vec4::Zero());
+        }
+        const auto [slope, curvature] = multiply();
+        if (!(curvature > 0)) return false;
+        move(slope / curvature);
+        point_along_free();
+        return true;
+    }
+
+    /// Impulse, velocities and gradient again from the impulse.
+    void refresh() {
+        op_.refresh();
+        op_.residual(gradient_);
+        for (Index i = 0; i < op_.size(); ++i) gradient_[i] = Vec4(-op_.normal(i).dot(gradient_[i]), 0, 0, 0);
+    }
+
+private:
+    struct Line {
+        Real slope, curvature;
+    };
+
+    Real pressed(Index i) { return op_.normal(i).dot(op_.impulse()[i]); }
+    Real diagonal(Index i) const { return op_.mobility(i) > 0 ? op_.inner(i, op_.normal(i), op_.normal(i)) : 0; }
+
+    Line multiply() {
+        op_.multiply(direction_, product_);
+        Line line{0, 0};
+        for (Index i = 0; i < op_.size(); ++i) {
+            const Real along = op_.normal(i).dot(direction_[i]);
+            product_[i] = Vec4(op_.normal(i).dot(product_[i]), 0, 0, 0);
+            line.slope += gradient_[i][0] * along;
+            line.curvature += product_[i][0] * along;
+        }
+        return line;
+    }
+
+    /// x -= length p. What comes to its bound is put there.
+    void move(Real length) {
+        for (Index i = 0; i < op_.size(); ++i) {
+            const Real x = pressed(i) - length * op_.normal(i).dot(direction_[i]);
+            op_.impulse()[i] = x > 0 ? Vec4(x * op_.normal(i)) : Vec4(Vec4::Zero());
+            gradient_[i][0] -= length * product_[i][0];
+        }
+    }
+
+    void point_along_free() {
+        for (Index i = 0; i < op_.size(); ++i)
+            direction_[i] = pressed(i) > 0 ? Vec4((gradient_[i][0] / diagonal(i)) * op_.normal(i)) : Vec4(Vec4::Zero());
+    }
+
+    /// A step of conjugate gradients; where it would leave the bounds it ends at the first of them, and a projected gradient step follows.
+    bool minimise_in_face() {
+        const auto [slope, curvature] = multiply();
+        if (!(curvature > 0)) return false;
+        Real longest = std::numeric_limits<Real>::infinity();
+        Index first = no_index;
+        for (Index i = 0; i < op_.size(); ++i) {
+            const Real along = op_.normal(i).dot(direction_[i]);
+            if (along > 0 && pressed(i) < longest * along) {
+                longest = pressed(i) / along;
+                first = i;
+            }
+        }
+        if (slope / curvature <= longest) {
+            move(slope / curvature);
+            Real turn = 0;
+            for (Index i = 0; i < op_.size(); ++i)
+                if (pressed(i) > 0) turn += gradient_[i][0] * product_[i][0] / diagonal(i);
+            turn /= curvature;
+            for (Index i = 0; i < op_.size(); ++i) {
+                const Real steepest = pressed(i) > 0 ? gradient_[i][0] / diagonal(i) : 0;
+                direction_[i] = steepest * op_.normal(i) - turn * direction_[i];
+            }
+            return true;
+        }
+        move(longest);
+        op_.impulse()[first].setZero();
+        for (Index i = 0; i < op_.size(); ++i) {
+            if (!(pressed(i) > 0)) continue;
+            const Real x = pressed(i) - expansion_ * gradient_[i][0] / diagonal(i);
+            op_.impulse()[i] = x > 0 ? Vec4(x * op_.normal(i)) : Vec4(Vec4::Zero());
+        }
+        refresh();
+        point_along_free();
+        return true;
+    }
+
+    Op& op_;
+    std::span<Vec4> gradient_ = op_.workspace(1), direction_ = op_.workspace(2), product_ = op_.workspace(3);
+    Real expansion_ = 1;  // length of the projected gradient step, in units of 1/D
+};
+
+/// From the operator's present impulse; an iteration is one step. Friction is left out: the error then says so, and the engine refuses the
+/// method where there is friction. Leaves the last impulse when it converged or the count is fixed, else the best one.
+template <ContactOperator Op>
+SolveResult solve_mprgp(Op& op, const SolveLimits& limits) {
+    constexpr Index refresh_interval = 64;  // the gradient is carried along and gathers rounding
+    BestIterate<Op> best(op);
+    ProportionedGradients<Op> gradients(op);
+    gradients.start();
+    Index check = 1;
+    for (Index iteration = 1; iteration <= limits.max_iterations; ++iteration) {
+        const bool going_on = gradients.advance();
+        const bool due = !going_on || iteration >= check || iteration == limits.max_iterations;
+        if ((due && !limits.fixed_iterations) || iteration % refresh_interval == 0) gradients.refresh();
+        if (!due || limits.fixed_iterations) continue;
+        const Real error = op.error();
+        if (error <= limits.tolerance) return {iteration, error, true};
+        if (!std::isfinite(error)) return {iteration, error, false};
+        best.offer(error);
+        if (!going_on) return {iteration, best.restore(), false};
+        check = next_check(iteration);
+    }
+    if (!limits.fixed_iterations) return {limits.max_iterations, best.restore(), false};
+    op.refresh();
+    const Real error = op.error();
+    return {limits.max_iterations, error, error <= limits.tolerance};
+}
+
+}  // namespace skerry

@@ -1,0 +1,176 @@
+// Contact problems of steps: what a world shows is what it solved.
+#include <skerry/world.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "problem_samples.h"
+#include "skerry/problem.h"
+#include "systems/contact/tangent_frame.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+/// Two small blocks, one on the other on a plane, dropped askew: regions of several contacts, sliding and sticking.
+struct Stack {
+    World world;
+    std::vector<StepProblem> problems;
+    std::vector<std::vector<Contact>> contacts;
+
+    explicit Stack(Settings settings = exact(), const MaterialSettings& material = {.young_modulus = 2e4, .density = 500})
+        : world(settings) {
+        const auto rubber = world.add_material(material);
+        world.add_collider(Plane{});
+        const Mesh block = mesh::box({0.2, 0.2, 0.1}, {2, 2, 1});
+        world.add_body(block, {.material = rubber, .position = {0, 0, 0.055}, .velocity = {0.3, 0, -0.5}, .contact_distance = 0.002});
+        world.add_body(block, {.material = rubber,
+                               .position = {0.03, 0.02, 0.165},
+                               .rotation = {0, 0, 0.3},
+                               .velocity = {-0.2, 0.1, -1},
+                               .contact_distance = 0.002});
+    }
+    static Settings exact() {
+        Settings settings;
+        settings.tolerance = 1e-11;
+        settings.max_iterations = 20000;
+        return settings;
+    }
+    void watch(std::uint64_t every = 1) {
+        world.watch_contact_problems(
+            [this](const StepProblem& problem) {
+                problems.push_back(problem);
+                contacts.emplace_back(world.contacts().begin(), world.contacts().end());
+            },
+            every);
+    }
+    bool any_coupled() const {
+        for (const StepProblem& step : problems)
+            if (step.problem.column.size() > step.problem.q.size()) return true;
+        return false;
+    }
+};
+
+Real largest(const std::vector<Vec3>& vectors) {
+    Real size = 0;
+    for (const Vec3& v : vectors) size = std::max(size, v.norm());
+    return size;
+}
+
+Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    REQUIRE(a.size() == b.size());
+    Real size = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) size = std::max(size, (a[i] - b[i]).norm());
+    return size;
+}
+
+}  // namespace
+
+TEST_CASE("the impulses of a step solve the problem that it shows", "[unit][problem]") {
+    Stack stack;
+    stack.watch();
+    stack.world.advance(0.1);
+    REQUIRE(stack.problems.size() > 20);
+    REQUIRE(stack.any_coupled());
+    for (std::size_t k = 0; k < stack.problems.size(); ++k) {
+        const StepProblem& step = stack.problems[k];
+        INFO("step " << step.step << ", " << step.problem.contacts() << " contacts");
+        // the solver was asked for 1e-11 in its own measure, which weighs contacts by their masses: three digits for that
+        CHECK(independent_error(step.problem, step.impulse) < 1e-8);
+        const std::vector<Vec3> u = velocities(step.problem, step.impulse);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            // what the world says of the same contact, in its own frame
+            const Contact& contact = stack.contacts[k][step.contact[i]];
+            const TangentFrame tangents = tangent_frame(contact.normal);
+            const Vec3 frame[] = {contact.normal, tangents.first, tangents.second};
+            for (int axis = 0; axis < 3; ++axis) CHECK(step.impulse[i][axis] == contact.impulse.dot(frame[axis]));
+            for (int axis = 1; axis < 3; ++axis) CHECK(u[i][axis] == Approx(contact.slip.dot(frame[axis])).margin(1e-12));  // m/s
+            CHECK(step.region[i] == contact.region);
+            CHECK(step.problem.mu[i] == 0.5);
+        }
+    }
+}
+
+TEST_CASE("a step's problem goes to a file and back, and its solution moves contacts as the step did", "[unit][problem]") {
+    const TemporaryFolder folder;
+    Stack stack;
+    stack.watch(7);
+    stack.world.advance(0.1);
+    REQUIRE(stack.any_coupled());
+    for (const StepProblem& step : stack.problems) {
+        CHECK(step.step % 7 == 0);
+        write_problem(step.problem, folder.path() / "step.hdf5", step.impulse);
+        const ContactProblem problem = read_problem(folder.path() / "step.hdf5");
+        CHECK(difference(problem, step.problem) == 0);
+        const ProblemSolution solution = solve_problem(problem, {.tolerance = 1e-11});
+        INFO("step " << step.step << ", " << problem.contacts() << " contacts, error " << solution.error);
+        REQUIRE(solution.converged);
+        // impulses need not be unique, velocities are; both solves leave 1e-8 of the largest velocity at most
+        const std::vector<Vec3> u = velocities(problem, solution.reaction);
+        CHECK(distance(u, velocities(problem, step.impulse)) < 1e-6 * (largest(problem.q) + largest(u)));
+    }
+}
+
+TEST_CASE("regions alone are solved as the whole step is", "[unit][problem]") {
+    Stack stack;
+    stack.watch(11);
+    stack.world.advance(0.1);
+    REQUIRE(stack.any_coupled());
+    for (const StepProblem& step : stack.problems) {
+        std::vector<Vec3> together(step.impulse.size(), Vec3::Zero());
+        const Index regions = *std::max_element(step.region.begin(), step.region.end()) + 1;
+        for (Index region = 0; region < regions; ++region) {
+            std::vector<Index> contacts;
+            for (std::size_t i = 0; i < step.region.size(); ++i)
+                if (step.region[i] == region) contacts.push_back(static_cast<Index>(i));
+            if (contacts.empty()) continue;
+            const ProblemSolution part = solve_problem(part_of(step.problem, contacts), {.tolerance = 1e-11});
+            CHECK(part.regions >= 1);
+            for (std::size_t i = 0; i < contacts.size(); ++i) together[contacts[i]] = part.reaction[i];
+        }
+        CHECK(independent_error(step.problem, together) < 1e-9);
+        // no block joins two regions
+        for (std::size_t i = 0; i < step.region.size(); ++i)
+            for (Index k = step.problem.row_offset[i]; k < step.problem.row_offset[i + 1]; ++k)
+                CHECK(step.region[step.problem.column[k]] == step.region[i]);
+    }
+}
+
+TEST_CASE("bounces are part of the problem that a step shows", "[unit][problem]") {
+    Stack stack(Stack::exact(), {.young_modulus = 2e4, .density = 500, .restitution = 0.7});
+    stack.watch();
+    stack.world.advance(0.05);
+    REQUIRE(stack.problems.size() > 10);
+    for (const StepProblem& step : stack.problems) CHECK(independent_error(step.problem, step.impulse) < 1e-8);
+}
+
+TEST_CASE("a problem says when its mu is not all of the friction", "[unit][problem]") {
+    const MaterialSettings two{.young_modulus = 2e4, .density = 500, .static_friction = 0.6, .dynamic_friction = 0.3};
+    for (const bool same : {true, false}) {
+        Stack stack = same ? Stack() : Stack(Stack::exact(), two);
+        stack.watch(10);
+        stack.world.advance(0.05);
+        REQUIRE_FALSE(stack.problems.empty());
+        const ContactProblem& problem = stack.problems.back().problem;
+        CHECK((problem.description.find("dynamic") != std::string::npos) == !same);
+        CHECK(problem.mu[0] == (same ? 0.5 : 0.3));
+    }
+}
+
+TEST_CASE("watching changes nothing, and not watching costs a skipped stage", "[unit][problem]") {
+    Stack watched, alone;
+    watched.watch();
+    CHECK(watched.world.advance(0.05).ok());
+    CHECK(alone.world.advance(0.05).ok());
+    CHECK(watched.world.state_hash() == alone.world.state_hash());
+    for (const StageReport& stage : alone.world.report().stages)
+        if (stage.name == "world/keep_velocities") CHECK(stage.runs == 0);
+    const std::size_t shown = watched.problems.size();
+    CHECK(shown > 0);
+    watched.world.watch_contact_problems({});
+    watched.world.advance(0.01);
+    CHECK(watched.problems.size() == shown);
+    CHECK_THROWS_AS(watched.world.watch_contact_problems([](const StepProblem&) {}, 0), SceneError);
+}

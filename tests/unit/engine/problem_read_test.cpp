@@ -1,0 +1,90 @@
+// Local problems from files: every storage, and every way to be wrong.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+
+#include "problem_samples.h"
+
+using namespace skerry;
+using namespace skerry::test;
+namespace fs = std::filesystem;
+
+TEST_CASE("a written problem reads back entry by entry", "[unit][problem]") {
+    FclibFile file = local_file();
+    file.texts["info/description"] = "two contacts";
+    const ContactProblem problem = read_back(file);
+    REQUIRE(problem.contacts() == 2);
+    CHECK(problem.mu == file.reals["vectors/mu"]);
+    CHECK(problem.q[1] == Vec3(-2, 0.3, -0.2));
+    CHECK(problem.description == "two contacts");
+    CHECK(problem.freedoms == 0);
+    const auto expected = full(file, "W");
+    for (int row = 0; row < 6; ++row)
+        for (int column = 0; column < 6; ++column)
+            CHECK(entry(problem, row, column) == expected[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
+}
+
+TEST_CASE("rows and triplets are read like columns", "[unit][problem]") {
+    const ContactProblem by_columns = read_back(local_file());
+    for (const Storage storage : {Storage::rows, Storage::triplets}) {
+        FclibFile file = local_file();
+        store(file, "W", storage);
+        CHECK(difference(read_back(file), by_columns) == 0);
+    }
+}
+
+TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][problem]") {
+    const auto spoil = [](const std::function<void(FclibFile&)>& change) {
+        FclibFile file = local_file();
+        change(file);
+        return refusal(file);
+    };
+    const auto says = [](const std::string& text, std::initializer_list<const char*> words) {
+        for (const char* word : words) {
+            INFO(text);
+            CHECK(text.find(word) != std::string::npos);
+        }
+    };
+    says(spoil([](auto& f) { f.integers["spacedim"] = {2}; }), {"fclib_local", "spacedim", "2", "expected 3"});
+    says(spoil([](auto& f) { f.integers["spacedim"] = {3, 3}; }), {"spacedim", "2 values", "one integer"});
+    for (const char* name : {"W", "vectors", "spacedim", "W/m", "W/n", "W/nz", "W/nzmax", "W/p", "W/i", "W/x", "vectors/q", "vectors/mu"})
+        says(spoil([&](auto& f) { f.leave_out(name); }), {fs::path(name).filename().c_str(), "nothing"});
+    says(spoil([](auto& f) { f.root = "something"; }), {"fclib_local", "nothing", "a group", "no contact problem"});
+    says(spoil([](auto& f) { f.empty_groups = {"V"}; }), {"V", "equality constraints"});
+    says(spoil([](auto& f) { f.integers["W/m"] = f.integers["W/n"] = {7}; }), {"W", "m", "7", "multiple of 3"});
+    says(spoil([](auto& f) { f.integers["W/m"] = {0}; }), {"W", "m", "0"});
+    says(spoil([](auto& f) { f.integers["W/m"] = {-3}; }), {"W", "m", "-3", "a size"});
+    says(spoil([](auto& f) { f.integers["W/n"] = {9}; }), {"n", "9", "6"});
+    says(spoil([](auto& f) { f.integers["W/nz"] = {-3}; }), {"nz", "-3"});
+    says(spoil([](auto& f) { f.integers["W/p"].pop_back(); }), {"W", "p", "6 values", "7"});
+    says(spoil([](auto& f) { f.integers["W/i"].pop_back(); }), {"i", "19 values", "20"});
+    says(spoil([](auto& f) { f.reals["W/x"].pop_back(); }), {"x", "19 values", "20"});
+    says(spoil([](auto& f) { std::swap(f.integers["W/p"][1], f.integers["W/p"][2]); }), {"p", "ascend"});
+    says(spoil([](auto& f) { f.integers["W/p"].back() = 21; }), {"p", "nzmax"});
+    says(spoil([](auto& f) { f.integers["W/i"][3] = 6; }), {"i", "index 6", "0 to 5"});
+    says(spoil([](auto& f) { f.integers["W/i"][3] = -1; }), {"i", "index -1"});
+    says(spoil([](auto& f) { f.integers["W/nz"] = {30}; }), {"W", "p", "7 values", "30"});
+    says(spoil([](auto& f) {
+             f.reals["W/p"] = std::vector<double>(7, 0.0);
+             f.integers.erase("W/p");
+         }),
+         {"p", "another type", "integers"});
+    says(spoil([](auto& f) { f.reals["vectors/q"].pop_back(); }), {"vectors", "q", "5 values", "6"});
+    says(spoil([](auto& f) { f.reals["vectors/mu"].push_back(1); }), {"mu", "3 values", "2"});
+    says(spoil([](auto& f) { f.reals["vectors/mu"][1] = -0.1; }), {"mu", "-0.1", ">= 0"});
+    says(spoil([](auto& f) { f.reals["vectors/q"][2] = std::numeric_limits<double>::quiet_NaN(); }), {"q", "nan", "entry 2", "finite"});
+    says(spoil([](auto& f) { f.reals["W/x"][4] = std::numeric_limits<double>::infinity(); }), {"x", "inf", "entry 4", "finite"});
+    says(spoil([](auto& f) { f.reals["vectors/mu"][0] = std::numeric_limits<double>::quiet_NaN(); }), {"mu", "nan"});
+}
+
+TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][problem]") {
+    const TemporaryFolder folder;
+    CHECK(refusal_of("/no/such/file.hdf5").find("no such file") != std::string::npos);
+    CHECK(refusal_of(folder.path()).find("directory") != std::string::npos);
+    CHECK(refusal_of(folder.write("text.txt", "not HDF5")).find("not HDF5") != std::string::npos);
+    const fs::path whole = local_file().write(folder.path());
+    fs::resize_file(whole, fs::file_size(whole) / 2);  // a download that broke off
+    CHECK(refusal_of(whole) != "read");
+}

@@ -1,0 +1,77 @@
+// Counts what operator new hands out: solving large regions that have been solved before asks for no memory.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "tests/unit/jobs/executors.h"
+#include "tests/unit/solver/contact_scene.h"
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+    ++allocations;
+    void* const memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return counted(size + (size == 0), alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return counted(size + (size == 0), static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
+
+using namespace skerry;
+
+TEST_CASE("large regions are solved without asking for memory, also when they are coloured again", "[unit][solver]") {
+    ContactScene scene;
+    for (unsigned seed = 0; seed < 2; ++seed) add_sheets(scene, 20, 0.5, seed);
+    const Index hub = scene.add_node(30, Vec3(0, 0, 1));
+    for (Index n = 0; n < 300; n += 3) scene.touch_node(hub, n, Vec3(0, 0, -1), 0.4);
+    for (std::size_t i = 0; i < scene.gap.size(); i += 4) scene.gap[i] = -1e-3;
+    SolverSettings settings;
+    settings.parallel_region_contacts = 300;
+    settings.warm_start = WarmStart::off;
+    for (const ExecutorChoice& choice : executor_choices({1, 2})) {
+        if (choice.backend == Backend::openmp) continue;  // libgomp allocates its tasks; what we allocate is the same code
+        CAPTURE(choice.text());
+        const auto executor = choice.make();
+        SolvedScene solved;
+        UnionFind union_find;
+        SolverMemory memory;
+        std::vector<Index> region(scene.stencil.size());
+        separate_regions(scene.stencil, scene.inverse_mass, ContactRegions::separate, union_find, solved.regions, region);
+        solved.impulse = scene.impulse;
+        solved.push_out.assign(scene.velocity.size(), Vec3::Zero());
+        solved.velocity = scene.velocity;
+        long asked = 0;
+        for (int step = 0; step < 20; ++step) {
+            scene.stencil[5].weight[3] = step % 4 < 2 ? -0.25 : 0;  // every second step other nodes
+            std::copy(scene.velocity.begin(), scene.velocity.end(), solved.velocity.begin());
+            const long before = allocations;
+            solve_regions(*executor, scene.inputs(), settings, scene.h, memory, solved.regions,
+                          {solved.impulse, solved.velocity, solved.push_out});
+            if (step >= 10) asked += allocations - before;
+        }
+        REQUIRE(solved.regions.iterations[0] > 0);
+        CHECK(asked == 0);
+    }
+}

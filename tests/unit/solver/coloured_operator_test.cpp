@@ -1,0 +1,143 @@
+// The coloured operator against its serial twin, a LumpedOperator over the contacts in the same order.
+#include "systems/solver/coloured/coloured_operator.h"
+
+#include <catch2/catch.hpp>
+
+#include "systems/solver/coloured/load_coloured.h"
+#include "systems/solver/methods/run_method.h"
+#include "tests/unit/jobs/executors.h"
+#include "tests/unit/solver/contact_scene.h"
+
+using namespace skerry;
+
+namespace {
+
+/// A region of sheets, with a hub that has contacts with many of their nodes, a pinned node, repeated nodes, and contacts that move nothing.
+ContactScene rough_scene(int size) {
+    ContactScene scene;
+    add_sheets(scene, size, 0.5, 7);
+    const Index nodes = static_cast<Index>(scene.velocity.size());
+    const Index hub = scene.add_node(50, Vec3(0, 0, 3)), pinned = scene.add_node(0, Vec3(0.1, 0, 0));
+    for (Index n = 0; n < nodes; n += 9) scene.touch_node(hub, n, Vec3(0.1, 0.2, -1), 0.4);
+    for (Index n = 0; n < nodes; n += 11) scene.touch_node(n, pinned, Vec3(0, 0.1, 1), 0.3);
+    for (Index n = 0; n < nodes; n += 13) scene.touch({{n, n, pinned, pinned}, {0.5, 0.5, -0.5, -0.5}}, Vec3(0, 0, 1), 0.3);
+    for (Index n = 0; n < nodes; n += 17) scene.touch({{pinned, n, pinned, pinned}, {1 - 1e-9, 1e-9, 0, 0}}, Vec3(0, 0, 1), 0.3);
+    return scene;
+}
+
+/// One region, loaded in its coloured order.
+struct LoadedScene {
+    explicit LoadedScene(const ContactScene& scene) : velocity_next(scene.velocity) {
+        for (std::size_t k = 0; k < scene.stencil.size(); ++k) row.push_back(static_cast<Index>(k));
+        std::vector<Index> place(scene.velocity.size());
+        Team alone;
+        order_region(scene.inputs(), row, alone, place, region);
+        contact.resize(row.size());
+        impulse.resize(row.size());
+        for (auto& slot : workspace) slot.assign(row.size(), Vec4::Zero());
+        velocity.resize(region.node.size());
+        scratch.assign(region.node.size(), Vec4::Zero());
+        const RegionInputs inputs = scene.inputs();
+        const SolverSettings settings;
+        scale = load_coloured({inputs, velocity_next, settings, scene.h}, row, alone, region, contact, impulse, velocity).scale;
+    }
+    LumpedOperator::Memory memory() {
+        LumpedOperator::Memory all{.contact = contact,
+                                   .impulse = impulse,
+                                   .velocity = velocity,
+                                   .node = region.node.span(),
+                                   .free_velocity = velocity_next,
+                                   .scratch = scratch,
+                                   .workspace = {}};
+        for (std::size_t slot = 0; slot < workspace.size(); ++slot) all.workspace[slot] = workspace[slot];
+        return all;
+    }
+    LumpedOperator serial(Friction friction) { return {memory(), friction, scale}; }
+    ColouredOperator coloured(Team& team, Friction friction) {
+        return {memory(), region.order, team, region.partial.span(), friction, scale};
+    }
+
+    std::vector<Vec3> velocity_next;
+    std::vector<Index> row;
+    ColouredRegion region;
+    std::vector<LumpedContact> contact;
+    std::vector<Vec4> impulse, velocity, scratch;
+    std::array<std::vector<Vec4>, workspace_limit> workspace;
+    Real scale = 0;
+};
+
+/// What all algorithms do with an operator, once through; returns what is measured on the way.
+template <class Op>
+std::vector<Real> exercise(Op op) {
+    std::vector<Real> seen;
+    op.remember();
+    for (int k = 0; k < 8; ++k) {
+        const SweepChange change = op.accelerated_sweep(1);
+        seen.insert(seen.end(), {change.size, change.against});
+        if (k % 3 == 2) seen.push_back(op.error());
+        if (k == 5) op.refresh_all();
+        op.extrapolate(0.1 * k);
+    }
+    seen.push_back(op.sweep(1.2));
+    op.extrapolate(0.3);
+    seen.push_back(op.error());
+    op.residual(op.workspace(2));
+    op.multiply(op.workspace(2), op.workspace(3));
+    op.refresh();
+    return seen;
+}
+
+}  // namespace
+
+TEST_CASE("a coloured operator does what a lumped one does in the same order, to the last bit", "[determinism][solver]") {
+    const ContactScene scene = rough_scene(45);
+    for (const Friction friction : {Friction::cone, Friction::pyramid}) {
+        LoadedScene twin(scene);
+        REQUIRE(twin.region.order.colour_count >= 4);
+        REQUIRE(twin.region.order.hub_phase_count == 1);
+        REQUIRE(twin.region.order.tail_size > 0);
+        const std::vector<Real> expected = exercise(twin.serial(friction));
+        std::vector<Real> first;
+        for (const ExecutorChoice& choice : executor_choices({1, 2, 3, 4, 8})) {
+            CAPTURE(choice.text());
+            const auto executor = choice.make();
+            LoadedScene loaded(scene);
+            Team team;
+            std::vector<Real> seen;
+            team.gather(*executor, [&] { seen = exercise(loaded.coloured(team, friction)); });
+            REQUIRE((loaded.impulse == twin.impulse));
+            REQUIRE((loaded.velocity == twin.velocity));
+            for (const std::size_t slot : {1, 2, 3}) REQUIRE((loaded.workspace[slot] == twin.workspace[slot]));
+            // sums are taken in another order than the twin's, but always in the same
+            REQUIRE(seen.size() == expected.size());
+            for (std::size_t i = 0; i < seen.size(); ++i)
+                REQUIRE(std::abs(seen[i] - expected[i]) <= 1e-9 * std::abs(expected[i]) + 1e-9 * std::abs(expected[i % 2]));
+            if (first.empty()) first = seen;
+            REQUIRE(seen == first);
+        }
+    }
+}
+
+TEST_CASE("contacts are ordered again when one of them has another moving node, and not before", "[unit][solver]") {
+    ContactScene scene = rough_scene(20);
+    std::vector<Index> row, place(scene.velocity.size());
+    for (std::size_t k = 0; k < scene.stencil.size(); ++k) row.push_back(static_cast<Index>(k));
+    Team alone;
+    ColouredRegion region;
+    const auto order = [&] { return order_region(scene.inputs(), row, alone, place, region); };
+    CHECK(order());
+    scene.normal[3] = Vec3::UnitX();
+    scene.stencil[5].weight = {1, -0.5, -0.25, -0.25};
+    CHECK_FALSE(order());
+    scene.stencil[600].weight[3] = 0;  // one node less
+    CHECK(order());
+    CHECK_FALSE(order());
+    scene.inverse_mass[static_cast<std::size_t>(scene.stencil[700].node[0])] = 0;  // pinned
+    CHECK(order());
+    row.pop_back();
+    CHECK(order());
+    ColouredRegion fresh;
+    order_region(scene.inputs(), row, alone, place, fresh);
+    CHECK(std::equal(fresh.order.contact.begin(), fresh.order.contact.end(), region.order.contact.begin(), region.order.contact.end()));
+    CHECK(std::equal(fresh.local.begin(), fresh.local.end(), region.local.begin(), region.local.end()));
+}

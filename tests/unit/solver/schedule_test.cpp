@@ -1,0 +1,113 @@
+// What regions are remembered by, and what that changes: the order in which they are started, and nothing else.
+#include <catch2/catch.hpp>
+
+#include "systems/solver/schedule_regions.h"
+#include "tests/unit/solver/contact_scene.h"
+
+using namespace skerry;
+
+namespace {
+
+/// Regions with so many contacts each, one after the other.
+RegionTable regions_of(const std::vector<Index>& sizes) {
+    RegionTable regions;
+    regions.contacts.offset.push_back(0);
+    for (const Index size : sizes) regions.contacts.offset.push_back(regions.contacts.offset.back() + size);
+    for (Index i = 0; i < regions.contacts.offset.back(); ++i) regions.contacts.item.push_back(i);
+    regions.order.resize(sizes.size());
+    regions.iterations.resize(sizes.size());
+    return regions;
+}
+
+std::vector<ContactKey> keys(std::size_t count, std::uint64_t first = 0) {
+    std::vector<ContactKey> key;
+    for (std::size_t i = 0; i < count; ++i) key.push_back({first + i, 7});
+    return key;
+}
+
+std::vector<Index> order_of(const RegionTable& regions) {
+    return {regions.order.begin(), regions.order.end()};
+}
+
+}  // namespace
+
+TEST_CASE("a region is known by its first contact, with the sweeps it took and how long it has kept its contacts", "[unit][solver]") {
+    SolverMemory memory;
+    SolverMemory::Data& data = memory.data();
+    RegionTable regions = regions_of({3, 20, 1});
+    const std::vector<ContactKey> key = keys(24);
+    for (const Index sweeps : {10, 20}) {
+        recall_regions(key, data, regions);
+        CHECK(regions.id[1] == key[3]);
+        regions.iterations[0] = 1;
+        regions.iterations[1] = sweeps;
+        remember_regions(data, regions);
+    }
+    CHECK(data.history.sweeps[0] == 1);
+    CHECK(data.history.sweeps[1] == Approx(0.7 * 10 + 0.3 * 20));
+    CHECK(data.history.age[1] == 1);
+
+    RegionTable changed = regions_of({2, 1, 21});  // contact 3 now starts nothing; 2 is a region of its own; the rest starts at 3
+    recall_regions(key, data, changed);
+    CHECK(data.present.sweeps[0] == 1);
+    CHECK(data.present.age[0] == 0);                          // lost a contact
+    CHECK(data.present.sweeps[1] < 0);                        // never seen
+    CHECK(data.present.sweeps[2] == data.history.sweeps[1]);  // kept its first contact
+}
+
+TEST_CASE("a region that took many sweeps is started before a larger one that took few", "[unit][solver]") {
+    SolverMemory memory;
+    RegionTable regions = regions_of({50, 1, 100, 4, 5, 1});
+    const std::vector<ContactKey> key = keys(161);
+    recall_regions(key, memory.data(), regions);
+    schedule_regions({}, 2, memory.data(), regions);
+    CHECK(order_of(regions) == std::vector<Index>{2, 0, 4, 3, 1, 5});
+    for (const Index r : {0, 1, 2, 3, 4, 5}) regions.iterations[r] = r == 0 ? 100 : 1;
+    remember_regions(memory.data(), regions);
+    recall_regions(key, memory.data(), regions);
+    schedule_regions({}, 2, memory.data(), regions);
+    CHECK(order_of(regions) == std::vector<Index>{0, 2, 4, 3, 1, 5});
+    regions.independent = false;  // they see each other's results: what is remembered must not count
+    schedule_regions({}, 2, memory.data(), regions);
+    CHECK(order_of(regions) == std::vector<Index>{2, 0, 4, 3, 1, 5});
+}
+
+TEST_CASE("tasks hold every region once, and are small enough to share", "[unit][solver]") {
+    SolverMemory memory;
+    RegionTable regions = regions_of(std::vector<Index>(2000, 3));
+    recall_regions({}, memory.data(), regions);
+    for (const int workers : {1, 2, 8}) {
+        schedule_regions({}, workers, memory.data(), regions);
+        const Column<RegionTask>& task = memory.data().task;
+        REQUIRE(task.size() >= static_cast<std::size_t>(workers));
+        Index end = 0;
+        for (const RegionTask& t : task) {
+            CHECK(t.begin == end);
+            CHECK(t.end > t.begin);
+            end = t.end;
+        }
+        CHECK(end == 2000);
+    }
+    CHECK(regions.id.empty());
+}
+
+TEST_CASE("what is remembered changes no bit of the result", "[determinism][solver]") {
+    ContactScene scene;
+    for (int k = 0; k < 12; ++k) add_sheets(scene, 3 + k % 5, 0.5, static_cast<unsigned>(k));
+    const std::vector<ContactKey> key = keys(scene.stencil.size());
+    RegionInputs inputs = scene.inputs();
+    inputs.key = key;
+    SolverMemory memory;
+    const auto executor = make_executor(Backend::serial, 1);
+    const SolvedScene fresh = scene.solve();
+    for (int step = 0; step < 3; ++step) {
+        SolvedScene again = scene.solve();
+        again.impulse = scene.impulse;
+        again.velocity = scene.velocity;
+        again.push_out.assign(scene.velocity.size(), Vec3::Zero());
+        solve_regions(*executor, inputs, {}, scene.h, memory, again.regions, {again.impulse, again.velocity, again.push_out});
+        CHECK(again.impulse == fresh.impulse);
+        CHECK(again.velocity == fresh.velocity);
+        CHECK(memory.data().history.age[0] == step);
+    }
+}
