@@ -11,8 +11,8 @@ namespace skerry {
 
 enum class MaterialModel { linear, corotational, stable_neo_hookean };
 /// cone_convex is the associated law: every contact minimises a convex energy over the cone, and what slides also lifts off at mu times its
-/// speed. A solution exists and is found whatever mu is, but it is another model: velocities are off by 1e-3 at rest to 6e-2 in sliding
-/// impacts (relative). For comparison, and as the last resort where Coulomb's law has no solution.
+/// speed. A solution is found whatever mu is, but it is another model: its Coulomb error is 1e-5 to 6e-2 on most problems, 2e-1 at the
+/// worst (docs/solvers.md). For comparison, and as the last resort where Coulomb's law has no solution.
 enum class Friction { cone, pyramid, cone_convex };
 enum class ContactRegions { separate, global, paper_algorithm_1 };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr, nncg, apgd, mprgp };

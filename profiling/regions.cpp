@@ -15,7 +15,7 @@
 #include "systems/solver/coloured/load_coloured.h"
 #include "systems/solver/coloured/push_out_coloured.h"
 #include "systems/solver/methods/run_method.h"
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 using namespace skerry::profiling;

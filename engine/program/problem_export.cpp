@@ -19,19 +19,15 @@ std::string numbered(const char* what, int digits, std::int64_t number) {
     return text;
 }
 
-/// Every how many steps about `file_count` of them come out of a run.
-std::uint64_t default_every(const World& world, double seconds) {
+/// Every how many of the steps about `file_count` of them come out.
+std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
-    const double every = seconds / world.stable_step() / file_count;
-    // a run of one step, or one without end
-    if (!(every > 1)) return 1;
-    return static_cast<std::uint64_t>(std::min(every, 1e18));
+    return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));  // a run may be without end
 }
 
 }  // namespace
 
-ProblemExport::ProblemExport(const RunOptions& options, std::string scene, double seconds)
-    : options_(options), scene_(std::move(scene)), simulated_(seconds) {
+ProblemExport::ProblemExport(const RunOptions& options, std::string scene) : options_(options), scene_(std::move(scene)) {
     if (!options.problems.empty() && (scene_.empty() || scene_.find_first_of("/\\") != std::string::npos))
         Complaint{.file = options.scene.string(),
                   .object = {},
@@ -42,9 +38,9 @@ ProblemExport::ProblemExport(const RunOptions& options, std::string scene, doubl
             .raise();
 }
 
-void ProblemExport::watch(World& world) {
+void ProblemExport::watch(World& world, double steps_to_come) {
     const std::uint64_t every =
-        options_.problems_every ? static_cast<std::uint64_t>(*options_.problems_every) : default_every(world, simulated_);
+        options_.problems_every ? static_cast<std::uint64_t>(*options_.problems_every) : default_every(steps_to_come);
     world.watch_contact_problems([this](const StepProblem& step) { write_step(step); }, every);
 }
 

@@ -12,11 +12,12 @@ namespace skerry {
 
 class ProblemExport {
 public:
-    /// `seconds` of simulated time are to come. Throws SceneError when the scene's name is no file name.
-    ProblemExport(const RunOptions& options, std::string scene, double seconds);
+    /// Throws SceneError when the scene's name is no file name.
+    ProblemExport(const RunOptions& options, std::string scene);
 
-    /// Writes from now on, while the world advances; this must outlive that.
-    void watch(World& world);
+    /// Writes from now on, while the world advances; this must outlive that. Unless the options say so, every how many steps follows from
+    /// how many are to come.
+    void watch(World& world, double steps_to_come);
     long files() const { return files_; }
     long steps() const { return steps_; }
     double seconds() const { return seconds_; }  // spent on it
@@ -27,7 +28,6 @@ private:
 
     const RunOptions& options_;
     std::string scene_;
-    double simulated_;  // s
     long files_ = 0, steps_ = 0;
     double seconds_ = 0;
 };

@@ -85,6 +85,13 @@ Course course_of(const RunOptions& options, const Scene& scene) {
     return course;
 }
 
+/// About how many steps a run takes: samples are cut into equal steps.
+double steps_of(const Course& course, const World& world) {
+    const double sample = course.frame_step / course.samples;
+    const Real longest = world.settings().step_size.value_or(world.stable_step() * world.settings().step_safety);
+    return course.seconds / sample * std::ceil(sample / longest);
+}
+
 /// Runs frame after frame. What went wrong is in result.status.
 void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool show_progress, RunResult& result) {
     const SignalGuard guard;
@@ -153,8 +160,8 @@ int run(const RunOptions& options) {
     if (!options.trace.empty()) world.set_tracing(true);
 
     const Course course = course_of(options, scene);
-    ProblemExport problems(options, scene.name, course.seconds);
-    if (!options.problems.empty()) problems.watch(world);
+    ProblemExport problems(options, scene.name);
+    if (!options.problems.empty()) problems.watch(world, steps_of(course, world));
 
     run_frames(scene, course, output, !options.quiet, result);
 

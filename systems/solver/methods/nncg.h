@@ -16,7 +16,7 @@ SolveResult solve_nncg(Op& op, const SolveLimits& limits) {
     Index check = 1;
     for (Index iteration = 1; iteration <= limits.max_iterations; ++iteration) {
         std::ranges::copy(impulse, start.begin());
-        const Real change = op.sweep(limits.relaxation);  // |g|^2, g = start - swept, in the norm of the diagonal blocks
+        const Real change = op.sweep(limits.relaxation);                     // |g|^2, g = start - swept, in the norm of the diagonal blocks
         const bool suggested = op.suggests_check(change, limits.tolerance);  // once a sweep
         const bool due = suggested || iteration >= check || iteration == limits.max_iterations;
         if (due && !limits.fixed_iterations) {
@@ -28,13 +28,14 @@ SolveResult solve_nncg(Op& op, const SolveLimits& limits) {
         }
         if (iteration == limits.max_iterations) break;
 
-        // a gradient that grows ends the conjugacy
-        const Real ratio = change / change_before;
-        const Real beta = change_before > 0 && ratio <= 1 ? ratio : 0;
+        // a gradient that grows ends the conjugacy: the sweep stands alone, and the next starts from no direction. Keeping the gradient as
+        // the first direction instead takes up to seven times the sweeps on stacks
+        const bool turned = change_before > 0 && change > change_before;
+        const Real beta = change_before > 0 && !turned ? change / change_before : 0;
         change_before = change;
         for (std::size_t i = 0; i < impulse.size(); ++i) {
-            direction[i] = beta * direction[i] + (impulse[i] - start[i]);
-            impulse[i] = start[i] + direction[i];
+            direction[i] = turned ? Vec4(Vec4::Zero()) : Vec4(beta * direction[i] + (impulse[i] - start[i]));
+            if (!turned) impulse[i] = start[i] + direction[i];
         }
         if (beta > 0) op.refresh();
     }

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "tests/support/contact_scene.h"
 #include "tests/unit/jobs/executors.h"
-#include "tests/unit/solver/contact_scene.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 
 #include "systems/solver/coloured/load_coloured.h"
 #include "systems/solver/methods/run_method.h"
+#include "tests/support/contact_scene.h"
 #include "tests/unit/jobs/executors.h"
-#include "tests/unit/solver/contact_scene.h"
 
 using namespace skerry;
 

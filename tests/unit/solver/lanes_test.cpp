@@ -3,7 +3,7 @@
 
 #include "systems/solver/lanes/solve_lane_batch.h"
 #include "systems/solver/lanes/solve_lanes.h"
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 

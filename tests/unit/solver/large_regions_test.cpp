@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "systems/solver/coloured/solve_large_regions.h"
+#include "tests/support/contact_scene.h"
 #include "tests/unit/jobs/executors.h"
-#include "tests/unit/solver/contact_scene.h"
 
 using namespace skerry;
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "systems/solver/operators/lumped_operator.h"
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 

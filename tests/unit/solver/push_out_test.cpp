@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "systems/solver/push_out_region.h"
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 

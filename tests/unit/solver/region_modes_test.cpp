@@ -1,7 +1,7 @@
 // Separate or global, one worker or eight: what may differ and what must not.
 #include <catch2/catch.hpp>
 
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "systems/solver/schedule_regions.h"
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 

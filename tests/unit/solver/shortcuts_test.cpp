@@ -1,7 +1,7 @@
 // What the solver leaves out where it can: each shortcut is taken, counted, and changes nothing beyond the tolerance.
 #include <catch2/catch.hpp>
 
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 

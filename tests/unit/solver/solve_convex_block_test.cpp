@@ -75,7 +75,7 @@ TEST_CASE("the convex local solution holds for ill-conditioned blocks and any fr
 TEST_CASE("an isotropic block gives the projection onto the cone", "[unit][solver]") {
     // the block is raised by 1e-14 of its trace
     const ConvexBlock block = prepare_convex_block(2 * Mat3::Identity(), 0.5);
-    CHECK(solve_convex_block(block, Vec3(3, 3.6, 4.8), 0.5) == Vec3::Zero());            // u_n = mu |u_t|: on the dual cone
+    CHECK(solve_convex_block(block, Vec3(3, 3.6, 4.8), 0.5) == Vec3::Zero());  // u_n = mu |u_t|: on the dual cone
     CHECK((solve_convex_block(block, Vec3(-4, 0.6, 0.8), 0.5) - Vec3(2, -0.3, -0.4)).norm() < 1e-13);
     CHECK((solve_convex_block(block, Vec3(-4, 6, 8), 0.5) - Vec3(3.6, -1.08, -1.44)).norm() < 2e-13);  // (2 + 0.5 * 5) / 1.25
     CHECK((solve_convex_block(block, Vec3(0, 6, 8), 0.5) - Vec3(2, -0.6, -0.8)).norm() < 1e-13);       // slides, so it presses

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tests/unit/solver/contact_scene.h"
+#include "tests/support/contact_scene.h"
 
 using namespace skerry;
 
