@@ -83,6 +83,7 @@ public:
     Vec4 normal(Index i) const { return serial_.normal(i); }
     FrictionLimits limits(Index i) const { return serial_.limits(i); }
     Real mobility(Index i) const { return serial_.mobility(i); }
+    Friction law() const { return serial_.law(); }
     void assemble(Eigen::MatrixXd& matrix) const { serial_.assemble(matrix); }
 
 private:

@@ -34,7 +34,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
 /// the last stretch, the steps are tried from the present impulse; if they do not finish, sweeps go on, for three times as long as before.
 template <ContactOperator Op>
 requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
-    if (limits.fixed_iterations) return solve_ags(op, limits);
+    // the steps are those of the exact cone
+    if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     AcceleratedSweeps<Op> sweeps(op);
     constexpr Index trial_steps = 2;
     constexpr Index least_sweeps = 16;

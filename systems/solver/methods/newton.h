@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <limits>
 
-#include "systems/solver/operators/contact_operator.h"
+#include "systems/solver/methods/pgs.h"
 #include "systems/solver/operators/newton_memory.h"
 
 namespace skerry {
@@ -154,9 +154,11 @@ private:
     NewtonMemory& memory_;
 };
 
-/// Sweeps and steps in turn; twice as many sweeps each time the steps have not finished it.
+/// Sweeps and steps in turn; twice as many sweeps each time the steps have not finished it. The steps are those of the exact cone: under
+/// another law, and where the count is fixed, there are only sweeps.
 template <ContactOperator Op>
 SolveResult solve_newton(Op& op, const SolveLimits& limits) {
+    if (limits.fixed_iterations || op.law() != Friction::cone) return solve_pgs(op, limits);
     NewtonMemory memory;
     NewtonSteps<Op> steps(op, memory);
     BestIterate<Op> best(op);

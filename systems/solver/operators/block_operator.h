@@ -36,10 +36,10 @@ struct BlockMemory {
     using Columns = std::array<Vec4, 3>;
 
     std::vector<Contact> contact;
-    std::vector<Index> offset;    // contacts + 1
-    std::vector<Index> neighbor;  // place of the other contact
-    std::vector<Columns> block;   // W_ij, i != j
-    std::vector<Vec4> impulse;    // N s
+    std::vector<Index> offset;        // contacts + 1
+    std::vector<Index> neighbor;      // place of the other contact
+    std::vector<Columns> block;       // W_ij, i != j
+    std::vector<Vec4> impulse;        // N s
     std::vector<ConvexBlock> convex;  // by contact, with Friction::cone_convex only
     std::array<std::vector<Vec4>, workspace_limit> workspace;
     NewtonMemory newton;
@@ -86,6 +86,7 @@ public:
         const BlockMemory::Columns& w = memory_.contact[begin_ + i].diagonal;
         return (w[0][0] + w[1][1] + w[2][2]) / 3;
     }
+    Friction law() const { return friction_; }
     NewtonMemory& newton_memory() { return memory_.newton; }
     Index couplings() const { return memory_.offset[end_] - memory_.offset[begin_]; }
     void assemble(Eigen::MatrixXd& matrix) const;

@@ -45,7 +45,8 @@ concept ContactOperator = requires(Op op, const Op constant, Index i, Real numbe
     { constant.normal(i) } -> std::convertible_to<Vec4>;                 // unit
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
     { constant.mobility(i) } -> std::convertible_to<Real>;  // s/kg, a number for W_ii: a third of its trace; 0: moves nothing
-    constant.assemble(matrix);                              // W, dense, 3 size() rows
+    { constant.law() } -> std::same_as<Friction>;
+    constant.assemble(matrix);  // W, dense, 3 size() rows
 };
 
 struct SolveLimits {

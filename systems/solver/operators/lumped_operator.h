@@ -140,6 +140,7 @@ public:
     Vec4 normal(Index i) const { return memory_.contact[i].normal; }
     FrictionLimits limits(Index i) const { return memory_.contact[i].friction; }
     Real mobility(Index i) const { return memory_.contact[i].node_count > 0 ? memory_.contact[i].diagonal : 0; }
+    Friction law() const { return friction_; }
     void assemble(Eigen::MatrixXd& matrix) const;
 
 private:

@@ -41,7 +41,7 @@ MISTAKES = {
     "two meshes": lambda s: set_in(s["bodies"][1]["mesh"], "file", "x.msh"),
     "no material": lambda s: s["bodies"][1].pop("material"),
     "two numbers": lambda s: set_in(s["bodies"][1], "position", [1, 2]),
-    "unknown method": lambda s: set_in(s["settings"], "method", "newton"),
+    "unknown method": lambda s: set_in(s["settings"], "method", "steepest"),
     "position and positions": lambda s: set_in(s["bodies"][0], "position", [0, 0, 0]),
 }
 for name, change in MISTAKES.items():
