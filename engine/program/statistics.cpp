@@ -57,6 +57,7 @@ Json statistics_of(const RunResult& result) {
           {"tolerance", result.settings.tolerance},
           {"iterations_mean", r.mean_iterations},
           {"worst_error", r.worst_error},
+          {"worst_error_contacts", r.worst_region},
           {"unconverged", r.unconverged},
           {"solved", r.solved},
           {"closed_form", r.closed_form},

@@ -28,7 +28,8 @@ std::string solver_lines(const RunResult& result) {
     text += line("regions", "mean " + short_number(r.mean_regions, 4) + ", most " + grouped(static_cast<std::uint64_t>(r.max_regions)) +
                                 ", the largest of " + grouped(static_cast<std::uint64_t>(r.largest_region)) + " contacts");
     text += line("solver", method + ": " + short_number(r.mean_iterations) + " sweeps a region, worst error " +
-                               short_number(r.worst_error) + ", " + grouped(r.unconverged) + " regions not converged");
+                               short_number(r.worst_error) + " (a region of " + grouped(static_cast<std::uint64_t>(r.worst_region)) +
+                               " contacts), " + grouped(r.unconverged) + " regions not converged");
     if (r.solved > 0)
         text += line("", grouped(r.solved) + " regions solved, " +
                              percent(static_cast<double>(r.closed_form) / static_cast<double>(r.solved)) + " in closed form, " +

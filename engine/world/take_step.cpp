@@ -75,7 +75,9 @@ void count(WorldState& world) {
         counters.iterations += static_cast<std::uint64_t>(regions.iterations[r]);
         count_shortcuts(regions, r, counters);
         counters.unconverged += regions.status[r] == RegionStatus::iteration_limit;
-        counters.worst_error = std::max(counters.worst_error, regions.error[r]);
+        if (!(regions.error[r] > counters.worst_error)) continue;
+        counters.worst_error = regions.error[r];
+        counters.worst_region = size;
     }
     counters.dissipated += world.step.measures.dissipated + world.step.damped;
     counters.max_penetration = std::max(counters.max_penetration, world.step.measures.max_penetration);
@@ -113,7 +115,9 @@ void add_to_report(const WorldState& world, StepReport& report) {
     for (std::size_t r = 0; r < regions.size(); ++r) {
         report.largest_region = std::max(report.largest_region, regions.contacts.offset[r + 1] - regions.contacts.offset[r]);
         report.unconverged += regions.status[r] == RegionStatus::iteration_limit;
-        report.worst_error = std::max(report.worst_error, regions.error[r]);
+        if (!(regions.error[r] > report.worst_error)) continue;
+        report.worst_error = regions.error[r];
+        report.worst_region = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
     }
     report.max_penetration = std::max(report.max_penetration, world.step.measures.max_penetration);
     report.max_gap_violation = std::max(report.max_gap_violation, world.step.measures.max_gap_violation);

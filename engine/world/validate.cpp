@@ -96,7 +96,8 @@ void validate(const MaterialSettings& material, const Settings& settings) {
     require(dynamic >= 0, object, "dynamic_friction", dynamic, "a number >= 0");
     require(still >= dynamic, object, "static_friction", still, "a number not below dynamic_friction");
     // what a collider adds counts by the geometric mean: none where the body has none
-    require(still == 0 || !needs_frictionless(settings.method), object, "friction", still, "0: the method of the settings knows no friction");
+    require(still == 0 || !needs_frictionless(settings.method), object, "friction", still,
+            "0: the method of the settings knows no friction");
     require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution, "a number from 0 to 1");
     require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
 }

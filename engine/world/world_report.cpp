@@ -112,6 +112,7 @@ WorldReport World::report() const {
     report.max_regions = counters.max_regions;
     report.largest_region = counters.largest_region;
     report.worst_error = counters.worst_error;
+    report.worst_region = counters.worst_region;
     report.unconverged = counters.unconverged;
     report.certified = counters.certified;
     report.closed_form = counters.closed_form;

@@ -57,7 +57,7 @@ struct RunCounters {
     std::uint64_t steps = 0, inline_steps = 0, shortened = 0;
     std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
     std::uint64_t separating = 0, frictionless = 0, in_lanes = 0, frozen = 0, contact_steps = 0, swept = 0;
-    Index max_contacts = 0, max_regions = 0, largest_region = 0;
+    Index max_contacts = 0, max_regions = 0, largest_region = 0, worst_region = 0;
     Real worst_error = 0, dissipated = 0, max_penetration = 0, max_gap_violation = 0;
 };
 

@@ -12,7 +12,7 @@
 namespace skerry {
 
 struct SolverSettings {
-    SolverMethod method = SolverMethod::ags;
+    SolverMethod method = SolverMethod::automatic;
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;                  // e_nat, methods.md 2.1

@@ -65,6 +65,7 @@ public:
     Index largest_region = 0;    // contacts
     Index unconverged = 0;       // regions, summed over the steps
     Real worst_error = 0;        // largest relative error of a region over the steps
+    Index worst_region = 0;      // contacts of the region that had it
     Real max_penetration = 0;    // m, overlap of surfaces, largest over the steps
     Real max_gap_violation = 0;  // m, pressed into the contact shell, largest over the steps
     std::string body_name;       // when not ok
@@ -81,6 +82,7 @@ struct WorldReport {
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
+    Index worst_region = 0;           // contacts of the region that had the worst error
     std::uint64_t unconverged = 0;    // regions
     std::uint64_t certified = 0;      // regions whose warm start needed no sweep
     std::uint64_t closed_form = 0;    // regions of one contact

@@ -97,7 +97,7 @@ struct Settings {
     Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
     int threads = 0;                       // 0: those of the caller's task arena
     ContactRegions contact_regions = ContactRegions::separate;
-    SolverMethod method = SolverMethod::ags;
+    SolverMethod method = SolverMethod::automatic;
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;          // relative error of a region, docs/architecture.md
