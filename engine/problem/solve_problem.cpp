@@ -104,14 +104,16 @@ double seconds_of(const ContactProblem& problem, const ProblemSettings& settings
 
 void check(const ContactProblem& problem, const ProblemSettings& settings) {
     const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
-        Complaint{.file = {}, .object = "problem " + problem.name, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+        Complaint{.file = {}, .object = "problem " + problem.name, .field = field, .found = found, .expected = expected, .hint = {}}
+            .raise();
     };
     if (!(settings.tolerance >= 0)) refuse("tolerance", std::to_string(settings.tolerance), ">= 0");
     if (settings.max_iterations < 1) refuse("max_iterations", std::to_string(settings.max_iterations), ">= 1");
     if (!(settings.relaxation > 0 && settings.relaxation < 2)) refuse("relaxation", std::to_string(settings.relaxation), "> 0 and < 2");
     const auto rough = std::ranges::find_if(problem.mu, [](Real mu) { return mu != 0; });
     if (needs_frictionless(settings.method) && rough != problem.mu.end())
-        refuse("method", std::string(name_of(settings.method)) + " and mu = " + std::to_string(*rough), "mu = 0, or a method with friction");
+        refuse("method", std::string(name_of(settings.method)) + " and mu = " + std::to_string(*rough),
+               "mu = 0, or a method with friction");
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ using namespace skerry;
 // A column that is missing from the list would be lost by a snapshot. All columns have the same size in memory, so the table's size
 // says how many there are; a flag or two beside them (RegionTable) is less than one column more.
 TEMPLATE_TEST_CASE("the list of a table names every column of it once", "[unit]", NodeTable, ElementBlockTable, BodyTable, BvhTable,
-                   MaterialTable, NodeBlockTable, ColliderTable, AttachmentTable, ContactTable, WarmStartTable, RegionTable, RegionHistoryTable, TriangleTable,
-                   EdgeTable, VertexTable, SurfaceTables) {
+                   MaterialTable, NodeBlockTable, ColliderTable, AttachmentTable, ContactTable, WarmStartTable, RegionTable,
+                   RegionHistoryTable, TriangleTable, EdgeTable, VertexTable, SurfaceTables) {
     TestType table;
     std::set<const void*> columns;
     std::set<std::string> names;
