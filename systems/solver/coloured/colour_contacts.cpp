@@ -196,7 +196,8 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         for_each_node(nodes, [&](Index other) { node = std::min(node, other); });
         return node;
     };
-    memory.node_offset.assign(static_cast<std::size_t>(node_count) + 2, 0);
+    // contacts without a node are sorted as if they had the first, which need not be there
+    memory.node_offset.assign(static_cast<std::size_t>(std::max(node_count, Index(1))) + 2, 0);
     for (const ContactNodes& nodes : contact) ++memory.node_offset[lowest(nodes) + 2];
     for (std::size_t n = 2; n < memory.node_offset.size(); ++n) memory.node_offset[n] += memory.node_offset[n - 1];
     memory.by_node.resize(contact.size());
