@@ -109,20 +109,7 @@ bool start_region(const RegionStage& stage, LoadedRegion& region, RegionOutcome&
     if (settings.warm_start == WarmStart::off) return false;
     take_warm_start(stage, region);
     LumpedOperator op(region.memory, settings.friction, region.scale);
-    const Real error = op.error();
-    if (error <= settings.tolerance && settings.certify_warm_start) {
-        outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
-        return true;
-    }
-    constexpr Real suspicious = 0.5;  // a start from zero has an error of about 1
-    if (error <= suspicious) return false;
-    // workspace 0 keeps the warm start while zero is looked at
-    BestIterate<LumpedOperator> better(op);
-    better.offer(error);
-    std::fill(region.memory.impulse.begin(), region.memory.impulse.end(), Vec4::Zero());
-    op.refresh();
-    if (error < op.error()) better.restore();
-    return false;
+    return start_from_warm_impulse(op, settings, outcome);
 }
 
 RegionOutcome sweep_region(const RegionStage& stage, LoadedRegion& region) {

@@ -1,6 +1,7 @@
 // One region of the step: load, start, sweep, finish. Small regions are swept side by side in between (lanes/).
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "components/region_table.h"
@@ -60,5 +61,24 @@ void finish_region(const RegionStage& stage, const LoadedRegion& region, RegionO
 
 /// Closed form of a region of one contact: one contact step from zero.
 RegionOutcome solve_single(const RegionStage& stage, Index row);
+
+/// A warm start within the tolerance needs no sweep: true, with the outcome. One that is so far off that zero is nearer gives way to zero.
+template <ContactOperator Op>
+bool start_from_warm_impulse(Op& op, const SolverSettings& settings, RegionOutcome& outcome) {
+    const Real error = op.error();
+    if (error <= settings.tolerance && settings.certify_warm_start) {
+        outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
+        return true;
+    }
+    constexpr Real suspicious = 0.5;  // a start from zero has an error of about 1
+    if (error <= suspicious) return false;
+    // workspace 0 keeps the warm start while zero is looked at
+    BestIterate<Op> better(op);
+    better.offer(error);
+    std::ranges::fill(op.impulse(), Vec4::Zero());
+    op.refresh();
+    if (error < op.error()) better.restore();
+    return false;
+}
 
 }  // namespace skerry

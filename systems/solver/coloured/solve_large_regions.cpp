@@ -69,19 +69,7 @@ private:
         if (settings.warm_start == WarmStart::off) return false;
         take_warm_start();
         ColouredOperator op = make_operator();
-        const Real error = op.error();
-        if (error <= settings.tolerance && settings.certify_warm_start) {
-            outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
-            return true;
-        }
-        constexpr Real suspicious = 0.5;  // a start from zero has an error of about 1
-        if (error <= suspicious) return false;
-        BestIterate<ColouredOperator> better(op);
-        better.offer(error);
-        std::fill(memory_.impulse.begin(), memory_.impulse.end(), Vec4::Zero());
-        op.refresh();
-        if (error < op.error()) better.restore();
-        return false;
+        return start_from_warm_impulse(op, settings, outcome);
     }
 
     RegionOutcome sweep() {
