@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <random>
-
-#include "systems/contact/tangent_frame.h"
 
 namespace skerry::profiling {
 namespace {
@@ -40,7 +37,7 @@ struct Sheet {
     Index node(Index i, Index j) const { return first + i * nodes + j; }
 };
 
-Sheet add_sheet(const SheetSettings& settings, Index number, Random& random, GeneratedContacts& out) {
+Sheet add_sheet(const SheetSettings& settings, Index number, Random& random, LumpedContacts& out) {
     const bool upper = number % 2 == 1;
     const Index fine = settings.coarse * (settings.nodes - 1) + 1;
     Sheet sheet{.first = static_cast<Index>(out.inverse_mass.size()),
@@ -65,33 +62,33 @@ Sheet add_sheet(const SheetSettings& settings, Index number, Random& random, Gen
 }
 
 /// The points inside `from` against the triangles of `to`, taken as a regular grid: it is the places of the points that are random.
-void add_contacts(const Sheet& from, const Sheet& to, const Vec3& up, const SheetSettings& settings, Random& random,
-                  GeneratedContacts& out) {
+void add_contacts(const Sheet& from, const Sheet& to, const Vec3& up, const SheetSettings& settings, Random& random, LumpedContacts& out) {
     for (Index i = 1; i + 1 < from.nodes; ++i)
         for (Index j = 1; j + 1 < from.nodes; ++j) {
             const std::size_t local = static_cast<std::size_t>(i * from.nodes + j);
             const Real x = from.x[local] / to.spacing, y = from.y[local] / to.spacing;
             const Index a = std::clamp(static_cast<Index>(x), 0, to.nodes - 2), b = std::clamp(static_cast<Index>(y), 0, to.nodes - 2);
             const Real u = std::clamp(x - a, 0.0, 1.0), v = std::clamp(y - b, 0.0, 1.0);
-            Stencil stencil;
-            if (u + v <= 1) {
-                stencil.node = {from.node(i, j), to.node(a, b), to.node(a + 1, b), to.node(a, b + 1)};
-                stencil.weight = {1, -(1 - u - v), -u, -v};
-            } else {
-                stencil.node = {from.node(i, j), to.node(a + 1, b + 1), to.node(a, b + 1), to.node(a + 1, b)};
-                stencil.weight = {1, -(u + v - 1), -(1 - u), -(1 - v)};
-            }
-            out.stencil.push_back(stencil);
+            const bool low = u + v <= 1;
+            const Index corner = low ? to.node(a, b) : to.node(a + 1, b + 1);
+            const Index along_u = low ? to.node(a + 1, b) : to.node(a, b + 1), along_v = low ? to.node(a, b + 1) : to.node(a + 1, b);
+            const Real share_u = low ? u : 1 - u, share_v = low ? v : 1 - v;
+            const std::array<Index, 4> node = {from.node(i, j), corner, along_u, along_v};
+            const auto moves = [&](Index n) { return out.inverse_mass[n] > 0; };
+            if (std::ranges::none_of(node, moves)) continue;
+            out.node.push_back(node);
+            out.weight.push_back({1, -(1 - share_u - share_v), -share_u, -share_v});
             out.normal.push_back((up + random.symmetric_vector(settings.tilt)).normalized());
+            out.offset.push_back(Vec3::Zero());
             out.friction.push_back(settings.friction);
         }
 }
 
 }  // namespace
 
-GeneratedContacts generate_sheets(const SheetSettings& settings) {
+LumpedContacts generate_sheets(const SheetSettings& settings) {
     Random random(settings.seed);
-    GeneratedContacts out;
+    LumpedContacts out;
     std::vector<Sheet> sheets;
     for (Index s = 0; s < settings.sheets; ++s) sheets.push_back(add_sheet(settings, s, random, out));
     for (std::size_t s = 0; s + 1 < sheets.size(); ++s) {
@@ -101,50 +98,7 @@ GeneratedContacts generate_sheets(const SheetSettings& settings) {
     return out;
 }
 
-ContactProblem assemble_problem(const GeneratedContacts& contacts, const std::string& name) {
-    // contacts of each moving node, with their weights
-    std::vector<std::vector<std::pair<Index, Real>>> touching(contacts.inverse_mass.size());
-    std::vector<Mat3> frame;
-    ContactProblem problem;
-    problem.name = name;
-    problem.row_offset.push_back(0);
-    std::vector<std::size_t> kept;
-    for (std::size_t c = 0; c < contacts.stencil.size(); ++c) {
-        const Stencil& stencil = contacts.stencil[c];
-        bool moves = false;
-        for (int a = 0; a < 4; ++a)
-            if (stencil.weight[a] != 0 && contacts.inverse_mass[stencil.node[a]] > 0) {
-                touching[stencil.node[a]].emplace_back(static_cast<Index>(kept.size()), stencil.weight[a]);
-                moves = true;
-            }
-        if (!moves) continue;
-        kept.push_back(c);
-        const TangentFrame tangents = tangent_frame(contacts.normal[c]);
-        frame.emplace_back();
-        frame.back() << contacts.normal[c], tangents.first, tangents.second;
-    }
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-        const Stencil& stencil = contacts.stencil[kept[i]];
-        std::map<Index, Real> coupling;
-        Vec3 velocity = Vec3::Zero();
-        for (int a = 0; a < 4; ++a) {
-            const Index node = stencil.node[a];
-            velocity += stencil.weight[a] * contacts.velocity[node];
-            if (stencil.weight[a] == 0 || contacts.inverse_mass[node] == 0) continue;
-            for (const auto& [other, weight] : touching[node]) coupling[other] += stencil.weight[a] * weight * contacts.inverse_mass[node];
-        }
-        for (const auto& [other, value] : coupling) {
-            problem.column.push_back(other);
-            problem.block.push_back(value * frame[i].transpose() * frame[other]);
-        }
-        problem.row_offset.push_back(static_cast<Index>(problem.column.size()));
-        problem.q.push_back(frame[i].transpose() * velocity);
-        problem.mu.push_back(contacts.friction[kept[i]]);
-    }
-    return problem;
-}
-
-std::vector<ContactProblem> generate_problems(bool quick) {
+std::vector<NamedContacts> generate_problems(bool quick) {
     struct Named {
         const char* name;
         SheetSettings settings;
@@ -160,9 +114,9 @@ std::vector<ContactProblem> generate_problems(bool quick) {
         {"stack-5-layers-800", {.sheets = 5, .nodes = 12, .stacked = true}, true},
         {"patch-2888", {.nodes = 40}, true},
     };
-    std::vector<ContactProblem> problems;
+    std::vector<NamedContacts> problems;
     for (const Named& one : all)
-        if (!quick || !one.large) problems.push_back(assemble_problem(generate_sheets(one.settings), one.name));
+        if (!quick || !one.large) problems.push_back({one.name, generate_sheets(one.settings)});
     return problems;
 }
 

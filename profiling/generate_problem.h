@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "components/contact_table.h"
 #include "skerry/problem.h"
 
 namespace skerry::profiling {
@@ -22,21 +21,15 @@ struct SheetSettings {
     std::uint64_t seed = 1;
 };
 
-/// Contacts of lumped masses, as a step would find them.
-struct GeneratedContacts {
-    std::vector<Stencil> stencil;
-    std::vector<Vec3> normal;
-    std::vector<Real> friction;
-    std::vector<Real> inverse_mass;  // 1/kg, by node
-    std::vector<Vec3> velocity;      // m/s, by node, before the solve
+/// Those contacts that can move something.
+LumpedContacts generate_sheets(const SheetSettings& settings);
+
+struct NamedContacts {
+    std::string name;
+    LumpedContacts contacts;
 };
 
-GeneratedContacts generate_sheets(const SheetSettings& settings);
-
-/// The same contacts as general blocks, each in its own frame (normal, tangent 1, tangent 2). Contacts that can move nothing are left out.
-ContactProblem assemble_problem(const GeneratedContacts& contacts, const std::string& name);
-
-/// The problems of profile_solvers; `quick` leaves out the largest.
-std::vector<ContactProblem> generate_problems(bool quick);
+/// The generated problems of profile_solvers; `quick` leaves out the largest.
+std::vector<NamedContacts> generate_problems(bool quick);
 
 }  // namespace skerry::profiling

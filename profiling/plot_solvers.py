@@ -20,6 +20,7 @@ class Runs:
         self.problems = sorted(self.contacts, key=lambda p: (self.contacts[p], p))
         self.owner = {r["method"]: r["owner"] for r in rows}
         self.ours = [m for m in self.owner if self.owner[m] == "skerry"]
+        self.lumped = [m for m in self.owner if self.owner[m] == "skerry lumped"]
         self.theirs = [m for m in self.owner if self.owner[m] == "siconos"]
         default = [r["method"] for r in rows if r["is_default"] == 1]
         self.default = default[0] if default else self.ours[0]
@@ -70,6 +71,23 @@ def print_against_best(runs):
                       f"{worst[0]:.2f}", worst[1], sum(r > 1 for r in ratios)])
     print(f"{runs.default} against the best of Siconos on each problem of {SMALLEST} contacts or more (ratio above 1: ours is faster)")
     style.print_table(["tolerance", "solved by us", "by some Siconos", "compared", "mean ratio", "worst ratio", "on", "faster on"], table)
+
+
+def print_lumped(runs):
+    """Contacts of lumped masses as a step of the engine solves them, beside the same as general blocks."""
+    lumped = f"{runs.default}, lumped"
+    for tolerance in TOLERANCES:
+        table = []
+        for problem in runs.large():
+            own, blocks = runs.seconds[problem, lumped, tolerance], runs.seconds[problem, runs.default, tolerance]
+            their, their_name = runs.best(runs.theirs, problem, tolerance)
+            if own < math.inf:
+                table.append([problem, runs.contacts[problem], style.seconds_text(own), style.seconds_text(blocks),
+                              style.seconds_text(their), their_name if their < math.inf else "-",
+                              f"{their / own:.1f}" if their < math.inf else "-"])
+        if table:
+            print(f"Tolerance {tolerance:g}: contacts of lumped masses, as a step solves them")
+            style.print_table(["problem", "contacts", "lumped", "blocks", "best Siconos", "variant", "Siconos/lumped"], table)
 
 
 def print_methods(runs):
@@ -196,6 +214,7 @@ def main():
     print_methods(runs)
     if runs.theirs:
         print_against_best(runs)
+        print_lumped(runs)
     else:
         print("Siconos is not part of this build. On Debian: apt-get install libsiconos-numerics-dev, then run this again.\n")
     if not arguments.no_plots:

@@ -2,97 +2,51 @@
 #include <fstream>
 
 #include "profiling/generate_problem.h"
+#include "profiling/lumped_solver.h"
 #include "profiling/measure.h"
 #include "profiling/separation.h"
-#include "systems/contact/separate_regions.h"
-#include "systems/solver/solve_regions.h"
 
 namespace skerry::profiling {
 namespace {
 
-/// Small piles side by side, each a region of eight contacts, as the stages of a step see them.
-struct Piles {
-    GeneratedContacts contacts;
-    std::vector<Vec3> zeros;     // by contact: velocity of surfaces
-    std::vector<Real> none;      // by contact: gap, restitution
-    std::vector<Vec3> impulse;   // by contact
-    std::vector<Vec3> velocity;  // by node
-    std::vector<Vec3> push_out;  // by node
-    std::vector<Index> region_of;
-
-    explicit Piles(Index piles) {
-        constexpr int kinds = 16;  // different piles; then they repeat
-        std::vector<GeneratedContacts> kind;
-        for (int k = 0; k < kinds; ++k) kind.push_back(generate_sheets({.nodes = 4, .seed = static_cast<std::uint64_t>(k + 1)}));
-        for (Index p = 0; p < piles; ++p) append(kind[static_cast<std::size_t>(p % kinds)]);
-        const std::size_t count = contacts.stencil.size();
-        zeros.assign(count, Vec3::Zero());
-        none.assign(count, 0);
-        impulse.assign(count, Vec3::Zero());
-        region_of.assign(count, 0);
-        velocity = contacts.velocity;
-        push_out.assign(velocity.size(), Vec3::Zero());
-    }
-
-    void append(const GeneratedContacts& pile) {
-        const Index first = static_cast<Index>(contacts.inverse_mass.size());
-        for (Stencil stencil : pile.stencil) {
-            for (Index& node : stencil.node) node += first;
-            contacts.stencil.push_back(stencil);
+/// Small piles side by side, each a region of eight contacts.
+LumpedContacts make_piles(Index piles) {
+    constexpr int kinds = 16;  // different piles; then they repeat
+    std::vector<LumpedContacts> kind;
+    for (int k = 0; k < kinds; ++k) kind.push_back(generate_sheets({.nodes = 4, .seed = static_cast<std::uint64_t>(k + 1)}));
+    LumpedContacts all;
+    for (Index p = 0; p < piles; ++p) {
+        const LumpedContacts& pile = kind[static_cast<std::size_t>(p % kinds)];
+        const Index first = static_cast<Index>(all.inverse_mass.size());
+        for (std::array<Index, 4> nodes : pile.node) {
+            for (Index& node : nodes) node += first;
+            all.node.push_back(nodes);
         }
         const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-        add(contacts.normal, pile.normal);
-        add(contacts.friction, pile.friction);
-        add(contacts.inverse_mass, pile.inverse_mass);
-        add(contacts.velocity, pile.velocity);
+        add(all.weight, pile.weight);
+        add(all.normal, pile.normal);
+        add(all.offset, pile.offset);
+        add(all.friction, pile.friction);
+        add(all.inverse_mass, pile.inverse_mass);
+        add(all.velocity, pile.velocity);
     }
+    return all;
+}
 
-    /// The state before a solve, cold.
-    void reset() {
-        velocity = contacts.velocity;
-        std::ranges::fill(impulse, Vec3::Zero());
-    }
-
-    RegionInputs inputs() const {
-        return {.stencil = contacts.stencil,
-                .normal = contacts.normal,
-                .gap = none,
-                .surface_velocity = zeros,
-                .static_friction = contacts.friction,
-                .dynamic_friction = contacts.friction,
-                .restitution = none,
-                .inverse_mass = contacts.inverse_mass,
-                .velocity = contacts.velocity,
-                .gravity = 9.81};
-    }
-    RegionOutputs outputs() { return {.impulse = impulse, .velocity_next = velocity, .push_out = push_out}; }
-};
-
-constexpr Real step_size = 1e-3;  // s; with gaps of zero it says nothing
-
+/// The two stages on them.
 struct Stages {
-    Piles piles;
-    std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
-    UnionFind union_find;
-    SolverMemory memory;
-    RegionTable regions;
-
-    explicit Stages(Index count) : piles(count) {}
+    explicit Stages(Index piles) : solver(make_piles(piles)) {}
 
     double separate(ContactRegions mode) {
-        return timed(
-            [] {},
-            [&] { separate_regions(piles.contacts.stencil, piles.contacts.inverse_mass, mode, union_find, regions, piles.region_of); });
+        return timed([] {}, [&] { solver.separate(mode); });
     }
     double solve(const SolverSettings& settings) {
-        return timed([&] { piles.reset(); },
-                     [&] { solve_regions(*executor, piles.inputs(), settings, step_size, memory, regions, piles.outputs()); });
+        return timed([&] { solver.reset(); }, [&] { solver.solve(settings); });
     }
-};
+    std::size_t contacts() const { return solver.impulse().size(); }
 
-Index most_iterations(const RegionTable& regions) {
-    return regions.iterations.empty() ? 0 : *std::ranges::max_element(regions.iterations);
-}
+    LumpedSolver solver;
+};
 
 void profile_regions_of_one_size(const SeparationOptions& options) {
     std::ofstream csv(options.out / "growth.csv");
@@ -102,7 +56,7 @@ void profile_regions_of_one_size(const SeparationOptions& options) {
         if (contacts > largest) break;
         std::fprintf(stderr, "\r\033[Kregions of eight contacts, %d contacts", contacts);
         Stages stages(contacts / 8);
-        const Index count = static_cast<Index>(stages.piles.contacts.stencil.size());
+        const std::size_t count = stages.contacts();
         for (const SolverMethod method : {SolverMethod::pgs, SolverMethod::pcg_pgs})
             for (const ContactRegions mode : {ContactRegions::separate, ContactRegions::global}) {
                 std::vector<double> separate, solve;
@@ -112,7 +66,7 @@ void profile_regions_of_one_size(const SeparationOptions& options) {
                     solve.push_back(stages.solve(settings));
                 }
                 csv << count << ',' << name_of(mode) << ',' << name_of(method) << ',' << median(separate) << ',' << median(solve) << ','
-                    << most_iterations(stages.regions) << '\n';
+                    << stages.solver.most_iterations() << '\n';
             }
     }
 }
@@ -138,7 +92,7 @@ void profile_sweep(const SeparationOptions& options) {
             const double first = stages.solve(once);
             sweep.push_back((stages.solve(twice) - first) / sweeps);
         }
-        csv << stages.piles.contacts.stencil.size() << ',' << median(separate) << ',' << median(sweep) << '\n';
+        csv << stages.contacts() << ',' << median(separate) << ',' << median(sweep) << '\n';
     }
 }
 

@@ -1,6 +1,7 @@
 // profile_solvers: every method on every contact problem, beside Siconos where it is installed: a table of seconds, iterations and errors for
 // several tolerances (CSV). profiling/plot_solvers.py reads it.
 //
+// Contacts of lumped masses are solved twice by ours: as general blocks, as Siconos gets them, and as a step solves them ("METHOD, lumped").
 // Ours and theirs run in the same process and in turns, on one thread, each from r = 0 until its own test says that the tolerance is reached.
 // The error in the table is measured apart, by problem_error, for both. Where Siconos ends short of the tolerance by that measure, it is
 // asked for less, so that a laxer test of its own does not count against it.
@@ -12,13 +13,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "profiling/generate_problem.h"
+#include "profiling/lumped_solver.h"
 #include "profiling/measure.h"
 #include "profiling/siconos.h"
+#include "profiling/solver_problems.h"
 #include "skerry/error.h"
 
 using namespace skerry;
@@ -28,21 +31,24 @@ namespace {
 
 struct Options {
     std::vector<std::string> inputs{"../shared/data/friction_problems"};
+    std::vector<std::string> scenes{"scenes/skittles.json:393,524", "scenes/bucket.json:172,688"};
     std::string csv = "out/profiling/solvers/solvers.csv";
     std::vector<Real> tolerances{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
     std::vector<std::string> methods;
     Real cap = 2;  // s
     int rounds = 3;
     Index most_contacts = 1 << 30;
-    bool quick = false, no_siconos = false, no_generated = false;
+    bool quick = false, no_siconos = false, no_generated = false, no_scenes = false;
 };
 
-/// One method of ours, or one variant of Siconos.
+enum class Owner { skerry, skerry_lumped, siconos };
+
+/// One method of ours on either operator, or one variant of Siconos.
 struct Contestant {
     std::string name;
+    Owner owner = Owner::skerry;
     SolverMethod method{};
     std::size_t variant = 0;
-    bool siconos = false;
     Index most_contacts = 1 << 30;
     Index first_iterations = 20;
 };
@@ -60,67 +66,102 @@ std::vector<Contestant> make_contestants(const Options& options) {
         return options.methods.empty() || std::ranges::find(options.methods, name) != options.methods.end();
     };
     for (const auto& [method, name] : EnumNames<SolverMethod>::table)
-        if (!needs_frictionless(method) && wanted(std::string(name))) all.push_back({.name = std::string(name), .method = method});
+        for (const Owner owner : {Owner::skerry, Owner::skerry_lumped}) {
+            const std::string full = std::string(name) + (owner == Owner::skerry_lumped ? ", lumped" : "");
+            // Newton steps need a matrix; the lumped operator makes one only to be checked against
+            const bool sensible = !needs_frictionless(method) && !(owner == Owner::skerry_lumped && method == SolverMethod::newton);
+            if (sensible && (wanted(full) || wanted(std::string(name)))) all.push_back({.name = full, .owner = owner, .method = method});
+        }
     if (options.no_siconos) return all;
     const std::vector<SiconosVariant>& variants = siconos_variants();
     for (std::size_t v = 0; v < variants.size(); ++v)
         if (wanted(variants[v].name))
             all.push_back({.name = variants[v].name,
+                           .owner = Owner::siconos,
                            .variant = v,
-                           .siconos = true,
                            .most_contacts = variants[v].most_contacts,
                            .first_iterations = variants[v].first_iterations});
     return all;
 }
 
-Result solve(const ContactProblem& problem, SiconosProblem& theirs, const Contestant& who, Real tolerance, Index max_iterations) {
-    if (who.siconos) {
-        const SiconosSolution solution = theirs.solve(who.variant, tolerance, max_iterations);
-        return {solution.seconds, solution.iterations, problem_error(problem, solution.reaction).relative, solution.finished};
+/// A problem in the forms that the contestants take.
+struct Forms {
+    explicit Forms(const SolverProblem& given) : blocks(given.problem), siconos(given.problem) {
+        if (!given.lumped) return;
+        contacts = *given.lumped;
+        lumped.emplace(*given.lumped);
     }
+    const ContactProblem& blocks;
+    SiconosProblem siconos;
+    LumpedContacts contacts;
+    std::optional<LumpedSolver> lumped;
+};
+
+Result solve_lumped(Forms& forms, SolverMethod method, Real tolerance, Index max_iterations) {
+    const SolverSettings settings{.method = method, .warm_start = WarmStart::off, .tolerance = tolerance, .max_iterations = max_iterations};
+    const double seconds = timed([&] { forms.lumped->reset(); },
+                                 [&] {
+                                     forms.lumped->separate();
+                                     forms.lumped->solve(settings);
+                                 });
+    const RegionTable& regions = forms.lumped->regions();
+    const bool finished = std::ranges::none_of(regions.status, [](RegionStatus s) { return s == RegionStatus::iteration_limit; });
+    const std::vector<Vec3> reaction = in_contact_frames(forms.contacts, forms.lumped->impulse());
+    return {seconds, forms.lumped->most_iterations(), problem_error(forms.blocks, reaction).relative, finished};
+}
+
+Result solve(Forms& forms, const Contestant& who, Real tolerance, Index max_iterations) {
+    if (who.owner == Owner::siconos) {
+        const SiconosSolution solution = forms.siconos.solve(who.variant, tolerance, max_iterations);
+        return {solution.seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative, solution.finished};
+    }
+    if (who.owner == Owner::skerry_lumped) return solve_lumped(forms, who.method, tolerance, max_iterations);
     ProblemSettings settings;
     settings.method = who.method;
     settings.tolerance = tolerance;
     settings.max_iterations = max_iterations;
     const double start = cpu_seconds();
-    const ProblemSolution solution = solve_problem(problem, settings);
+    const ProblemSolution solution = solve_problem(forms.blocks, settings);
     const double cpu = cpu_seconds() - start;
     // A long solve is done once: then the CPU time of the call is its own, and more than it.
     const double seconds = solution.seconds < long_run ? solution.seconds : std::min(solution.seconds, cpu);
-    return {seconds, solution.iterations, problem_error(problem, solution.reaction).relative, solution.converged};
+    return {seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative, solution.converged};
 }
 
 /// What stays the same for one contestant on one problem while the tolerance gets smaller.
 struct Standing {
     Index max_iterations = 0;  // as many as the cap allows
-    Real asked_less = 1;       // Siconos: part of the tolerance that it has to be asked for
+    Real asked_less = 1;       // part of the tolerance that it has to be asked for, if its own measure is another
     bool out = false;          // missed a larger tolerance
 };
 
-Index iterations_within(const ContactProblem& problem, SiconosProblem& theirs, const Contestant& who, Real cap) {
-    const Result start = solve(problem, theirs, who, 1e-300, who.first_iterations);
+Index iterations_within(Forms& forms, const Contestant& who, Real cap) {
+    const Result start = solve(forms, who, 1e-300, who.first_iterations);
     const double each = start.seconds / std::max<Index>(1, start.iterations);
     return static_cast<Index>(std::clamp(cap / std::max(each, 1e-9), 10.0, 1e7));
 }
 
-Result solve_to(const ContactProblem& problem, SiconosProblem& theirs, const Contestant& who, Real tolerance, Standing& standing) {
-    Result result = solve(problem, theirs, who, standing.asked_less * tolerance, standing.max_iterations);
-    for (int again = 0; who.siconos && result.finished && result.error > tolerance && again < 3; ++again) {
+Result solve_to(Forms& forms, const Contestant& who, Real tolerance, Standing& standing) {
+    Result result = solve(forms, who, standing.asked_less * tolerance, standing.max_iterations);
+    const int retries = who.owner == Owner::siconos ? 3 : who.owner == Owner::skerry_lumped ? 10 : 0;
+    for (int again = 0; again < retries && result.finished && result.error > tolerance; ++again) {
         standing.asked_less /= 4;
-        result = solve(problem, theirs, who, standing.asked_less * tolerance, standing.max_iterations);
+        result = solve(forms, who, standing.asked_less * tolerance, standing.max_iterations);
     }
     return result;
 }
 
 /// Writes rows of the table. `running` is the contestant whose turn it is.
-void profile(const ContactProblem& problem, const std::string& origin, const std::vector<Contestant>& contestants, const Options& options,
-             volatile std::size_t& running, std::ostream& rows) {
-    SiconosProblem theirs(problem);
+void profile(const SolverProblem& given, const std::vector<Contestant>& contestants, const Options& options, volatile std::size_t& running,
+             std::ostream& rows) {
+    const ContactProblem& problem = given.problem;
+    Forms forms(given);
     std::vector<Standing> standing(contestants.size());
     for (std::size_t c = 0; c < contestants.size(); ++c) {
         running = c;
-        standing[c].out = problem.contacts() > contestants[c].most_contacts;
-        if (!standing[c].out) standing[c].max_iterations = iterations_within(problem, theirs, contestants[c], options.cap);
+        const bool possible = contestants[c].owner != Owner::skerry_lumped || forms.lumped;
+        standing[c].out = !possible || problem.contacts() > contestants[c].most_contacts;
+        if (!standing[c].out) standing[c].max_iterations = iterations_within(forms, contestants[c], options.cap);
     }
     for (const Real tolerance : options.tolerances) {
         std::vector<Result> last(contestants.size());
@@ -130,15 +171,16 @@ void profile(const ContactProblem& problem, const std::string& origin, const std
                 // a solve of a tenth of the cap is long enough to be measured once
                 if (standing[c].out || (round > 0 && (!(last[c].error <= tolerance) || last[c].seconds > options.cap / 10))) continue;
                 running = c;
-                last[c] = solve_to(problem, theirs, contestants[c], tolerance, standing[c]);
+                last[c] = solve_to(forms, contestants[c], tolerance, standing[c]);
                 seconds[c].push_back(last[c].seconds);
             }
+        constexpr const char* names[] = {"skerry", "skerry lumped", "siconos"};
         for (std::size_t c = 0; c < contestants.size(); ++c) {
             if (seconds[c].empty()) continue;
             const bool solved = last[c].error <= tolerance;
-            const bool is_default = !contestants[c].siconos && contestants[c].method == ProblemSettings{}.method;
-            rows << problem.name << ',' << origin << ',' << problem.contacts() << ',' << (contestants[c].siconos ? "siconos" : "skerry")
-                 << ',' << contestants[c].name << ',' << is_default << ',' << tolerance << ',' << median(seconds[c]) << ','
+            const bool is_default = contestants[c].owner == Owner::skerry && contestants[c].method == ProblemSettings{}.method;
+            rows << problem.name << ',' << given.origin << ',' << problem.contacts() << ',' << names[static_cast<int>(contestants[c].owner)]
+                 << ",\"" << contestants[c].name << '"' << ',' << is_default << ',' << tolerance << ',' << median(seconds[c]) << ','
                  << last[c].iterations << ',' << last[c].error << ',' << solved << ',' << last[c].finished << '\n';
             standing[c].out = !solved;
         }
@@ -147,8 +189,7 @@ void profile(const ContactProblem& problem, const std::string& origin, const std
 
 /// The same in a process of its own: some of Siconos' solvers end the process on some problems. Whoever did is left out, and the problem
 /// is done again.
-void profile_apart(const ContactProblem& problem, const std::string& origin, std::vector<Contestant> contestants, const Options& options,
-                   std::ofstream& csv) {
+void profile_apart(const SolverProblem& problem, std::vector<Contestant> contestants, const Options& options, std::ofstream& csv) {
     void* shared = mmap(nullptr, sizeof(std::size_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED) throw std::runtime_error("no shared memory");
     volatile std::size_t& running = *static_cast<std::size_t*>(shared);
@@ -158,7 +199,7 @@ void profile_apart(const ContactProblem& problem, const std::string& origin, std
         if (child < 0) throw std::runtime_error("no further process");
         if (child == 0) {
             std::ostringstream rows;
-            profile(problem, origin, contestants, options, running, rows);
+            profile(problem, contestants, options, running, rows);
             csv << rows.str() << std::flush;
             _exit(0);
         }
@@ -166,26 +207,10 @@ void profile_apart(const ContactProblem& problem, const std::string& origin, std
         waitpid(child, &status, 0);
         if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
         std::fprintf(stderr, "\r\033[K%s ended the process on %s and is left out there\n", contestants[running].name.c_str(),
-                     problem.name.c_str());
+                     problem.problem.name.c_str());
         contestants.erase(contestants.begin() + static_cast<std::ptrdiff_t>(running));
     }
     munmap(shared, sizeof(std::size_t));
-}
-
-std::vector<std::filesystem::path> problem_files(const std::vector<std::string>& inputs) {
-    std::vector<std::filesystem::path> files;
-    for (const std::filesystem::path input : inputs) {
-        if (!std::filesystem::is_directory(input)) {
-            if (std::filesystem::exists(input)) files.push_back(input);
-            continue;
-        }
-        std::vector<std::filesystem::path> inside;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(input))
-            if (entry.path().extension() == ".hdf5") inside.push_back(entry.path());
-        std::ranges::sort(inside);
-        files.insert(files.end(), inside.begin(), inside.end());
-    }
-    return files;
 }
 
 void run(const Options& options) {
@@ -194,18 +219,15 @@ void run(const Options& options) {
     if (csv_file.has_parent_path()) std::filesystem::create_directories(csv_file.parent_path());
     std::ofstream csv(csv_file);
     csv << "problem,origin,contacts,owner,method,is_default,tolerance,seconds,iterations,error,converged,finished\n";
-    const auto one = [&](const ContactProblem& problem, const std::string& origin) {
-        if (problem.contacts() > options.most_contacts) return;
-        std::fprintf(stderr, "\r\033[K%s, %d contacts", problem.name.c_str(), problem.contacts());
-        profile_apart(problem, origin, contestants, options, csv);
+    const TakeProblem one = [&](const SolverProblem& problem) {
+        if (problem.problem.contacts() > options.most_contacts) return;
+        std::fprintf(stderr, "\r\033[K%s, %d contacts", problem.problem.name.c_str(), problem.problem.contacts());
+        profile_apart(problem, contestants, options, csv);
     };
-    for (const std::filesystem::path& file : problem_files(options.inputs)) {
-        ContactProblem problem = read_problem(file);
-        problem.name = file.stem().string();
-        one(problem, std::filesystem::absolute(file).parent_path().filename().string());
-    }
-    if (!options.no_generated)
-        for (const ContactProblem& problem : generate_problems(options.quick)) one(problem, "generated");
+    read_problems(options.inputs, one);
+    if (!options.no_scenes)
+        for (const std::string& scene : options.scenes) step_problems(scene, one);
+    if (!options.no_generated) generated_problems(options.quick, one);
     std::fprintf(stderr, "\r\033[K");
     std::printf("%s\n", options.csv.c_str());
 }
@@ -216,6 +238,7 @@ int main(int argc, char** argv) {
     CLI::App app{"Times every method on contact problems for several tolerances, beside Siconos where it is installed. Writes a CSV."};
     Options options;
     app.add_option("inputs", options.inputs, "FCLIB files, and folders of them")->capture_default_str();
+    app.add_option("--scenes", options.scenes, "Steps of scenes, each SCENE.json:STEP,STEP...")->capture_default_str();
     app.add_option("--csv", options.csv, "Where to write")->capture_default_str();
     app.add_option("--tolerances", options.tolerances, "From large to small; a method that misses one is not asked for the next")
         ->delimiter(',')
@@ -228,7 +251,8 @@ int main(int argc, char** argv) {
     app.add_option("--most-contacts", options.most_contacts, "Leave out larger problems");
     app.add_flag("--quick", options.quick, "Three tolerances, one round, a cap of 0.1 s, no large generated problem");
     app.add_flag("--no-siconos", options.no_siconos, "Ours alone");
-    app.add_flag("--no-generated", options.no_generated, "Files alone");
+    app.add_flag("--no-generated", options.no_generated, "No problems made by rule");
+    app.add_flag("--no-scenes", options.no_scenes, "No steps of scenes");
     CLI11_PARSE(app, argc, argv);
     if (options.quick) {
         if (app.count("--tolerances") == 0) options.tolerances = {1e-3, 1e-6, 1e-9};

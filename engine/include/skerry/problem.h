@@ -1,6 +1,7 @@
 // Frictional contact problems from files (FCLIB), and their solution on their own.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -74,13 +75,35 @@ struct ProblemError {
 };
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
 
-/// The contact problem of one step of a world, as its solver got it, and the impulses that the step went on with. The frame of a contact is
-/// its normal and two tangents that depend on the normal alone, right-handed. Contacts that nothing could move are left out.
+/// Contacts between points of mass: u_i = sum_a weight[a] velocity[node[a]] + offset_i, in world axes. An impulse r_i adds
+/// weight[a] inverse_mass[node[a]] r_i to the velocity of node a.
+struct LumpedContacts {
+    // by contact
+    std::vector<std::array<Index, 4>> node;
+    std::vector<std::array<Real, 4>> weight;
+    std::vector<Vec3> normal;    // unit
+    std::vector<Vec3> offset;    // m/s: what gaps leave and colliders bring
+    std::vector<Real> friction;  // mu
+    // by node
+    std::vector<Real> inverse_mass;  // 1/kg, 0: moved by no impulse
+    std::vector<Vec3> velocity;      // m/s, without the contacts
+};
+
+/// The same as general blocks: the frame of a contact is its normal and two tangents that depend on the normal alone, right-handed. Every
+/// contact needs a node that moves.
+ContactProblem assemble_problem(const LumpedContacts& contacts, const std::string& name);
+
+/// A world vector of each contact in its frame.
+std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
+
+/// The contact problem of one step of a world, as its solver got it, and the impulses that the step went on with. Contacts that nothing could
+/// move are left out.
 struct StepProblem {
-    std::uint64_t step = 0;  // number of the step, from 1
-    Real time = 0;           // s, at its start
-    Real step_size = 0;      // s
-    ContactProblem problem;
+    std::uint64_t step = 0;      // number of the step, from 1
+    Real time = 0;               // s, at its start
+    Real step_size = 0;          // s
+    LumpedContacts lumped;       // as the step has it
+    ContactProblem problem;      // as general blocks
     std::vector<Vec3> impulse;   // N s, in the frames of the problem
     std::vector<Index> contact;  // by contact of the problem: its place in World::contacts()
     std::vector<Index> region;   // by contact of the problem

@@ -93,6 +93,32 @@ TEST_CASE("the impulses of a step solve the problem that it shows", "[unit][prob
     }
 }
 
+TEST_CASE("the lumped form of a step and its blocks give the same velocities", "[unit][problem]") {
+    Stack stack;
+    stack.watch(5);
+    stack.world.advance(0.1);
+    REQUIRE(stack.any_coupled());
+    for (const StepProblem& step : stack.problems) {
+        const LumpedContacts& lumped = step.lumped;
+        std::vector<Vec3> impulse;  // any, N s, world axes
+        for (std::size_t i = 0; i < lumped.node.size(); ++i) {
+            const Real k = static_cast<Real>(i);
+            impulse.emplace_back(std::sin(k), std::cos(2 * k), std::sin(3 * k));
+        }
+        std::vector<Vec3> velocity = lumped.velocity;
+        for (std::size_t i = 0; i < impulse.size(); ++i)
+            for (std::size_t a = 0; a < 4; ++a) {
+                const Index node = lumped.node[i][a];
+                velocity[node] += lumped.weight[i][a] * lumped.inverse_mass[node] * impulse[i];
+            }
+        std::vector<Vec3> relative = lumped.offset;
+        for (std::size_t i = 0; i < impulse.size(); ++i)
+            for (std::size_t a = 0; a < 4; ++a) relative[i] += lumped.weight[i][a] * velocity[lumped.node[i][a]];
+        const std::vector<Vec3> u = velocities(step.problem, in_contact_frames(lumped, impulse));
+        CHECK(distance(in_contact_frames(lumped, relative), u) < 1e-12 * largest(u));  // rounding
+    }
+}
+
 TEST_CASE("a step's problem goes to a file and back, and its solution moves contacts as the step did", "[unit][problem]") {
     const TemporaryFolder folder;
     Stack stack;

@@ -1,0 +1,73 @@
+#include <algorithm>
+
+#include "engine/problem/gather_blocks.h"
+#include "skerry/problem.h"
+#include "systems/contact/tangent_frame.h"
+
+namespace skerry {
+namespace {
+
+/// Columns: normal, tangent 1, tangent 2.
+Mat3 frame_of(const Vec3& normal) {
+    const TangentFrame tangents = tangent_frame(normal);
+    Mat3 frame;
+    frame << normal, tangents.first, tangents.second;
+    return frame;
+}
+
+/// A contact at a node.
+struct Touch {
+    Index node, contact;
+    Real weight;
+};
+
+/// By node, contacts in their order.
+std::vector<Touch> list_touches(const LumpedContacts& contacts) {
+    std::vector<Touch> touches;
+    for (std::size_t i = 0; i < contacts.node.size(); ++i)
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Index node = contacts.node[i][a];
+            const Real weight = contacts.weight[i][a];
+            if (weight != 0 && contacts.inverse_mass[node] > 0) touches.push_back({node, static_cast<Index>(i), weight});
+        }
+    std::stable_sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& b) { return a.node < b.node; });
+    return touches;
+}
+
+}  // namespace
+
+ContactProblem assemble_problem(const LumpedContacts& contacts, const std::string& name) {
+    ContactProblem problem;
+    problem.name = name;
+    problem.mu = contacts.friction;
+    std::vector<Mat3> frame;
+    for (std::size_t i = 0; i < contacts.node.size(); ++i) {
+        frame.push_back(frame_of(contacts.normal[i]));
+        Vec3 velocity = contacts.offset[i];
+        for (std::size_t a = 0; a < 4; ++a) velocity += contacts.weight[i][a] * contacts.velocity[contacts.node[i][a]];
+        problem.q.push_back(frame[i].transpose() * velocity);
+    }
+    const std::vector<Touch> touches = list_touches(contacts);
+    std::vector<BlockPart> parts;
+    for (std::size_t begin = 0, end = 0; begin < touches.size(); begin = end) {
+        while (end < touches.size() && touches[end].node == touches[begin].node) ++end;
+        const Real inverse_mass = contacts.inverse_mass[touches[begin].node];
+        for (std::size_t a = begin; a < end; ++a)
+            for (std::size_t b = begin; b < end; ++b) {
+                const Index i = touches[a].contact, j = touches[b].contact;
+                // S_ij of methods.md 0.1, symmetric to the last bit; a block of the diagonal is the same in every frame
+                const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
+                parts.push_back({i, j, i == j ? Mat3(coupling * Mat3::Identity()) : Mat3(coupling * (frame[i].transpose() * frame[j]))});
+            }
+    }
+    gather_blocks(std::move(parts), problem);
+    return problem;
+}
+
+std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors) {
+    std::vector<Vec3> turned;
+    for (std::size_t i = 0; i < vectors.size(); ++i) turned.push_back(frame_of(contacts.normal[i]).transpose() * vectors[i]);
+    return turned;
+}
+
+}  // namespace skerry

@@ -1,0 +1,45 @@
+#include "profiling/lumped_solver.h"
+
+#include <algorithm>
+
+namespace skerry::profiling {
+
+LumpedSolver::LumpedSolver(const LumpedContacts& contacts) : contacts_(contacts) {
+    const std::size_t count = contacts.node.size();
+    for (std::size_t i = 0; i < count; ++i) stencil_.push_back({contacts.node[i], contacts.weight[i]});
+    for (const Vec3& offset : contacts.offset) surface_velocity_.push_back(-offset);
+    none_.assign(count, 0);
+    region_of_.assign(count, 0);
+    push_out_.assign(contacts.velocity.size(), Vec3::Zero());
+    reset();
+}
+
+void LumpedSolver::separate(ContactRegions mode) {
+    separate_regions(stencil_, contacts_.inverse_mass, mode, union_find_, regions_, region_of_);
+}
+
+void LumpedSolver::reset() {
+    velocity_ = contacts_.velocity;
+    impulse_.assign(stencil_.size(), Vec3::Zero());
+}
+
+void LumpedSolver::solve(const SolverSettings& settings) {
+    constexpr Real step_size = 1e-3;  // s; with gaps of zero it says nothing
+    const RegionInputs inputs{.stencil = stencil_,
+                              .normal = contacts_.normal,
+                              .gap = none_,
+                              .surface_velocity = surface_velocity_,
+                              .static_friction = contacts_.friction,
+                              .dynamic_friction = contacts_.friction,
+                              .restitution = none_,
+                              .inverse_mass = contacts_.inverse_mass,
+                              .velocity = contacts_.velocity};
+    solve_regions(*executor_, inputs, settings, step_size, memory_, regions_,
+                  {.impulse = impulse_, .velocity_next = velocity_, .push_out = push_out_});
+}
+
+Index LumpedSolver::most_iterations() const {
+    return regions_.iterations.empty() ? 0 : *std::ranges::max_element(regions_.iterations);
+}
+
+}  // namespace skerry::profiling

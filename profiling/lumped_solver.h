@@ -1,0 +1,39 @@
+// Contacts of lumped masses, solved as a step of the engine solves them: separation into regions, then the stage solve_regions.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "skerry/problem.h"
+#include "systems/contact/separate_regions.h"
+#include "systems/solver/solve_regions.h"
+
+namespace skerry::profiling {
+
+/// One thread, from r = 0.
+class LumpedSolver {
+public:
+    explicit LumpedSolver(const LumpedContacts& contacts);
+
+    void separate(ContactRegions mode = ContactRegions::separate);
+    /// The state before a solve.
+    void reset();
+    void solve(const SolverSettings& settings);
+
+    const std::vector<Vec3>& impulse() const { return impulse_; }  // N s, world axes
+    const RegionTable& regions() const { return regions_; }
+    Index most_iterations() const;
+
+private:
+    LumpedContacts contacts_;
+    std::vector<Stencil> stencil_;
+    std::vector<Vec3> surface_velocity_, impulse_, velocity_, push_out_;
+    std::vector<Real> none_;  // by contact: gap, restitution
+    std::vector<Index> region_of_;
+    std::unique_ptr<Executor> executor_ = make_executor(Backend::serial, 1);
+    UnionFind union_find_;
+    SolverMemory memory_;
+    RegionTable regions_;
+};
+
+}  // namespace skerry::profiling
