@@ -26,6 +26,8 @@ struct RunResult {
     std::vector<ProbeRecord> probes;
 };
 
+/// Why not to rely on the run, a sentence each; empty when all estimates are small.
+std::vector<std::string> doubts_of(const RunResult& result);
 /// The document of --stats; the names of its keys are part of the interface.
 Json statistics_of(const RunResult& result);
 /// The table at the end of a run.

@@ -1,6 +1,8 @@
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
+#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 
 namespace skerry {
@@ -17,7 +19,54 @@ std::string hash_text(std::uint64_t hash) {
     return text;
 }
 
+Json number_or_null(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
+/// Estimates of the errors of the run. `doubts` says in words which of them are too large to rely on it.
+Json trust_of(const RunResult& result) {
+    const WorldReport& r = result.report;
+    return {
+        {"solver", {{"worst_error", r.worst_error}, {"tolerance", result.settings.tolerance}, {"unconverged", r.unconverged}}},
+        {"energy", {{"error", r.energy_error}, {"share", r.energy_error_share}, {"steps", r.balanced_steps}}},
+        {"momentum", {{"error", number_or_null(r.momentum_error)}, {"share", number_or_null(r.momentum_error_share)}}},
+        {"penetration",
+         {{"largest", r.max_penetration}, {"of_mean_edge", result.mean_edge > 0 ? r.max_penetration / result.mean_edge : 0}}},
+        {"elements",
+         {{"smallest_volume_ratio", r.worst_volume_ratio},
+          {"body", r.worst_volume_body},
+          {"element", r.worst_volume_element},
+          {"near_inversion", r.near_inversion},
+          {"inverted", r.inverted}}},
+        {"doubts", doubts_of(result)},
+    };
+}
+
 }  // namespace
+
+std::vector<std::string> doubts_of(const RunResult& result) {
+    const WorldReport& r = result.report;
+    std::vector<std::string> doubts;
+    constexpr double small_share = 0.05;  // of the energy: quick scenes at the stable step stay below it
+    if (r.unconverged > 0)
+        doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) + " contact regions ended above the tolerance, the worst at " +
+                         short_number(r.worst_error) + ": raise max_iterations");
+    if (r.energy_error_share > small_share)
+        doubts.push_back("energy does not add up by " + short_number(100 * r.energy_error_share) + " %: shorten the step (step_safety)");
+    constexpr double rounding = 1e-9;  // sums of millions of terms stay far below
+    if (r.momentum_error_share > rounding)
+        doubts.push_back("momentum does not add up by " + short_number(100 * r.momentum_error_share) + " %");
+    constexpr double visible = 0.05;
+    if (result.mean_edge > 0 && r.max_penetration > visible * result.mean_edge)
+        doubts.push_back("surfaces overlapped by " + short_number(100 * r.max_penetration / result.mean_edge) + " % of the mean edge");
+    if (r.inverted > 0)
+        doubts.push_back(std::to_string(r.inverted) + " elements are inverted, the worst in " + r.worst_volume_body + ", element " +
+                         std::to_string(r.worst_volume_element));
+    else if (r.near_inversion > 0)
+        doubts.push_back(std::to_string(r.near_inversion) + " elements are near inversion, the worst in " + r.worst_volume_body +
+                         ", element " + std::to_string(r.worst_volume_element));
+    return doubts;
+}
 
 Json statistics_of(const RunResult& result) {
     const WorldReport& r = result.report;
@@ -83,8 +132,7 @@ Json statistics_of(const RunResult& result) {
         {"max_penetration", r.max_penetration},
         {"max_gap_violation", r.max_gap_violation},
         {"mean_edge", result.mean_edge},
-        {"worst_volume_ratio", r.worst_volume_ratio},
-        {"worst_volume_body", r.worst_volume_body},
+        {"trust", trust_of(result)},
         {"probes", probes},
         {"state_hash", hash_text(result.state_hash)},
     };

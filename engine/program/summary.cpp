@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
 #include "engine/program/number_text.h"
@@ -65,6 +66,16 @@ std::string probe_lines(const RunResult& result) {
     return text;
 }
 
+/// How far energy and momentum add up, and what speaks against relying on the run.
+std::string trust_lines(const RunResult& result) {
+    const WorldReport& r = result.report;
+    std::string text = line("balance", "energy adds up to " + percent(r.energy_error_share) + " (" + with_unit(r.energy_error, "J") + ")" +
+                                           (std::isnan(r.momentum_error) ? ", momentum not known: a body that is damped is held"
+                                                                         : ", momentum to " + percent(r.momentum_error_share)));
+    for (const std::string& doubt : doubts_of(result)) text += line("DOUBT", doubt);
+    return text;
+}
+
 }  // namespace
 
 std::string summary_of(const RunResult& result) {
@@ -91,6 +102,7 @@ std::string summary_of(const RunResult& result) {
                                 ", into the contact shell " + short_number(1e3 * r.max_gap_violation) + " mm");
     text += line("elements", "smallest volume ratio " + short_number(r.worst_volume_ratio) +
                                  (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")"));
+    text += trust_lines(result);
     text += probe_lines(result);
     text += line("stages", "");
     text += stage_table(result);

@@ -1,4 +1,6 @@
 // Reading and writing the state of single bodies and colliders.
+#include <algorithm>
+
 #include "engine/world/world_state.h"
 #include "systems/dynamics/element_energy.h"
 #include "systems/dynamics/move_colliders.h"
@@ -45,10 +47,12 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n)
         if (state_->nodes.inverse_mass[n] == 0) state_->nodes.velocity[n] = Vec3::Zero();
     state_->search_afresh();  // the search counts on the speed of the last step
+    state_->balance.close();
 }
 
 void World::set_loads(BodyHandle body, std::span<const Vec3> load) {
     set_nodes(*state_, body, "set_loads", "load", load, state_->nodes.load);
+    state_->loaded = std::ranges::any_of(state_->nodes.load, [](const Vec3& l) { return l != Vec3::Zero(); });
 }
 
 std::span<const std::array<Index, 3>> World::surface(BodyHandle body) const {

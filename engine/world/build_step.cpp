@@ -8,6 +8,7 @@
 #include "systems/dynamics/damp_velocity.h"
 #include "systems/dynamics/gather_node_forces.h"
 #include "systems/dynamics/measure_drift.h"
+#include "systems/dynamics/measure_work.h"
 #include "systems/dynamics/move_colliders.h"
 #include "systems/dynamics/predict_velocity.h"
 
@@ -115,8 +116,8 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
                     return RegionOutputs{c.impulse, n.velocity_next, n.push_out};
                 },
                 writes(c.impulse, n.velocity_next, n.push_out)));
-    g.stage_with_result("contact/measure_contacts", w.step.measures, measure_contacts, read(c), read(n.velocity), read(n.velocity_next),
-                        write(c.slip), write(c.state), value(w.step.solver.friction));
+    g.stage_with_result("contact/measure_contacts", w.step.measures, measure_contacts, read(c), read(n.inverse_mass), read(n.velocity),
+                        read(n.velocity_next), write(c.slip), write(c.state), value(w.step.solver.friction));
     g.stage_with_result(
         "dynamics/check_state", w.step.verdict, check_state,
         bundle(
@@ -127,6 +128,11 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
             reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out, e.node, b.blocks)),
         value(w.step.h), value(w.step.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
     const auto trusted = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
+    g.stage_with_result(
+        "dynamics/measure_work", w.step.external, measure_work,
+        bundle([&w, &n] { return w.loaded ? std::span<const Vec3>(n.load.span()) : std::span<const Vec3>(); }, reads(n.load)),
+        read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h), make(w.work_parts),
+        only_if([&w] { return w.loaded || w.attachments.node.size() > 0; }, reads(w.attachments)));
     g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), write(n.push_out), write(n.position),
             write(n.velocity), trusted);
     g.stage("dynamics/measure_drift", measure_drift,

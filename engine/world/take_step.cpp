@@ -149,6 +149,7 @@ void take_step(WorldState& world, Real h) {
     world.step.verdict = {};
     world.step.measures = {};
     world.step.damped = 0;
+    world.step.external = {};
     keep_driven_velocities(world);
     Trace* const trace = world.tracing ? &world.trace : nullptr;
     const bool small = world.elements.node.size() * element_lanes + world.contacts.size() < inline_work;
@@ -168,6 +169,7 @@ void take_step(WorldState& world, Real h) {
     world.elements.rotation.swap(world.elements.rotation_next);
     add_collider_travel(world);
     count(world);
+    add_step(world);
     world.counters.inline_steps += small;
     world.step.time += h;
 }
@@ -181,6 +183,7 @@ StepReport World::advance(Real dt) {
     const Real end = world.step.time + dt;
     Real left = dt;
     Real fast_limit = std::numeric_limits<Real>::infinity();  // s, while a body moves too fast for longer steps
+    if (world.counters.steps == 0 && left > 0) check_balance(world);
     while (left > 0) {
         const Real stable = world.settings.step_size.value_or(skerry::stable_step(world) * world.settings.step_safety);
         const Real longest = std::min(stable, fast_limit);
@@ -207,6 +210,7 @@ StepReport World::advance(Real dt) {
         if (++world.steps_since_watch >= steps_per_watch) {
             world.steps_since_watch = 0;
             watch_stable_step(world);
+            check_balance(world);
         }
         show_contact_problem(world, start);
     }

@@ -190,6 +190,7 @@ void World::set_gravity(const Vec3& gravity) {
     validate(changed);
     state_->settings.gravity = state_->step.gravity = gravity;
     state_->step.collision.gravity = gravity.norm();
+    state_->balance.close();
 }
 
 Real World::stable_step() const {

@@ -138,11 +138,21 @@ WorldReport World::report() const {
     report.max_gap_violation = counters.max_gap_violation;
     for (std::size_t b = 0; b < world.bodies.slot.size(); ++b) {
         if (world.bodies.element_count[b] == 0) continue;
-        const WorstElement worst = worst_volume_ratio(world.element_inputs(), world.bodies.blocks[b], world.nodes.position);
-        if (worst.volume_ratio >= report.worst_volume_ratio) continue;
-        report.worst_volume_ratio = worst.volume_ratio;
+        const VolumeRatios ratios = measure_volume_ratios(world.element_inputs(), world.bodies.blocks[b], world.nodes.position);
+        report.near_inversion += ratios.near_inversion;
+        report.inverted += ratios.inverted;
+        if (ratios.smallest >= report.worst_volume_ratio) continue;
+        report.worst_volume_ratio = ratios.smallest;
         report.worst_volume_body = world.body_records[b].name;
+        report.worst_volume_element = ratios.element - static_cast<Index>(element_lanes) * world.bodies.blocks[b].begin;
     }
+    const Balance balance = checked_balance(world);
+    const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };
+    report.energy_error = balance.energy_error;
+    report.energy_error_share = share(balance.energy_error, balance.energy_scale);
+    report.momentum_error = balance.momentum_known ? balance.momentum_error : std::numeric_limits<Real>::quiet_NaN();
+    report.momentum_error_share = share(report.momentum_error, balance.momentum_scale);
+    report.balanced_steps = balance.steps;
     return report;
 }
 

@@ -21,6 +21,7 @@
 #include "components/ragged.h"
 #include "components/region_table.h"
 #include "components/surface_table.h"
+#include "engine/world/balance.h"
 #include "jobs/executor.h"
 #include "jobs/task_graph.h"
 #include "jobs/trace.h"
@@ -30,6 +31,7 @@
 #include "systems/contact/separate_regions.h"
 #include "systems/dynamics/check_state.h"
 #include "systems/dynamics/compute_element_forces.h"
+#include "systems/dynamics/measure_work.h"
 #include "systems/dynamics/move_colliders.h"
 #include "systems/solver/solve_regions.h"
 
@@ -49,6 +51,7 @@ struct StepState {
     Real max_strain_step = 0;
     StepVerdict verdict;
     ContactMeasures measures;
+    ExternalWork external;
     Real damped = 0;  // J, taken out by damping in this step
 };
 
@@ -128,7 +131,11 @@ struct WorldState {
     KeptVelocities kept_velocities;
     Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
     Column<Real> stiffness_sum;          // scratch of stable_step
+    Column<ExternalWork> work_parts;     // scratch of measure_work
     std::uint64_t steps_since_watch = 0;
+    Balance balance;
+    Real total_mass = 0;                        // kg, of all nodes
+    bool loaded = false;                        // some node has a load
     mutable std::vector<Contact> contact_view;  // what contacts() shows
     mutable bool contact_view_is_current = false;
 

@@ -36,19 +36,38 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
     return on_limit ? ContactState::slide : ContactState::stick;
 }
 
+/// What comes from outside: the collider's surface, and nodes that no impulse moves.
+void add_outer(const Stencil& stencil, const Vec3& surface_velocity, const Vec3& impulse, std::span<const Real> inverse_mass,
+               std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, ContactMeasures& sum) {
+    Real moving = 0;  // sum of the weights
+    Vec3 outer_velocity = surface_velocity;
+    for (std::size_t a = 0; a < 4; ++a) {
+        const Index node = stencil.node[a];
+        if (stencil.weight[a] == 0) continue;
+        if (inverse_mass[node] > 0)
+            moving += stencil.weight[a];
+        else
+            outer_velocity -= stencil.weight[a] / 2 * (velocity[node] + velocity_next[node]);
+    }
+    sum.outer_impulse += moving * impulse;
+    sum.outer_work += impulse.dot(outer_velocity);
+}
+
 void add(ContactMeasures& sum, const ContactMeasures& part) {
     sum.max_penetration = std::max(sum.max_penetration, part.max_penetration);
     sum.max_gap_violation = std::max(sum.max_gap_violation, part.max_gap_violation);
     sum.dissipated += part.dissipated;
+    sum.outer_impulse += part.outer_impulse;
+    sum.outer_work += part.outer_work;
     sum.stick_count += part.stick_count;
     sum.slide_count += part.slide_count;
 }
 
 }  // namespace
 
-ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Vec3> velocity,
-                                 std::span<const Vec3> velocity_next, std::span<Vec3> slip, std::span<ContactState> state,
-                                 Friction friction) {
+ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
+                                 std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, std::span<Vec3> slip,
+                                 std::span<ContactState> state, Friction friction) {
     const std::size_t count = contacts.size();
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // a fixed number of parts, so that their sums need no memory; their borders depend on the contact count alone
@@ -70,6 +89,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
             if (state[i] == ContactState::open) continue;
             const Vec3 before = relative_velocity(contacts.stencil[i], contacts.surface_velocity[i], velocity);
             part.dissipated -= 0.5 * impulse.dot(before + after);
+            add_outer(contacts.stencil[i], contacts.surface_velocity[i], impulse, inverse_mass, velocity, velocity_next, part);
         }
     });
     ContactMeasures total;

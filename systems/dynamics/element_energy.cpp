@@ -86,16 +86,19 @@ void von_mises_stress(const ElementInputs& elements, Range blocks, std::span<con
         });
 }
 
-WorstElement worst_volume_ratio(const ElementInputs& elements, Range blocks, std::span<const Vec3> position) {
-    WorstElement worst{std::numeric_limits<Real>::infinity(), no_index};
+VolumeRatios measure_volume_ratios(const ElementInputs& elements, Range blocks, std::span<const Vec3> position) {
+    VolumeRatios worst{std::numeric_limits<Real>::infinity(), no_index};
     for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
         const LaneMat3<Real8> F = deformation_gradient(edges(elements.node[b], position), elements.inverse_rest[b]);
         const Real8 ratio = dot(F.c0, cross(F.c1, F.c2));
         for (std::size_t l = 0; l < element_lanes; ++l) {
             if (!(elements.volume[b][l] > 0)) continue;
             const Index here = static_cast<Index>(b * element_lanes + l);
-            if (std::isnan(ratio[l])) return {ratio[l], here};
-            if (ratio[l] < worst.volume_ratio) worst = {ratio[l], here};
+            worst.near_inversion += ratio[l] < near_inversion;
+            worst.inverted += ratio[l] < 0;
+            if (std::isnan(worst.smallest) || ratio[l] >= worst.smallest) continue;  // not passed by a number that is none
+            worst.smallest = ratio[l];
+            worst.element = here;
         }
     }
     return worst;

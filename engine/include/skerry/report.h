@@ -100,8 +100,17 @@ struct WorldReport {
     Vec3 momentum = Vec3::Zero();                     // kg m/s
     Vec3 angular_momentum = Vec3::Zero();             // kg m^2/s, about the origin
     Real max_penetration = 0, max_gap_violation = 0;  // m, over the run
-    Real worst_volume_ratio = 1;                      // smallest det F now; < 0 is inverted
+    // How far to trust it. Differences of energy and momentum from what loads, weights, colliders and losses account for, the largest of
+    // the looks taken every 256 steps and now; shares of all that there was to be exchanged.
+    Real energy_error = 0, energy_error_share = 0;  // J, 1
+    Real momentum_error = 0,
+         momentum_error_share = 0;     // kg m/s, 1; not a number where a body that is damped is held: damping takes momentum then
+    std::uint64_t balanced_steps = 0;  // steps since the balance was opened: it is closed by changes from outside
+    Real worst_volume_ratio = 1;       // smallest det F now; < 0 is inverted
     std::string worst_volume_body;
+    Index worst_volume_element = -1;  // its place in the mesh of that body
+    Index near_inversion = 0;         // elements whose det F is below 0.1
+    Index inverted = 0;               // elements whose det F is below 0
 };
 
 }  // namespace skerry

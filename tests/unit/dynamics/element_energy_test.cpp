@@ -56,13 +56,13 @@ TEST_CASE("von Mises stress is finite for a flat body", "[unit]") {
 
 TEST_CASE("the worst volume ratio names the element that is pressed most", "[unit]") {
     ElasticBody body(jittered_box({4, 1, 1}, 0.1, 0, 1), rubber(MaterialModel::linear));
-    CHECK(worst_volume_ratio(body.inputs(), body.blocks, body.position).volume_ratio == Approx(1).epsilon(1e-13));
+    CHECK(measure_volume_ratios(body.inputs(), body.blocks, body.position).smallest == Approx(1).epsilon(1e-13));
     body.position[0].x() += 0.15;  // through its neighbours
-    const WorstElement worst = worst_volume_ratio(body.inputs(), body.blocks, body.position);
-    CHECK(worst.volume_ratio < 0);
+    const VolumeRatios worst = measure_volume_ratios(body.inputs(), body.blocks, body.position);
+    CHECK(worst.smallest < 0);
     REQUIRE(worst.element >= 0);
-    CHECK(body.deformation(static_cast<std::size_t>(worst.element)).determinant() == Approx(worst.volume_ratio));
-    CHECK(worst_volume_ratio(body.inputs(), {0, 0}, body.position).element == no_index);
+    CHECK(body.deformation(static_cast<std::size_t>(worst.element)).determinant() == Approx(worst.smallest));
+    CHECK(measure_volume_ratios(body.inputs(), {0, 0}, body.position).element == no_index);
     body.position[3].x() = std::numeric_limits<Real>::quiet_NaN();
-    CHECK(std::isnan(worst_volume_ratio(body.inputs(), body.blocks, body.position).volume_ratio));
+    CHECK(std::isnan(measure_volume_ratios(body.inputs(), body.blocks, body.position).smallest));
 }

@@ -1,0 +1,90 @@
+// What a run says of its own errors: energy and momentum that add up, elements that turned inside out.
+#include <catch2/catch.hpp>
+
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+/// Everything that exchanges momentum and energy with the outside: loads, weight, a moving collider, a held and a led face, contact between bodies.
+World busy_world(Real step_safety, Real damping = 0) {
+    Settings settings;
+    settings.step_safety = step_safety;
+    World world(settings);
+    const auto rubber = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = damping});
+    world.add_collider(Plane{}, {.motion = {.velocity = {0.2, 0, 0.05}}});
+    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
+    const auto low = world.add_body(block, {.material = rubber, .position = {0, 0, 0.055}, .contact_distance = 0.002});
+    world.add_body(block, {.material = rubber, .position = {0.02, 0, 0.2}, .velocity = {0, 0.3, -1}, .contact_distance = 0.002});
+    const auto bar = world.add_body(mesh::box({0.4, 0.05, 0.05}, {8, 1, 1}), {.material = rubber, .position = {0, 1, 0.4}});
+    std::vector<Index> left, right;
+    const auto nodes = world.positions(bar);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (nodes[n].x() < -0.19) left.push_back(static_cast<Index>(n));
+        if (nodes[n].x() > 0.19) right.push_back(static_cast<Index>(n));
+    }
+    world.attach(bar, left);
+    world.attach(bar, right, {.velocity = {0.1, 0, 0.2}, .angular_velocity = {1, 0, 0}});
+    world.set_loads(low, std::vector<Vec3>(block.nodes.size(), Vec3(0.01, 0.02, 0)));
+    return world;
+}
+
+}  // namespace
+
+TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the error of the step", "[scene]") {
+    std::vector<Real> error;
+    for (const Real safety : {1.0, 0.5, 0.25}) {
+        World world = busy_world(safety);
+        REQUIRE(world.advance(0.4).ok());
+        const WorldReport report = world.report();
+        CHECK(report.balanced_steps == report.steps);
+        REQUIRE(report.mean_contacts > 5);
+        REQUIRE(report.energy.dissipated > 0.1);
+        CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));  // rounding adds up as a random walk
+        error.push_back(report.energy_error_share);
+    }
+    // symplectic Euler: of first order, and the worst of all looks is noisy
+    CHECK(error[0] < 0.05);
+    CHECK(error[2] < 0.5 * error[0]);
+}
+
+TEST_CASE("a change from outside starts the balance afresh, and a held body that is damped leaves the momentum open", "[scene]") {
+    World world = busy_world(1);
+    REQUIRE(world.advance(0.2).ok());
+    const std::uint64_t before = world.report().balanced_steps;
+    const BodyHandle first = world.bodies().front();
+    world.set_velocities(first, std::vector<Vec3>(world.positions(first).size(), Vec3(0, 0, 3)));
+    REQUIRE(world.advance(0.2).ok());
+    const WorldReport report = world.report();
+    CHECK(report.balanced_steps < report.steps - before + 1);
+    CHECK(report.energy_error_share < 0.05);  // the kick is no error
+    CHECK(report.momentum_error_share < 1e-12);
+
+    World damped = busy_world(1, 5);
+    REQUIRE(damped.advance(0.1).ok());
+    CHECK(std::isnan(damped.report().momentum_error));
+    CHECK(damped.report().energy_error_share < 0.05);
+}
+
+TEST_CASE("a report names the body and the element that turned inside out", "[scene]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    const auto rubber = world.add_material({.young_modulus = 1e4});
+    world.add_body(mesh::ball(0.1, 3), {.material = rubber, .position = {1, 0, 0}});
+    const Mesh one{.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, .tetrahedra = {{1, 2, 3, 4}, {0, 1, 2, 3}}};
+    const auto body = world.add_body(one, {.material = rubber, .position = {5, 0, 0}, .name = "two tetrahedra"});
+    CHECK(world.report().inverted == 0);
+    const std::vector<Index> fixed{0, 1, 2}, led{3};
+    world.attach(body, fixed);
+    world.attach(body, led, {.velocity = {0.4, 0.4, -1.5}});  // through the face of the other three
+    REQUIRE(world.advance(0.9).ok());
+    const WorldReport report = world.report();
+    CHECK(report.inverted >= 1);
+    CHECK(report.near_inversion >= report.inverted);
+    CHECK(report.worst_volume_body == "two tetrahedra");
+    CHECK(report.worst_volume_element == 1);
+    CHECK(report.worst_volume_ratio < 0);
+}
