@@ -29,7 +29,7 @@ function(list_test_cases expression out)
 endfunction()
 
 string(REPLACE "," ";" LABELS "${LABELS}")
-set(tags unit property scene determinism contract slow)
+set(tags unit property scene determinism contract accuracy slow)
 foreach(tag IN LISTS tags)
     list_test_cases("[${tag}]" cases_${tag})
 endforeach()

@@ -3,11 +3,14 @@
 
 #include "jobs/executor.h"
 #include "systems/dynamics/element_energy.h"
+#include "tests/support/accuracy.h"
 #include "tests/support/elastic_body.h"
 
 using namespace skerry;
 using test::ElasticBody;
 using test::jittered_box;
+namespace accuracy = test::accuracy;
+using accuracy::Tolerance;
 
 namespace {
 
@@ -43,18 +46,25 @@ TEST_CASE("stress is the derivative of the energy density", "[property]") {
     }
 }
 
-TEST_CASE("small strains meet the Lame moduli", "[property]") {
+TEST_CASE("small strains meet the Lame moduli", "[property][accuracy]") {
     // methods.md 8.19: dP/dF at rest is lambda I:dF + 2 mu sym(dF); 1e-6 for the differences.
     std::mt19937_64 random(2);
     for (MaterialModel model : models) {
         const MaterialConstants material = material_constants(model, 1e5, 0.4, 1000);
+        Real worst = 0;
         for (int trial = 0; trial < 20; ++trial) {
             const Mat3 d = random_matrix(random);
             constexpr Real step = 1e-5;
             const Mat3 slope = (stress(material, Mat3::Identity() + step * d) - stress(material, Mat3::Identity() - step * d)) / (2 * step);
             const Mat3 expected = material.lame_lambda * d.trace() * Mat3::Identity() + material.shear_modulus * (d + d.transpose());
-            CHECK((slope - expected).norm() <= 1e-6 * expected.norm());
+            worst = std::max(worst, (slope - expected).norm() / expected.norm());
         }
+        accuracy::check({.item = 19,
+                         .name = "slope of the stress at rest, relative error, worst of 20 directions, " + std::string(name_of(model)),
+                         .formula = "lambda tr(dF) I + mu (dF + dF^T)",
+                         .found = worst,
+                         .tolerance = 1e-6,
+                         .kind = Tolerance::absolute});
     }
 }
 
@@ -105,7 +115,7 @@ TEST_CASE("internal forces have no sum and, rotation-invariant models, no torque
     }
 }
 
-TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one stress everywhere", "[property]") {
+TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one stress everywhere", "[property][accuracy]") {
     // methods.md 8.17: interior forces <= 1e-12 E h^2.
     const auto executor = make_executor(Backend::serial, 1);
     Mat3 A;
@@ -119,15 +129,29 @@ TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one 
             body.position[n] = A * body.position[n] + Vec3(1, 2, 3);
         }
         body.compute_forces(*executor);
+        Real force = 0, spread = 0;
         for (std::size_t n = 0; n < body.position.size(); ++n)
-            if (inside[n]) CHECK(body.force[n].norm() <= 1e-12 * 1e5 * 0.01 * 10);  // 10: positions are 30 cells from the origin
+            if (inside[n]) force = std::max(force, body.force[n].norm());
         std::vector<Real> von_mises(384);
         von_mises_stress(body.inputs(), body.blocks, body.position, von_mises);
-        for (Real s : von_mises) CHECK(s == Approx(von_mises[0]).epsilon(1e-11));
+        for (Real s : von_mises) spread = std::max(spread, std::abs(s / von_mises[0] - 1));
+        const std::string which = std::string(name_of(model));
+        accuracy::check({.item = 17,
+                         .name = "patch test, largest force inside over E h^2, " + which,
+                         .formula = "0",
+                         .found = force / (1e5 * 0.01),
+                         .tolerance = 1e-12,
+                         .kind = Tolerance::absolute});
+        accuracy::check({.item = 17,
+                         .name = "patch test, spread of the stress over the stress, " + which,
+                         .formula = "0",
+                         .found = spread,
+                         .tolerance = 1e-11,
+                         .kind = Tolerance::absolute});
     }
 }
 
-TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells by the known amount", "[property]") {
+TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells by the known amount", "[property][accuracy]") {
     // methods.md 8.18.
     const auto executor = make_executor(Backend::serial, 1);
     std::mt19937_64 random(8);
@@ -137,20 +161,36 @@ TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells 
         const std::vector<Vec3> rest = body.position;
         Real volume = 0;
         for (std::size_t e = 0; e < 162; ++e) volume += body.volume(e);
+        Real worst = 0;
         for (int trial = 0; trial < 20; ++trial) {
             const Eigen::AngleAxis<Real> turn(M_PI * (trial + 1) / 20, test::random_vector(random).normalized());
             for (std::size_t n = 0; n < rest.size(); ++n) body.position[n] = turn * rest[n];
             body.compute_forces(*executor);
             if (model != MaterialModel::linear) {
-                for (const Vec3& f : body.force) CHECK(f.norm() <= 1e-12 * material.shear_modulus * 0.01);
+                for (const Vec3& f : body.force) worst = std::max(worst, f.norm() / (material.shear_modulus * 0.01));
             } else {
                 const Mat3 R = turn.toRotationMatrix();
                 const Mat3 strain = 0.5 * (R + R.transpose()) - Mat3::Identity();
                 const Real density =
                     material.shear_modulus * strain.squaredNorm() + 0.5 * material.lame_lambda * strain.trace() * strain.trace();
-                CHECK(elastic_energy(body.inputs(), body.blocks, body.position) == Approx(volume * density));
+                worst = std::max(worst, std::abs(elastic_energy(body.inputs(), body.blocks, body.position) / (volume * density) - 1));
             }
         }
+        if (model == MaterialModel::linear)
+            accuracy::check({.item = 18,
+                             .name = "turned body of linear material: energy over the known one - 1, worst of 20 turns",
+                             .formula = "V (mu |e|^2 + lambda tr(e)^2 / 2), e = (R + R^T) / 2 - I",
+                             .found = worst,
+                             .tolerance = 1e-10,
+                             .kind = Tolerance::absolute,
+                             .note = "Linear elasticity is not invariant; it fails by the amount that theory gives."});
+        else
+            accuracy::check({.item = 18,
+                             .name = "turned body, largest force over mu h^2, worst of 20 turns, " + std::string(name_of(model)),
+                             .formula = "0",
+                             .found = worst,
+                             .tolerance = 1e-12,
+                             .kind = Tolerance::absolute});
     }
 }
 

@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""The table of docs/accuracy.md from what the accuracy tests recorded: accuracy_table.py FOLDER OUTPUT"""
+import collections
+import json
+import pathlib
+import sys
+
+HEADER = """# Accuracy
+
+Made by `scripts/accuracy`, which runs the tests tagged `[accuracy]`: every line is an assertion of one of them, in `tests/scene/accuracy` or
+`tests/property`. *Error* is absolute, or relative to what is expected, as the tolerance is. SI units unless said; `h` is the step, `n` a number of
+elements. {lines} lines, {items} items.
+
+| item | what | formula | expected | found | error | tolerance |
+|---:|---|---|---:|---:|---:|---:|
+"""
+
+
+def number(value):
+    """At most five digits that say something; zero is 0."""
+    return "0" if value == 0 else f"{value:.5g}"
+
+
+def percent(value):
+    return f"{100 * value:.3g} %" if value >= 1e-4 else f"{value:.1e}"
+
+
+def line(row):
+    error = abs(row["found"] - row["expected"])
+    if row["kind"] == "relative":
+        error, tolerance = percent(error / abs(row["expected"])), percent(row["tolerance"])
+    else:
+        error, tolerance = f"{error:.2g}", f"{row['tolerance']:.2g}"
+    cells = [str(row["item"]) if row["item"] else "-", row["name"], f"`{row['formula']}`", number(row["expected"]), number(row["found"]), error,
+             tolerance]
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def main(folder, output):
+    rows = [json.loads(text) for file in sorted(pathlib.Path(folder).glob("*.jsonl")) for text in file.read_text().splitlines()]
+    if not rows:
+        sys.exit(f"{folder} holds no record of an accuracy test")
+    rows.sort(key=lambda row: row["item"] or 1000)  # stable: within an item the order of the tests
+    notes = collections.defaultdict(list)
+    for row in rows:
+        if row["note"] and row["note"] not in notes[row["item"]]:
+            notes[row["item"]].append(row["note"])
+    text = HEADER.format(lines=len(rows), items=len({row["item"] for row in rows}))
+    text += "\n".join(map(line, rows)) + "\n"
+    if any(notes.values()):
+        text += "\n## Notes\n\n"
+        text += "".join(f"- **{item or 'without a number'}**: {' '.join(lines)}\n" for item, lines in notes.items() if lines)
+    pathlib.Path(output).write_text(text)
+    print(f"{len(rows)} lines in {output}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
