@@ -58,6 +58,11 @@ Settings without_gravity() {
 
 constexpr Real v0 = 0.1;  // m/s: strains of v0 / c = 0.3 %
 
+const char* const front_note =
+    "The energy lost falls with 1 / n, the missing speed with n^(-2/3): a front that has crossed n elements is n^(1/3) of them wide "
+    "(orders of 0.70, "
+    "0.69 and 0.68 from n = 80 to 640).";
+
 /// What the sum of the contact forces along z was, step by step.
 struct ForceHistory {
     std::vector<Real> time, force;  // s, at the end of the step; N
@@ -222,7 +227,8 @@ TEST_CASE("an elastic bar rebounds from a wall as the wave does", "[scene][accur
                      .expected = 2.0 / 3,
                      .found = std::log2(missing[0] / missing[2]) / 2,
                      .tolerance = 0.1,
-                     .kind = Tolerance::absolute});
+                     .kind = Tolerance::absolute,
+                     .note = front_note});
 }
 
 TEST_CASE("two equal bars swap their velocities", "[scene][accuracy]") {
@@ -265,5 +271,6 @@ TEST_CASE("two equal bars swap their velocities", "[scene][accuracy]") {
                      .expected = 2.0 / 3,
                      .found = std::log2(missing[0] / missing[2]) / 2,
                      .tolerance = 0.1,
-                     .kind = Tolerance::absolute});
+                     .kind = Tolerance::absolute,
+                     .note = front_note});
 }

@@ -1,5 +1,6 @@
 // What friction and weight hold together: stacks, wedges, belts, and Painleve's rod (methods.md 8, items 22, 23 and 27).
 #include <catch2/catch.hpp>
+#include <cstdio>
 
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
@@ -208,7 +209,7 @@ TEST_CASE("Painleve's rod gets an impulse", "[scene][accuracy]") {
                      .kind = Tolerance::absolute,
                      .note = "Painleve's rod. The paradox needs a rigid body: here friction reaches the rod through the nodes that touch, "
                              "whose own mass resists "
-                             "alike in all directions, so that each contact has exactly one solution."});
+                             "alike in all directions, so that a contact alone always has exactly one solution."});
     accuracy::check({.item = 33,
                      .name = "the same, largest gain of energy over the energy at the start",
                      .formula = "<= 0",
