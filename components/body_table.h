@@ -5,6 +5,7 @@
 
 #include "components/bvh_table.h"
 #include "components/column.h"
+#include "components/step_levels.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -43,8 +44,11 @@ struct BodyTable {
     Column<Real> min_altitude;      // m, of the elements at rest
     Column<Real> rest_step;         // s, stable step of the rest shape
     Column<Real> stable_step;       // s, as last watched
-    Column<Real> max_speed;         // m/s, of this step's motion
-    Column<Real> drift;             // m, greatest distance of a node from its drift origin
+    Column<std::uint8_t> level;     // of the whole body in the present cycle of steps: its own steps are 2^level steps long
+    Column<std::array<Index, element_level_count>> level_count;  // elements of each level, within the body
+    Column<LevelMask> due;                                       // levels of elements, within the body, that get an impulse in this step
+    Column<Real> max_speed;                                      // m/s, of this step's motion
+    Column<Real> drift;                                          // m, greatest distance of a node from its drift origin
     Column<Real> travel;  // m: since any earlier time no node has come further than the growth of travel plus twice the drift then
 
     void for_each_column(auto&& visit) {
@@ -67,6 +71,9 @@ struct BodyTable {
         visit("min_altitude", min_altitude);
         visit("rest_step", rest_step);
         visit("stable_step", stable_step);
+        visit("level", level);
+        visit("level_count", level_count);
+        visit("due", due);
         visit("max_speed", max_speed);
         visit("drift", drift);
         visit("travel", travel);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "components/column.h"
 #include "components/lanes.h"
@@ -26,6 +27,8 @@ struct ElementBlockTable {
     Column<ElementForces> force;            // N
     Column<Index> body;                     // row of BodyTable
     Column<Index> material;                 // row of MaterialTable
+    Column<Real> viscous_time;              // s, stress of the strain rate over that of the strain; 0 but for fine elements among coarse
+    Column<std::uint8_t> level;             // within the body: impulses come every 2^level of the body's steps (step_levels.h)
 
     /// What the next step depends on: hash and snapshot walk this part.
     void for_each_state_column(auto&& visit) {
@@ -35,6 +38,8 @@ struct ElementBlockTable {
         visit("rotation", rotation);
         visit("body", body);
         visit("material", material);
+        visit("viscous_time", viscous_time);
+        visit("level", level);
     }
     /// The only list of columns: resize and erase walk it.
     void for_each_column(auto&& visit) {

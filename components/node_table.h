@@ -2,6 +2,7 @@
 #pragma once
 
 #include "components/column.h"
+#include "components/step_levels.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -19,6 +20,7 @@ struct NodeTable {
     Column<Real> mass;           // kg, lumped
     Column<Real> inverse_mass;   // 1/kg, 0: pinned or kinematic
     Column<Index> body;          // row of BodyTable
+    Column<LevelMask> levels;    // levels, within their body, of the elements around the node
 
     /// What the next step depends on: hash and snapshot walk this part.
     void for_each_state_column(auto&& visit) {
@@ -37,6 +39,7 @@ struct NodeTable {
         visit("push_out", push_out);
         visit("force", force);
         visit("drift_origin", drift_origin);
+        visit("levels", levels);
     }
 };
 

@@ -18,6 +18,10 @@ enum class ContactRegions { separate, global, paper_algorithm_1 };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr, nncg, apgd, mprgp };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
 enum class WarmStart { off, on };
+/// symplectic_euler: first order where it is started from given velocities, bounded energy. leapfrog: the same kicks and drifts with positions
+/// drifted by half a step before the first and after the last, second order in smooth motion. literal: forward Euler as the paper
+/// writes it; unstable without damping at any step, for comparison only (docs/integration.md).
+enum class Integrator { symplectic_euler, leapfrog, literal };
 
 template <class Enum>
 struct EnumNames;
@@ -76,6 +80,15 @@ struct EnumNames<WarmStart> {
     static constexpr std::array<std::pair<WarmStart, std::string_view>, 2> table{{
         {WarmStart::off, "off"},
         {WarmStart::on, "on"},
+    }};
+};
+
+template <>
+struct EnumNames<Integrator> {
+    static constexpr std::array<std::pair<Integrator, std::string_view>, 3> table{{
+        {Integrator::symplectic_euler, "symplectic_euler"},
+        {Integrator::leapfrog, "leapfrog"},
+        {Integrator::literal, "literal"},
     }};
 };
 

@@ -38,6 +38,15 @@ std::string solver_lines(const RunResult& result) {
     return text;
 }
 
+std::string level_text(const WorldReport& r) {
+    std::string text = percent(static_cast<double>(r.element_impulses) / static_cast<double>(r.element_steps)) +
+                       " of all element forces computed; elements with one impulse in";
+    for (std::size_t l = 0; l < r.level_elements.size(); ++l)
+        if (r.level_elements[l] > 0) text += " " + std::to_string(1u << l) + ": " + grouped(r.level_elements[l]) + ",";
+    text.back() = ' ';
+    return text + "steps";
+}
+
 std::string stage_table(const RunResult& result) {
     double total = 0;
     std::size_t width = 0;
@@ -92,6 +101,7 @@ std::string summary_of(const RunResult& result) {
         text += line("steps", grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                   ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
                                   (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : ""));
+    if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " + with_unit(result.peak_kinetic_energy, "J") +
                                "), elastic " + with_unit(r.energy.elastic, "J") + ", potential " + with_unit(r.energy.potential, "J") +

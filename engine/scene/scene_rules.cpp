@@ -126,6 +126,8 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "by default the stable step of the stiffest body", .unit = "s", .limits = above(0)})
             .key("step_safety", &S::step_safety,
                  {.meaning = "fraction of the stable step that is used", .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
+            .key("integrator", &S::integrator, {.meaning = "how velocities and positions are moved on; literal is for comparison only"})
+            .key("multirate", &S::multirate, {.meaning = "elements that stand longer steps get impulses less often"})
             .key("backend", &S::backend, {.meaning = "what runs the threads"})
             .key("threads", &S::threads, {.meaning = "0: as many as there are", .limits = within(0, 1024)})
             .key("contact_regions", &S::contact_regions, {.meaning = "how contacts are grouped"})

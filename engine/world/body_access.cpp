@@ -69,7 +69,11 @@ std::vector<Real> World::von_mises_stress(BodyHandle body) const {
     std::vector<Real> stress(static_cast<std::size_t>(blocks.size()) * element_lanes);
     skerry::von_mises_stress(state_->element_inputs(), blocks, state_->nodes.position, stress);
     stress.resize(static_cast<std::size_t>(state_->bodies.element_count[row]));
-    return stress;
+    const std::vector<Index>& order = state_->body_records[row].element_order;
+    if (order.empty()) return stress;
+    std::vector<Real> by_tetrahedron(stress.size());
+    for (std::size_t e = 0; e < stress.size(); ++e) by_tetrahedron[static_cast<std::size_t>(order[e])] = stress[e];
+    return by_tetrahedron;
 }
 
 const std::string& World::name(BodyHandle body) const {

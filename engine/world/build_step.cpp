@@ -50,10 +50,13 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     BodyTable& b = w.bodies;
     NodeBlockTable& k = w.node_blocks;
     g.stage("dynamics/compute_element_forces", compute_element_forces,
-            bundle([&w] { return w.element_inputs(); }, reads(e.node, e.inverse_rest, e.volume, e.material, w.materials)), read(n.position),
-            read(e.rotation), write(e.rotation_next), write(e.force));
-    g.stage("dynamics/gather_node_forces", gather_node_forces, read(w.corners), read(e.force), read(n.mass), value(w.step.gravity),
-            read(n.load), write(n.force));
+            bundle([&w] { return w.element_inputs(); },
+                   reads(e.node, e.inverse_rest, e.volume, e.material, w.materials, e.level, e.body, e.viscous_time, b.level)),
+            read(n.position), read(n.velocity), read(e.rotation), write(e.rotation_next), write(e.force));
+    g.stage("dynamics/gather_node_forces", gather_node_forces, read(w.corners),
+            bundle([&n, &b, &e, &k] { return DueCorners{k.begin, k.end, k.body, b.due, n.levels, e.level}; },
+                   reads(k.begin, k.end, k.body, b.due, n.levels, e.level)),
+            read(e.force), read(n.mass), value(w.step.gravity), read(n.load), write(n.force));
     g.stage("dynamics/predict_velocity", predict_velocity, read(n.force), read(n.inverse_mass), read(n.velocity), value(w.step.h),
             write(n.velocity_next));
     g.stage("dynamics/damp_velocity", damp_velocity,
@@ -133,8 +136,8 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
         bundle([&w, &n] { return w.loaded ? std::span<const Vec3>(n.load.span()) : std::span<const Vec3>(); }, reads(n.load)),
         read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h), make(w.work_parts),
         only_if([&w] { return w.loaded || w.attachments.node.size() > 0; }, reads(w.attachments)));
-    g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), write(n.push_out), write(n.position),
-            write(n.velocity), trusted);
+    g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), value(w.settings.integrator),
+            write(n.push_out), write(n.position), write(n.velocity), trusted);
     g.stage("dynamics/measure_drift", measure_drift,
             bundle([&n, &b, &k] { return DriftInputs{k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position}; },
                    reads(k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position)),

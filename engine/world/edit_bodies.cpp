@@ -2,11 +2,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "engine/world/world_state.h"
 #include "systems/collision/build_surface.h"
 #include "systems/collision/bvh.h"
 #include "systems/dynamics/build_elements.h"
+#include "systems/dynamics/element_levels.h"
 #include "systems/dynamics/stable_step.h"
 
 namespace skerry {
@@ -82,18 +84,71 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-std::vector<BoundaryTriangle> outline(const NewBody& body) {
-    if (!body.tetrahedra.empty()) return boundary_triangles(body.tetrahedra);
-    std::vector<BoundaryTriangle> triangles;
-    triangles.reserve(body.triangles.size());
-    for (const auto& triangle : body.triangles) triangles.push_back({triangle, no_index});
-    return triangles;
+std::array<Index, element_level_count> level_count_of(const ElementBlockTable& elements, Range blocks) {
+    std::array<Index, element_level_count> count{};
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+        for (Real volume : elements.volume[b].lane) count[elements.level[b]] += volume > 0;
+    return count;
+}
+
+/// Triangles name the elements that they belong to as these stand in the table.
+void renumber_elements(std::span<const Index> order, std::span<BoundaryTriangle> triangles) {
+    if (order.empty()) return;
+    std::vector<Index> place(order.size());
+    for (std::size_t e = 0; e < order.size(); ++e) place[static_cast<std::size_t>(order[e])] = static_cast<Index>(e);
+    for (BoundaryTriangle& triangle : triangles) triangle.element = place[static_cast<std::size_t>(triangle.element)];
 }
 
 /// Takes rows `gone` out of every column of a table.
 void erase_rows(auto& table, Range gone) {
     table.for_each_column(
         [gone](const char*, auto& column) { column.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size())); });
+}
+
+/// Fine elements beside coarse ones get some viscosity. Impulses that come every 2^l steps are in time with some of the modes that take fewer
+/// than 2^(l + 1) steps, and would pump them up by some per cent each time (methods.md 4.4); modes of neighbouring levels are kept out
+/// of reach by coarse_safety.
+void set_viscosity(ElementBlockTable& elements, Range blocks, Real step) {
+    const int top = elements.level[static_cast<std::size_t>(blocks.end - 1)];
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        const int level = elements.level[b];
+        const bool fine = top > 0 && (level == 0 || level <= top - 2);
+        elements.viscous_time[b] = fine ? viscous_time(step * static_cast<Real>(1 << level)) : 0;
+    }
+}
+
+/// Sorts the elements of a new body by level, so that blocks have one level; their order within a level stays. Returns which tetrahedron
+/// element e is: order[e]; empty while they stand in the order of the mesh.
+std::vector<Index> sort_by_level(WorldState& world, const NewBody& body, Range blocks, Index first_node, Index row) {
+    std::vector<std::uint8_t> level(static_cast<std::size_t>(blocks.size()) * element_lanes);
+    const ElementInputs elements = world.element_inputs();
+    const Real step = stable_step(elements, blocks, world.nodes.position, world.nodes.mass, world.stiffness_sum).step;
+    find_element_levels(elements, blocks, world.nodes.position, world.nodes.mass, step, world.stiffness_sum, level);
+    level.resize(body.tetrahedra.size());
+    if (std::all_of(level.begin(), level.end(), [](std::uint8_t l) { return l == 0; })) return {};
+
+    std::vector<Index> order(level.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return level[static_cast<std::size_t>(a)] < level[static_cast<std::size_t>(b)]; });
+    std::vector<std::array<Index, 4>> sorted;
+    sorted.reserve(order.size());
+    for (Index t : order) sorted.push_back(body.tetrahedra[static_cast<std::size_t>(t)]);
+    erase_rows(world.elements, blocks);
+    append_elements(sorted, body.nodes, first_node, row, body.material, body.rotation, world.elements);
+    for (Index b = blocks.begin; b < blocks.end; ++b)  // the first lane has the lowest level
+        world.elements.level[static_cast<std::size_t>(b)] =
+            level[static_cast<std::size_t>(order[static_cast<std::size_t>(b - blocks.begin) * element_lanes])];
+    set_viscosity(world.elements, blocks, step);
+    return order;
+}
+
+std::vector<BoundaryTriangle> outline(const NewBody& body) {
+    if (!body.tetrahedra.empty()) return boundary_triangles(body.tetrahedra);
+    std::vector<BoundaryTriangle> triangles;
+    triangles.reserve(body.triangles.size());
+    for (const auto& triangle : body.triangles) triangles.push_back({triangle, no_index});
+    return triangles;
 }
 
 void shift(Index& row, Range gone) {
@@ -181,7 +236,11 @@ Index append_body(WorldState& world, const NewBody& body) {
     Range blocks = appended(world.elements.node.size(), world.elements.node.size());
     if (!body.tetrahedra.empty())
         blocks = append_elements(body.tetrahedra, body.nodes, nodes.begin, row, body.material, body.rotation, world.elements);
-    const std::vector<BoundaryTriangle> triangles = outline(body);
+    world.stiffness_sum.resize(world.nodes.position.size());
+    std::vector<Index> order;
+    if (world.settings.multirate && !body.tetrahedra.empty()) order = sort_by_level(world, body, blocks, nodes.begin, row);
+    std::vector<BoundaryTriangle> triangles = outline(body);
+    renumber_elements(order, triangles);
     const SurfaceRanges surface =
         append_surface(triangles, nodes.begin, body.tetrahedra.empty() ? no_index : blocks.begin * element_lanes, world.surface);
 
@@ -200,14 +259,15 @@ Index append_body(WorldState& world, const NewBody& body) {
     bodies.bvh_nodes[b] = append_bvh(surface.triangles, world.surface.triangles.node, world.nodes.position, world.bvh);
     bodies.element_count[b] = static_cast<Index>(body.tetrahedra.size());
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
+    bodies.level_count[b] = level_count_of(world.elements, blocks);
     bodies.mean_edge[b] = mean_edge_length(world, surface.edges);
     bodies.contact_distance[b] = body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);
-    world.stiffness_sum.resize(world.nodes.position.size());
     const StableStep step = stable_step(world.element_inputs(), blocks, world.nodes.position, world.nodes.mass, world.stiffness_sum);
     bodies.rest_step[b] = bodies.stable_step[b] = step.step;
 
     BodyRecord record;
+    record.element_order = std::move(order);
     record.tetrahedra.assign(body.tetrahedra.begin(), body.tetrahedra.end());
     for (const BoundaryTriangle& triangle : triangles) record.surface.push_back(triangle.node);
     world.body_records.push_back(std::move(record));

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/world/world_state.h"
+#include "systems/dynamics/keep_frames.h"
 #include "systems/dynamics/stable_step.h"
 
 namespace skerry {
@@ -14,6 +15,7 @@ namespace {
 constexpr std::size_t inline_work = 1024;
 
 /// Steps between two looks at the stable step: it changes with deformation, over many steps.
+/// In cycles of fine steps it is the coarse ones that count: all elements deform at the pace of the whole.
 constexpr std::uint64_t steps_per_watch = 256;
 
 /// A step that a body is too fast for is tried again at half its length, down to this fraction of the stable step; then steps grow back.
@@ -30,19 +32,6 @@ void keep_driven_velocities(WorldState& world) {
 void put_back_driven_velocities(WorldState& world) {
     for (std::size_t i = 0; i < world.attachments.node.size(); ++i)
         world.nodes.velocity[static_cast<std::size_t>(world.attachments.node[i])] = world.velocity_before_drive[i];
-}
-
-/// Bodies have theirs from measure_drift.
-void add_collider_travel(WorldState& world) {
-    const Real h = world.step.h;
-    for (std::size_t c = 0; c < world.colliders.slot.size(); ++c) {
-        const RigidMotion& motion = world.colliders.motion[c];
-        // A turning shape moves its far points fastest; what is near a body is within the extent that the search has noted.
-        const Real turning = motion.angular_velocity.norm();
-        const Column<Real>& extent = world.search.memory.collider_extent;
-        const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
-        world.colliders.travel[c] += h * (motion.velocity.norm() + rim_speed);
-    }
 }
 
 void count_shortcuts(const RegionTable& regions, std::size_t r, RunCounters& counters) {
@@ -126,6 +115,17 @@ void add_to_report(const WorldState& world, StepReport& report) {
 
 }  // namespace
 
+void add_collider_travel(WorldState& world, Real seconds) {
+    for (std::size_t c = 0; c < world.colliders.slot.size(); ++c) {
+        const RigidMotion& motion = world.colliders.motion[c];
+        // A turning shape moves its far points fastest; what is near a body is within the extent that the search has noted.
+        const Real turning = motion.angular_velocity.norm();
+        const Column<Real>& extent = world.search.memory.collider_extent;
+        const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
+        world.colliders.travel[c] += seconds * (motion.velocity.norm() + rim_speed);
+    }
+}
+
 Real stable_step(const WorldState& world, Index* body) {
     Real smallest = std::numeric_limits<Real>::infinity();
     for (std::size_t b = 0; b < world.bodies.slot.size(); ++b)
@@ -150,6 +150,7 @@ void take_step(WorldState& world, Real h) {
     world.step.measures = {};
     world.step.damped = 0;
     world.step.external = {};
+    find_due_levels(world);
     keep_driven_velocities(world);
     Trace* const trace = world.tracing ? &world.trace : nullptr;
     const bool small = world.elements.node.size() * element_lanes + world.contacts.size() < inline_work;
@@ -166,10 +167,15 @@ void take_step(WorldState& world, Real h) {
         }
         return;
     }
-    world.elements.rotation.swap(world.elements.rotation_next);
-    add_collider_travel(world);
+    ElementBlockTable& elements = world.elements;
+    if (world.step.due.all())
+        elements.rotation.swap(elements.rotation_next);
+    else
+        keep_frames(*world.executor, world.element_inputs(), elements.rotation_next, elements.rotation);
+    add_collider_travel(world, h);
     count(world);
     add_step(world);
+    count_impulses(world);
     world.counters.inline_steps += small;
     world.step.time += h;
 }
@@ -184,16 +190,15 @@ StepReport World::advance(Real dt) {
     Real left = dt;
     Real fast_limit = std::numeric_limits<Real>::infinity();  // s, while a body moves too fast for longer steps
     if (world.counters.steps == 0 && left > 0) check_balance(world);
+    bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
+    keep_start(world);
     while (left > 0) {
-        const Real stable = world.settings.step_size.value_or(skerry::stable_step(world) * world.settings.step_safety);
-        const Real longest = std::min(stable, fast_limit);
-        // A remainder of rounding size joins the last step.
-        const Real steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
-        const Real h = left / steps;
+        const StepPlan plan = plan_step(world, left, fast_limit);
+        if (world.settings.integrator == Integrator::leapfrog) drift_to(world, plan.h / 2);
         const Real start = world.step.time;
-        take_step(world, h);
-        if (world.step.verdict.fault == StepFault::too_fast && h > stable / most_shortening) {
-            fast_limit = h / 2;
+        take_step(world, plan.h);
+        if (world.step.verdict.fault == StepFault::too_fast && plan.h > plan.stable / most_shortening) {
+            fast_limit = plan.h / 2;
             ++report.shortened;
             ++world.counters.shortened;
             continue;
@@ -203,17 +208,26 @@ StepReport World::advance(Real dt) {
             break;
         }
         fast_limit *= step_growth;
-        report.step_size = h;
+        report.step_size = plan.h;
         add_to_report(world, report);
-        left = steps > 1 ? left - h : 0;
-        if (left == 0) world.step.time = end;
-        if (++world.steps_since_watch >= steps_per_watch) {
+        left = plan.steps > 1 ? left - plan.h : 0;
+        // Between cycles: within one, levels must stay.
+        if (++world.steps_since_watch >= steps_per_watch << world.step.cycle.levels && world.step.cycle.index == 0) {
             world.steps_since_watch = 0;
             watch_stable_step(world);
-            check_balance(world);
+            if (world.step.offset == 0)
+                check_balance(world);
+            else
+                look_at_end = true;
         }
         show_contact_problem(world, start);
     }
+    if (report.steps == 0)
+        put_back_start(world);
+    else
+        drift_to(world, 0);
+    if (left == 0) world.step.time = end;
+    if (look_at_end) check_balance(world);
     return report;
 }
 

@@ -13,6 +13,12 @@ void WorldState::search_afresh() {
 
 void WorldState::topology_changed() {
     build_corners(elements.node, elements.volume, nodes.position.size(), corners);
+    for (LevelMask& levels : nodes.levels) levels = 0;
+    for (std::size_t b = 0; b < elements.node.size(); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (elements.volume[b][l] > 0)
+                for (std::size_t a = 0; a < 4; ++a)
+                    nodes.levels[static_cast<std::size_t>(elements.node[b][a][l])] |= static_cast<LevelMask>(1u << elements.level[b]);
     stiffness_sum.resize(nodes.position.size());
     total_mass = 0;
     for (const Real mass : nodes.mass) total_mass += mass;

@@ -77,6 +77,9 @@ void validate(const Settings& settings) {
     if (settings.step_size) require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
     require(settings.step_safety > 0 && settings.step_safety <= 1, "settings", "step_safety", settings.step_safety,
             "a fraction > 0 and <= 1");
+    if (settings.multirate && settings.integrator == Integrator::literal)
+        refuse("settings", "multirate", "true",
+               "false: the literal integrator is for comparison with the paper, which has one step for all");
     require(settings.threads >= 0, "settings", "threads", settings.threads, "a number of threads, or 0 for those of the caller");
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance, "a number > 0 and < 1");
     require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");

@@ -67,7 +67,13 @@ Index WorldState::row(AttachmentHandle attachment, const char* call) const {
 }
 
 ElementInputs WorldState::element_inputs() const {
-    return {elements.node, elements.inverse_rest, elements.volume, elements.material, materials.constants};
+    return {elements.node,
+            elements.inverse_rest,
+            elements.volume,
+            elements.material,
+            materials.constants,
+            elements.viscous_time,
+            {elements.level, elements.body, bodies.level, step.due}};
 }
 
 World::World(const Settings& settings) {

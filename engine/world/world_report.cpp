@@ -50,6 +50,8 @@ std::uint64_t hash_of(WorldState& world) {
     world.nodes.for_each_state_column(add);
     world.elements.for_each_state_column(add);
     world.warm_start.for_each_column(add);
+    hash.add(static_cast<std::uint64_t>(world.step.cycle.index));
+    hash.add(&world.step.cycle.lead, sizeof world.step.cycle.lead);
     return hash.value();
 }
 
@@ -126,6 +128,14 @@ WorldReport World::report() const {
     report.broad_searches = world.search.broad_searches;
     report.pair_searches = world.search.pair_searches;
     report.candidates = world.search.candidate_count;
+    const auto& levels = world.step.cycle.elements;
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        if (levels[l] > 0) {
+            report.level_elements.resize(l + 1);
+            report.level_elements[l] = levels[l];
+        }
+    report.element_steps = counters.element_steps;
+    report.element_impulses = counters.element_impulses;
     report.inline_steps = counters.inline_steps;
     report.shortened = counters.shortened;
     report.energy = energy_of(world);
@@ -144,7 +154,9 @@ WorldReport World::report() const {
         if (ratios.smallest >= report.worst_volume_ratio) continue;
         report.worst_volume_ratio = ratios.smallest;
         report.worst_volume_body = world.body_records[b].name;
-        report.worst_volume_element = ratios.element - static_cast<Index>(element_lanes) * world.bodies.blocks[b].begin;
+        const Index place = ratios.element - static_cast<Index>(element_lanes) * world.bodies.blocks[b].begin;
+        const std::vector<Index>& order = world.body_records[b].element_order;
+        report.worst_volume_element = order.empty() ? place : order[static_cast<std::size_t>(place)];
     }
     const Balance balance = checked_balance(world);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };

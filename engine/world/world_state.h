@@ -40,10 +40,22 @@ namespace skerry {
 /// Slot of an attachment that belongs to a mesh collider: no user has a handle to it.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
+/// Where the world stands between two moments at which all levels have had their impulses (plan_step.cpp).
+struct StepCycle {
+    int levels = 0;                                          // the cycle has 2^levels steps
+    int index = 0;                                           // steps taken of it
+    Real h = 0;                                              // s, of its steps, if none had to be shortened
+    std::array<Real, step_level_count> lead{};               // s, by which the impulses of a level are ahead of time; between cycles zero
+    std::array<std::uint64_t, step_level_count> elements{};  // of each level in this cycle
+};
+
 /// What the stages of one step hand to each other beside the tables.
 struct StepState {
-    Real time = 0;                // s, start of the step
-    Real h = 0;                   // s
+    Real time = 0;    // s, start of the step
+    Real h = 0;       // s
+    Real offset = 0;  // s, by which positions are ahead of velocities; only leapfrog, and only within advance
+    StepCycle cycle;
+    DueLevels due;
     Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;
     CollisionSettings collision;
@@ -60,6 +72,7 @@ struct RunCounters {
     std::uint64_t steps = 0, inline_steps = 0, shortened = 0;
     std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
     std::uint64_t separating = 0, frictionless = 0, in_lanes = 0, frozen = 0, contact_steps = 0, swept = 0;
+    std::uint64_t element_steps = 0, element_impulses = 0;
     Index max_contacts = 0, max_regions = 0, largest_region = 0, worst_region = 0;
     Real worst_error = 0, dissipated = 0, max_penetration = 0, max_gap_violation = 0;
 };
@@ -69,6 +82,7 @@ struct BodyRecord {
     std::string name;
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
+    std::vector<Index> element_order;              // which tetrahedron element e of the body is; empty: number e
 };
 
 struct ColliderRecord {
@@ -80,6 +94,13 @@ struct ColliderRecord {
 struct KeptVelocities {
     Column<Vec3> velocity;       // m/s, at the start of the step
     Column<Vec3> velocity_next;  // m/s, predicted
+};
+
+/// State at the start of a call of advance, while leapfrog has drifted away from it.
+struct KeptStart {
+    Real time = 0;          // s
+    Column<Vec3> position;  // m
+    Column<Vec3> velocity;  // m/s
 };
 
 /// Who wants to see contact problems. Idle, it costs a skipped stage.
@@ -129,6 +150,7 @@ struct WorldState {
 
     ProblemWatch problem_watch;
     KeptVelocities kept_velocities;
+    KeptStart start;
     Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
     Column<Real> stiffness_sum;          // scratch of stable_step
     Column<ExternalWork> work_parts;     // scratch of measure_work
@@ -162,6 +184,29 @@ void take_step(WorldState& world, Real h);
 Real stable_step(const WorldState& world, Index* body = nullptr);
 /// Looks at the stable step of every body again.
 void watch_stable_step(WorldState& world);
+
+/// Colliders have moved for so long at their present motion. Bodies have their travel from measure_drift.
+void add_collider_travel(WorldState& world, Real seconds);
+
+// plan_step.cpp
+struct StepPlan {
+    Real h = 0;       // s
+    Real steps = 1;   // of this length to the end of what was asked for
+    Real stable = 0;  // s, the longest step that stability or the settings allow
+};
+/// The next step of a call that has `left` seconds to go, where no step may be longer than `fast_limit`. Begins a cycle between two.
+StepPlan plan_step(WorldState& world, Real left, Real fast_limit);
+/// Writes world.step.due for the step of length world.step.h, and which levels of each body that means.
+void find_due_levels(WorldState& world);
+/// After a committed step: what its impulses covered.
+void count_impulses(WorldState& world);
+
+// drift_state.cpp
+/// Lets positions, colliders and attachments drift until they are `offset` seconds ahead of the velocities.
+void drift_to(WorldState& world, Real offset);
+/// Keeps the state that a call of advance starts from, where a drift would change it, and puts it back when no step could be committed.
+void keep_start(WorldState& world);
+void put_back_start(WorldState& world);
 
 // watch_problems.cpp
 /// Copies what the contact problem of this step is made of.

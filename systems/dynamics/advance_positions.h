@@ -1,15 +1,17 @@
-// The drift of symplectic Euler; commits the step.
+// The drift; commits the step.
 #pragma once
 
 #include <span>
 
+#include "components/options.h"
 #include "components/types.h"
 #include "jobs/executor.h"
 
 namespace skerry {
 
-/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Parallel over nodes.
-void advance_positions(Executor& executor, std::span<const Vec3> velocity_next, Real h, std::span<Vec3> push_out, std::span<Vec3> position,
-                       std::span<Vec3> velocity);
+/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Forward Euler (literal) drifts with the velocity before
+/// the step instead. Parallel over nodes.
+void advance_positions(Executor& executor, std::span<const Vec3> velocity_next, Real h, Integrator integrator, std::span<Vec3> push_out,
+                       std::span<Vec3> position, std::span<Vec3> velocity);
 
 }  // namespace skerry

@@ -49,6 +49,8 @@ Range append_elements(std::span<const Tetrahedron> tetrahedra, std::span<const V
         elements.force.push_back(ElementForces{});
         elements.body.push_back(body);
         elements.material.push_back(material);
+        elements.viscous_time.push_back(0);
+        elements.level.push_back(0);
     }
     for (std::size_t b = static_cast<std::size_t>(first_block); b < elements.force.size(); ++b)
         for (auto& lane : elements.force[b]) lane.fill(Vec3::Zero());

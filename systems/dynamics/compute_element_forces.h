@@ -5,6 +5,7 @@
 
 #include "components/element_table.h"
 #include "components/material_table.h"
+#include "components/step_levels.h"
 #include "jobs/executor.h"
 
 namespace skerry {
@@ -15,13 +16,16 @@ struct ElementInputs {
     std::span<const ElementLane> volume;
     std::span<const Index> material;
     std::span<const MaterialConstants> constants;
+    std::span<const Real> viscous_time = {};  // s; empty: nothing is viscous
+    ElementSchedule schedule = {};
 };
 
 /// force[block][lane][a]: N, on corner a of each element, from the first Piola-Kirchhoff stress P(F), F = Ds B:
 /// (f1 f2 f3) = -V P B^T, f0 = -(f1 + f2 + f3). Corotational elements start the extraction of their frame from `rotation` and leave the
-/// result in `rotation_next`; those of other models copy nothing. Parallel over blocks of lanes.
+/// result in `rotation_next`; those of other models copy nothing. Blocks that are not due keep what they had; those that are due for
+/// several steps at once get so many times the force. Parallel over blocks of lanes.
 void compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const ElementRotation> rotation, std::span<ElementRotation> rotation_next,
-                            std::span<ElementForces> force);
+                            std::span<const Vec3> velocity, std::span<const ElementRotation> rotation,
+                            std::span<ElementRotation> rotation_next, std::span<ElementForces> force);
 
 }  // namespace skerry

@@ -7,51 +7,20 @@
 
 #include "components/check.h"
 #include "systems/dynamics/element_block.h"
-#include "systems/dynamics/element_stiffness.h"
+#include "systems/dynamics/element_levels.h"
+#include "systems/dynamics/stiffness_share.h"
 #include "systems/material/linear.h"
-#include "systems/material/stable_neo_hookean.h"
 
 namespace skerry {
 
 namespace {
 
-/// Rest gradients of the four corners: the rows of B, and minus their sum for corner 0.
-struct Gradients {
-    LaneVec3<Real8> g[4];
-};
-
-Gradients gradients_of(const ElementRest& B) {
-    const LaneVec3<Real8> g1{load(B[0]), load(B[3]), load(B[6])}, g2{load(B[1]), load(B[4]), load(B[7])},
-        g3{load(B[2]), load(B[5]), load(B[8])};
-    return {{-1.0 * (g1 + g2 + g3), g1, g2, g3}};
-}
-
-/// How stiff each corner is held: V |g_a|^2, times the bound of the material's Hessian where deformation changes it much.
-std::array<Real8, 4> corner_stiffness(const ElementInputs& elements, std::size_t b, const LaneMat3<Real8>& F) {
-    const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];
-    Real8 weight = load(elements.volume[b]);
-    if (material.model == MaterialModel::stable_neo_hookean) weight = weight * stable_neo_hookean::stiffness_bound(material, F);
-    const Gradients at = gradients_of(elements.inverse_rest[b]);
-    return {weight * dot(at.g[0], at.g[0]), weight * dot(at.g[1], at.g[1]), weight * dot(at.g[2], at.g[2]), weight * dot(at.g[3], at.g[3])};
-}
-
-/// Sum over the corners of g_a g_a^T / m_a, the node's mass shared in proportion to stiffness: m_a = mass k_a / (sum of k at the node).
-LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b, const LaneMat3<Real8>& F, std::span<const Real> mass,
-                                    std::span<const Real> stiffness_sum) {
-    const Gradients at = gradients_of(elements.inverse_rest[b]);
-    const std::array<Real8, 4> stiffness = corner_stiffness(elements, b, F);
-    LaneMat3<Real8> Q{};
-    for (std::size_t a = 0; a < 4; ++a) {
-        Real8 inverse{};
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            const std::size_t n = static_cast<std::size_t>(elements.node[b][a][l]);
-            // No mass: a node that never moves.
-            if (mass[n] > 0 && elements.volume[b][l] > 0) inverse[l] = stiffness_sum[n] / (mass[n] * stiffness[a][l]);
-        }
-        const LaneVec3<Real8> scaled = inverse * at.g[a];
-        Q = Q + LaneMat3<Real8>{at.g[a].x * scaled, at.g[a].y * scaled, at.g[a].z * scaled};
-    }
-    return Q;
+/// The highest level of a range of blocks.
+int top_level(const ElementInputs& elements, std::size_t first, std::size_t end) {
+    int top = 0;
+    if (!elements.schedule.level.empty())
+        for (std::size_t b = first; b < end; ++b) top = std::max<int>(top, elements.schedule.level[b]);
+    return top;
 }
 
 }  // namespace
@@ -60,41 +29,45 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
                        std::span<Real> stiffness_sum) {
     SKERRY_CHECK(stiffness_sum.size() == position.size() && mass.size() == position.size());
     const std::size_t first = static_cast<std::size_t>(blocks.begin), end = static_cast<std::size_t>(blocks.end);
-    const auto deformation = [&](std::size_t b) {
-        return deformation_gradient(edges(elements.node[b], position), elements.inverse_rest[b]);
+    const auto sum_at = [&](std::size_t b, std::size_t a, std::size_t l) -> Real& {
+        return stiffness_sum[static_cast<std::size_t>(elements.node[b][a][l])];
     };
-    const auto for_each_corner = [&](std::size_t b, auto&& visit) {
+    const auto level_of = [&](std::size_t b) { return elements.schedule.level.empty() ? 0 : int{elements.schedule.level[b]}; };
+    for (std::size_t b = first; b < end; ++b)
         for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t l = 0; l < element_lanes; ++l) visit(stiffness_sum[static_cast<std::size_t>(elements.node[b][a][l])], a, l);
-    };
-    for (std::size_t b = first; b < end; ++b) for_each_corner(b, [](Real& sum, std::size_t, std::size_t) { sum = 0; });
-    for (std::size_t b = first; b < end; ++b) {
-        const std::array<Real8, 4> stiffness = corner_stiffness(elements, b, deformation(b));
-        for_each_corner(b, [&](Real& sum, std::size_t a, std::size_t l) { sum += stiffness[a][l]; });
-    }
+            for (std::size_t l = 0; l < element_lanes; ++l) sum_at(b, a, l) = 0;
 
-    Real highest = 0;
-    Index element = no_index;
+    StableStep found{std::numeric_limits<Real>::infinity(), no_index};
     // The frame of a corotational element starts from the same lane of the block before it: neighbours turn together.
     const Real8 one = Real8{} + 1.0;
     LaneQuaternion<Real8> q{one, {}, {}, {}};
-    for (std::size_t b = first; b < end; ++b) {
-        const LaneMat3<Real8> F = deformation(b);
-        const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];
-        const LaneMat3<Real8> Q = inverse_mass_tensor(elements, b, F, mass, stiffness_sum);
-        // The last term is nothing, or no number where F is none: not every bound looks at F.
-        const Real8 bound = frequency_squared_bound(material, F, load(elements.volume[b]), Q, q) + 0.0 * inner_product(F, F);
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            const Index here = static_cast<Index>(b * element_lanes + l);
-            if (!(bound[l] <= std::numeric_limits<Real>::max())) return {0, here};  // a shape that is not finite has no stable step
-            if (bound[l] > highest) {
-                highest = bound[l];
-                element = here;
+    // From the coarsest level down: an element shares masses with those of its level and of coarser ones alone (element_levels.h).
+    for (int level = top_level(elements, first, end); level >= 0; --level) {
+        for (std::size_t b = first; b < end; ++b) {
+            if (level_of(b) != level) continue;
+            const std::array<Real8, 4> stiffness = corner_stiffness(elements, b, deformation_of(elements, b, position));
+            for (std::size_t a = 0; a < 4; ++a)
+                for (std::size_t l = 0; l < element_lanes; ++l) sum_at(b, a, l) += stiffness[a][l];
+        }
+        Real highest = 0;
+        Index element = no_index;
+        for (std::size_t b = first; b < end; ++b) {
+            if (level_of(b) != level) continue;
+            const Real8 bound = frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q);
+            for (std::size_t l = 0; l < element_lanes; ++l) {
+                const Index here = static_cast<Index>(b * element_lanes + l);
+                if (!(bound[l] <= std::numeric_limits<Real>::max())) return {0, here};  // a shape that is not finite has no stable step
+                if (bound[l] > highest) {
+                    highest = bound[l];
+                    element = here;
+                }
             }
         }
+        if (element == no_index) continue;
+        const Real step = step_of_level(step_times_frequency / std::sqrt(highest), level);
+        if (step < found.step) found = {step, element};
     }
-    constexpr Real safety = 0.9;
-    return {element == no_index ? std::numeric_limits<Real>::infinity() : safety * 2 / std::sqrt(highest), element};
+    return found;
 }
 
 Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

@@ -16,7 +16,8 @@ struct StableStep {
 
 /// Stable step of one body in its present shape: the mass of each node is shared among its elements in proportion to their stiffness, and
 /// omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material Hessian of the present deformation bounded as methods.md
-/// 4.2 gives it. A rigorous bound (never above the exact limit), sequential, deterministic. `stiffness_sum` is scratch, one entry a node.
+/// 4.2 gives it. A rigorous bound (never above the exact limit), sequential, deterministic. Where elements have levels it is the step of level 0 for
+/// which every level has what element_levels.h asks. `stiffness_sum` is scratch, one entry a node.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> mass,
                        std::span<Real> stiffness_sum);
 

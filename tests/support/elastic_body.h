@@ -39,10 +39,10 @@ struct ElasticBody {
     ElementInputs inputs() const { return {elements.node, elements.inverse_rest, elements.volume, elements.material, constants}; }
 
     void compute_elements(Executor& executor) {
-        compute_element_forces(executor, inputs(), position, elements.rotation, elements.rotation_next, elements.force);
+        compute_element_forces(executor, inputs(), position, velocity, elements.rotation, elements.rotation_next, elements.force);
     }
     void gather(Executor& executor, const Vec3& gravity = Vec3::Zero()) {
-        gather_node_forces(executor, corners.view(), elements.force, mass, gravity, load, force);
+        gather_node_forces(executor, corners.view(), {}, elements.force, mass, gravity, load, force);
     }
     void compute_forces(Executor& executor, const Vec3& gravity = Vec3::Zero()) {
         compute_elements(executor);

@@ -94,8 +94,12 @@ struct WorldReport {
     std::uint64_t swept = 0;          // regions that needed sweeps
     std::uint64_t solved = 0;         // regions
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
-    std::uint64_t inline_steps = 0;  // too small to pay for threads
-    std::uint64_t shortened = 0;     // steps tried again at half the length, since a body was too fast
+    // Multirate: elements of each level in the last step, an impulse every 2^level steps; empty without it.
+    std::vector<std::uint64_t> level_elements;
+    std::uint64_t element_steps = 0;     // elements times steps
+    std::uint64_t element_impulses = 0;  // of them, how many were evaluated
+    std::uint64_t inline_steps = 0;      // too small to pay for threads
+    std::uint64_t shortened = 0;         // steps tried again at half the length, since a body was too fast
     Energy energy;
     Vec3 momentum = Vec3::Zero();                     // kg m/s
     Vec3 angular_momentum = Vec3::Zero();             // kg m^2/s, about the origin

@@ -91,9 +91,11 @@ struct ColliderSettings {
 
 /// Settings of the world and its step. Defaults work.
 struct Settings {
-    Vec3 gravity = {0, 0, -9.81};          // m/s^2
-    std::optional<Real> step_size{};       // s; by default the stable step of the stiffest body
-    Real step_safety = 1.0;                // fraction of the stable step that is used, in (0, 1]
+    Vec3 gravity = {0, 0, -9.81};     // m/s^2
+    std::optional<Real> step_size{};  // s; by default the stable step of the stiffest body
+    Real step_safety = 1.0;           // fraction of the stable step that is used, in (0, 1]
+    Integrator integrator = Integrator::symplectic_euler;
+    bool multirate = false;                // elements that stand longer steps get impulses less often (docs/integration.md)
     Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
     int threads = 0;                       // 0: those of the caller's task arena
     ContactRegions contact_regions = ContactRegions::separate;

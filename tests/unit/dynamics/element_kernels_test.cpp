@@ -116,10 +116,10 @@ TEST_CASE("a node without elements carries its load only", "[unit]") {
     const std::vector<Real> mass{2};
     const std::vector<Vec3> load{Vec3(1, 0, 0)};
     std::vector<Vec3> force(1);
-    gather_node_forces(*executor, corners.view(), {}, mass, Vec3(0, 0, -1), load, force);
+    gather_node_forces(*executor, corners.view(), {}, {}, mass, Vec3(0, 0, -1), load, force);
     CHECK(force[0] == Vec3(1, 0, -2));
-    gather_node_forces(*executor, RaggedView<Index>{}, {}, {}, Vec3::Zero(), {}, {});
-    compute_element_forces(*executor, {}, {}, {}, {}, {});
+    gather_node_forces(*executor, RaggedView<Index>{}, {}, {}, {}, Vec3::Zero(), {}, {});
+    compute_element_forces(*executor, {}, {}, {}, {}, {}, {});
 }
 
 TEST_CASE("a position that is not a number reaches the nodes of its elements only", "[unit]") {

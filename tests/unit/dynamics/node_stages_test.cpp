@@ -24,14 +24,14 @@ TEST_CASE("a drift commits velocity and push-out, and uses the push-out up", "[u
     const auto executor = make_executor(Backend::serial, 1);
     const std::vector<Vec3> next{Vec3(1, 2, 3), Vec3(0, 0, 0)};
     std::vector<Vec3> push{Vec3(1, 0, 0), Vec3(0, 0, 2)}, position{Vec3(10, 0, 0), Vec3(0, 0, 0)}, velocity(2, Vec3::Zero());
-    advance_positions(*executor, next, 0.5, push, position, velocity);
+    advance_positions(*executor, next, 0.5, Integrator::symplectic_euler, push, position, velocity);
     CHECK(position[0] == Vec3(11, 1, 1.5));
     CHECK(position[1] == Vec3(0, 0, 1));
     CHECK(velocity[0] == next[0]);
     CHECK(velocity[1] == Vec3(0, 0, 0));  // the push-out moves positions only
     CHECK(push[0] == Vec3::Zero());
     CHECK(push[1] == Vec3::Zero());
-    advance_positions(*executor, {}, 0.5, {}, {}, {});
+    advance_positions(*executor, {}, 0.5, Integrator::symplectic_euler, {}, {}, {});
 }
 
 TEST_CASE("free fall follows its discrete law", "[unit]") {
@@ -44,7 +44,7 @@ TEST_CASE("free fall follows its discrete law", "[unit]") {
     constexpr int steps = 1000;
     for (int n = 0; n < steps; ++n) {
         predict_velocity(*executor, force, inverse_mass, velocity, h, next);
-        advance_positions(*executor, next, h, push, position, velocity);
+        advance_positions(*executor, next, h, Integrator::symplectic_euler, push, position, velocity);
     }
     CHECK(velocity[0].z() == Approx(-g * steps * h).epsilon(1e-12));
     CHECK(position[0].z() == Approx(-g * h * h * steps * (steps + 1) / 2).epsilon(1e-12));

@@ -1,0 +1,44 @@
+// Levels of multirate stepping: elements of level l get one impulse in 2^l steps.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "components/types.h"
+
+namespace skerry {
+
+inline constexpr int element_level_count = 8;  // levels of elements within their body
+inline constexpr int step_level_count = 16;    // levels in the world: that of the element within its body plus that of the body
+
+/// One bit a level.
+using LevelMask = std::uint16_t;
+
+/// Which levels get an impulse in this step, and how long each lasts in steps; 0: none. Without multirate every level lasts one step.
+struct DueLevels {
+    std::array<Real, step_level_count> duration;
+
+    DueLevels() { duration.fill(1); }
+    bool all() const { return mask() == LevelMask(~0u); }
+    LevelMask mask() const {
+        unsigned bits = 0;
+        for (int l = 0; l < step_level_count; ++l)
+            if (duration[static_cast<std::size_t>(l)] != 0) bits |= 1u << l;
+        return static_cast<LevelMask>(bits);
+    }
+};
+
+/// What a kernel must know to leave out the blocks that get no impulse in this step. With empty spans every block is due for one step.
+struct ElementSchedule {
+    std::span<const std::uint8_t> level = {};       // by block, within its body
+    std::span<const Index> body = {};               // by block
+    std::span<const std::uint8_t> body_level = {};  // by body
+    DueLevels due = {};
+
+    Real duration(std::size_t block) const {
+        return level.empty() ? 1 : due.duration[std::size_t{level[block]} + body_level[static_cast<std::size_t>(body[block])]];
+    }
+};
+
+}  // namespace skerry

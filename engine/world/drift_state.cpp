@@ -1,0 +1,54 @@
+// What leapfrog does before its first and after its last kick: positions drift by half a step, so that between them kicks come in the middle of
+// their steps while the state at both ends belongs to one time. Each step is symmetric in time, whatever its length.
+#include "engine/world/world_state.h"
+#include "systems/dynamics/advance_positions.h"
+#include "systems/dynamics/measure_drift.h"
+#include "systems/dynamics/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+void measure_drift_of(WorldState& world) {
+    NodeTable& n = world.nodes;
+    NodeBlockTable& k = world.node_blocks;
+    BodyTable& b = world.bodies;
+    measure_drift(*world.executor, {k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position},
+                  {n.drift_origin, k.drift_squared, world.search.memory.rebase, b.drift, b.travel});
+}
+
+}  // namespace
+
+void drift_to(WorldState& world, Real offset) {
+    const Real seconds = offset - world.step.offset;
+    if (seconds == 0) return;
+    NodeTable& n = world.nodes;
+    AttachmentTable& a = world.attachments;
+    ColliderTable& c = world.colliders;
+    move_colliders({c.script, c.keyframe, c.initial}, world.step.time, seconds, c.motion);
+    move_colliders({a.script, a.keyframe, a.initial}, world.step.time, seconds, a.motion);
+    drive_nodes({a.motion, a.nodes, a.node, a.anchor}, seconds, n.position, n.velocity);
+    advance_positions(*world.executor, n.velocity, seconds, Integrator::leapfrog, n.push_out, n.position, n.velocity);
+    measure_drift_of(world);
+    add_collider_travel(world, std::abs(seconds));
+    world.step.time += seconds;
+    world.step.offset = offset;
+}
+
+void keep_start(WorldState& world) {
+    if (world.settings.integrator != Integrator::leapfrog) return;
+    world.start.time = world.step.time;
+    world.start.position = world.nodes.position;
+    world.start.velocity = world.nodes.velocity;
+}
+
+void put_back_start(WorldState& world) {
+    if (world.settings.integrator != Integrator::leapfrog) return;
+    world.nodes.position = world.start.position;
+    world.nodes.velocity = world.start.velocity;
+    world.step.time = world.start.time;
+    world.step.offset = 0;
+    measure_drift_of(world);
+}
+
+}  // namespace skerry

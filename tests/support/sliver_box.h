@@ -1,0 +1,60 @@
+// A box of tetrahedra some of which are nearly flat.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "skerry/mesh.h"
+
+namespace skerry::test {
+
+/// The box mesh of cubic cells with `share` of its tetrahedra made flat: a node inside is moved close to the middle of the opposite face of one of
+/// its tetrahedra, to `flatness` of the altitude. Faces lie in common planes, so that some four to eight tetrahedra become flat at once. No two
+/// nodes of a tetrahedron are moved. Fewer than asked for where there is no room.
+inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uint64_t seed = 1) {
+    Mesh mesh = mesh::box({size, size, size}, {cells, cells, cells});
+    std::vector<std::vector<std::size_t>> around(mesh.nodes.size());
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (Index n : mesh.tetrahedra[t]) around[static_cast<std::size_t>(n)].push_back(t);
+    const auto node = [&](Index n) -> Vec3& { return mesh.nodes[static_cast<std::size_t>(n)]; };
+    const auto six_volumes = [&](std::size_t t) {
+        const auto& c = mesh.tetrahedra[t];
+        return (node(c[1]) - node(c[0])).cross(node(c[2]) - node(c[0])).dot(node(c[3]) - node(c[0]));
+    };
+    const Real regular = std::pow(size / cells, 3);  // six volumes of each tetrahedron before
+    std::vector<bool> taken(mesh.nodes.size(), false);
+    std::mt19937_64 random(seed);
+    const auto wanted = static_cast<std::size_t>(share * static_cast<Real>(mesh.tetrahedra.size()) + 0.5);
+    std::size_t made = 0;
+    for (std::size_t tries = 0; tries < 50 * mesh.tetrahedra.size() && made < wanted; ++tries) {
+        const auto& corners = mesh.tetrahedra[random() % mesh.tetrahedra.size()];
+        const std::size_t moved = random() % 4;
+        const Index n = corners[moved];
+        const Vec3 old = node(n);
+        const bool inside = old.cwiseAbs().maxCoeff() < size / 2 * (1 - 1e-9);
+        bool free = inside;
+        for (std::size_t t : around[static_cast<std::size_t>(n)])
+            for (Index other : mesh.tetrahedra[t]) free = free && !taken[static_cast<std::size_t>(other)];
+        if (!free) continue;
+        const Vec3 &a = node(corners[(moved + 1) % 4]), &b = node(corners[(moved + 2) % 4]), &c = node(corners[(moved + 3) % 4]);
+        const Vec3 normal = (b - a).cross(c - a).normalized();
+        node(n) = (a + b + c) / 3 + flatness * normal.dot(old - a) * normal;
+        std::size_t flat = 0;
+        for (std::size_t t : around[static_cast<std::size_t>(n)]) {
+            free = free && six_volumes(t) > 0.5 * flatness * regular;
+            flat += six_volumes(t) < 2 * flatness * regular;
+        }
+        if (!free) {
+            node(n) = old;
+            continue;
+        }
+        made += flat;
+        for (std::size_t t : around[static_cast<std::size_t>(n)])
+            for (Index other : mesh.tetrahedra[t]) taken[static_cast<std::size_t>(other)] = true;
+    }
+    return mesh;
+}
+
+}  // namespace skerry::test

@@ -1,0 +1,162 @@
+// Levels of elements, impulses of several steps, and the viscosity of fine elements.
+#include <catch2/catch.hpp>
+
+#include "systems/dynamics/element_levels.h"
+#include "systems/dynamics/keep_frames.h"
+#include "systems/dynamics/stable_step.h"
+#include "tests/support/elastic_body.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+MaterialConstants rubber(MaterialModel model) {
+    return {model, 4e4, 6e4, 1000};
+}
+
+/// A strained, moving box with slivers.
+struct SliverBody : ElasticBody {
+    std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
+    std::mt19937_64 random{7};
+
+    explicit SliverBody(MaterialModel model = MaterialModel::stable_neo_hookean)
+        : ElasticBody(jittered_box({4, 4, 4}, 0.1, 0.3, 3, 0.01), rubber(model)) {
+        for (Vec3& x : position) x += 0.002 * random_vector(random);
+        for (Vec3& v : velocity) v = random_vector(random);
+    }
+    void compute(const ElementInputs& inputs) {
+        compute_element_forces(*executor, inputs, position, velocity, elements.rotation, elements.rotation_next, elements.force);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("every level of a mesh with slivers stands its own step", "[unit]") {
+    SliverBody body;
+    std::vector<Real> sums(body.position.size());
+    const Real step = stable_step(body.inputs(), body.blocks, body.position, body.mass, sums).step;
+    std::vector<std::uint8_t> level(static_cast<std::size_t>(body.blocks.size()) * element_lanes);
+    find_element_levels(body.inputs(), body.blocks, body.position, body.mass, step, sums, level);
+    CHECK(*std::min_element(level.begin(), level.end()) == 0);
+    CHECK(*std::max_element(level.begin(), level.end()) >= 1);
+
+    // Blocks have the lowest level of their lanes. Then level by level the bound gives back the step of the body, and a level more for all
+    // that are above 0 does not.
+    for (std::size_t b = 0; b < body.elements.level.size(); ++b)
+        body.elements.level[b] = *std::min_element(level.begin() + static_cast<std::ptrdiff_t>(b * element_lanes),
+                                                   level.begin() + static_cast<std::ptrdiff_t>((b + 1) * element_lanes));
+    ElementInputs inputs = body.inputs();
+    inputs.schedule.level = body.elements.level;
+    CHECK(stable_step(inputs, body.blocks, body.position, body.mass, sums).step == Approx(step).epsilon(1e-12));
+    for (auto& l : body.elements.level) l = static_cast<std::uint8_t>(l + 1);
+    CHECK(stable_step(inputs, body.blocks, body.position, body.mass, sums).step < 0.6 * step);
+}
+
+TEST_CASE("blocks that are not due keep their force, those due for four steps get four times as much", "[unit]") {
+    SliverBody body;
+    const std::vector<Index> of_body(body.elements.node.size(), 0);
+    const std::vector<std::uint8_t> body_level{1};
+    for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
+    ElementInputs inputs = body.inputs();
+    body.compute(inputs);
+    const Column<ElementForces> once = body.elements.force;
+    for (auto& forces : body.elements.force)
+        for (auto& lane : forces) lane.fill(Vec3(1, 2, 3));
+    inputs.schedule = {body.elements.level, of_body, body_level, {}};
+    inputs.schedule.due.duration.fill(0);
+    inputs.schedule.due.duration[2] = 4;  // level 1 of a body of level 1
+    body.compute(inputs);
+    for (std::size_t b = 0; b < once.size(); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            for (std::size_t a = 0; a < 4; ++a)
+                CHECK(body.elements.force[b][l][a] == (b % 2 == 1 ? Vec3(4 * once[b][l][a]) : Vec3(1, 2, 3)));
+}
+
+TEST_CASE("nodes gather the corners that are due and nothing else", "[unit]") {
+    SliverBody body;
+    body.compute(body.inputs());
+    const std::size_t nodes = body.position.size();
+    std::vector<LevelMask> levels(nodes, 0);
+    const std::size_t block_count = body.elements.level.size();
+    for (std::size_t b = 0; b < block_count; ++b) {
+        body.elements.level[b] = static_cast<std::uint8_t>(4 * b / block_count);  // sorted, as a body sorts them
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            for (std::size_t a = 0; a < 4; ++a)
+                if (body.elements.volume[b][l] > 0)
+                    levels[static_cast<std::size_t>(body.elements.node[b][a][l])] |= static_cast<LevelMask>(1u << body.elements.level[b]);
+    }
+    for (Vec3& f : body.load) f = random_vector(body.random);
+    const Vec3 gravity(0, 0, -9.81);
+    const std::vector<Index> begin{0, 40, 41}, end{40, 41, static_cast<Index>(nodes)}, of_block{0, 0, 0};
+    for (const unsigned mask : {0x0u, 0x1u, 0x5u, 0xau, 0xfu}) {
+        INFO("levels " << mask);
+        const std::vector<LevelMask> due{static_cast<LevelMask>(mask)};
+        gather_node_forces(*body.executor, body.corners.view(), {begin, end, of_block, due, levels, body.elements.level},
+                           body.elements.force, body.mass, gravity, body.load, body.force);
+        for (std::size_t n = 0; n < nodes; ++n) {
+            Vec3 sum = Vec3::Zero();
+            for (const Index corner : body.corners[n]) {
+                const auto e = static_cast<std::size_t>(corner / 4);
+                if ((mask >> body.elements.level[e / element_lanes] & 1) != 0)
+                    sum += body.elements.force[e / element_lanes][e % element_lanes][static_cast<std::size_t>(corner % 4)];
+            }
+            CHECK(body.force[n] == Vec3(sum + body.mass[n] * gravity + body.load[n]));
+        }
+    }
+}
+
+TEST_CASE("viscosity gives no force and no torque as a whole, takes energy, and leaves rigid motion alone", "[unit]") {
+    const auto model = GENERATE(MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean);
+    SliverBody body(model);
+    const std::vector<Real> time(body.elements.node.size(), 1e-3);
+    ElementInputs inputs = body.inputs();
+    const auto viscous_part = [&] {
+        inputs.viscous_time = {};
+        body.compute(inputs);
+        const Column<ElementForces> elastic = body.elements.force;
+        inputs.viscous_time = time;
+        body.compute(inputs);
+        for (std::size_t b = 0; b < elastic.size(); ++b)
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                for (std::size_t a = 0; a < 4; ++a) body.elements.force[b][l][a] -= elastic[b][l][a];
+        std::vector<Vec3> force(body.position.size(), Vec3::Zero());
+        for (std::size_t n = 0; n < force.size(); ++n)
+            for (const Index corner : body.corners[n]) force[n] += (&body.elements.force[0][0][0])[corner];
+        return force;
+    };
+    Real size = 0, power = 0;
+    Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
+    std::vector<Vec3> force = viscous_part();
+    for (std::size_t n = 0; n < force.size(); ++n) {
+        size += force[n].norm();
+        sum += force[n];
+        torque += body.position[n].cross(force[n]);
+        power += force[n].dot(body.velocity[n]);
+    }
+    REQUIRE(size > 1);
+    // Differences of forces that are some times as large: rounding to 1e-13 of them.
+    CHECK(sum.norm() < 1e-12 * size);
+    CHECK(torque.norm() < 1e-12 * size);
+    CHECK(power < -1e-3 * size);
+    for (std::size_t n = 0; n < force.size(); ++n) body.velocity[n] = Vec3(1, 2, 3) + Vec3(-2, 1, 4).cross(body.position[n]);
+    force = viscous_part();
+    for (const Vec3& f : force) CHECK(f.norm() < 1e-11 * size);
+}
+
+TEST_CASE("frames are kept of corotational blocks that were due", "[unit]") {
+    SliverBody body(MaterialModel::corotational);
+    const std::vector<Index> of_body(body.elements.node.size(), 0);
+    const std::vector<std::uint8_t> body_level{0};
+    for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
+    ElementInputs inputs = body.inputs();
+    inputs.schedule = {body.elements.level, of_body, body_level, {}};
+    inputs.schedule.due.duration.fill(0);
+    inputs.schedule.due.duration[1] = 2;
+    body.compute(inputs);
+    keep_frames(*body.executor, inputs, body.elements.rotation_next, body.elements.rotation);
+    for (std::size_t b = 0; b < body.elements.level.size(); ++b) {
+        const bool turned = body.elements.rotation[b][1][0] != 0;
+        CHECK(turned == (b % 2 == 1));
+    }
+}
