@@ -126,8 +126,8 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
             shape[1][n] = turn * shape[0][n];
         }
         const double elements = median_seconds(repeats, [&](int r) {
-            compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, body.elements.rotation, body.elements.rotation_next,
-                                   body.elements.force);
+            compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, body.elements.rotation,
+                                   body.elements.rotation_next, body.elements.force);
             swap(body.elements.rotation, body.elements.rotation_next);
         });
         const double gather = median_seconds(repeats, [&](int) { body.gather(executor); });
