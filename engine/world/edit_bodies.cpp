@@ -105,18 +105,6 @@ void erase_rows(auto& table, Range gone) {
         [gone](const char*, auto& column) { column.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size())); });
 }
 
-/// Fine elements beside coarse ones get some viscosity. Impulses that come every 2^l steps are in time with some of the modes that take fewer
-/// than 2^(l + 1) steps, and would pump them up by some per cent each time (methods.md 4.4); modes of neighbouring levels are kept out
-/// of reach by coarse_safety.
-void set_viscosity(ElementBlockTable& elements, Range blocks, Real step) {
-    const int top = elements.level[static_cast<std::size_t>(blocks.end - 1)];
-    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        const int level = elements.level[b];
-        const bool fine = top > 0 && (level == 0 || level <= top - 2);
-        elements.viscous_time[b] = fine ? viscous_time(step * static_cast<Real>(1 << level)) : 0;
-    }
-}
-
 /// Sorts the elements of a new body by level, so that blocks have one level; their order within a level stays. Returns which tetrahedron
 /// element e is: order[e]; empty while they stand in the order of the mesh.
 std::vector<Index> sort_by_level(WorldState& world, const NewBody& body, Range blocks, Index first_node, Index row) {
@@ -139,7 +127,8 @@ std::vector<Index> sort_by_level(WorldState& world, const NewBody& body, Range b
     for (Index b = blocks.begin; b < blocks.end; ++b)  // the first lane has the lowest level
         world.elements.level[static_cast<std::size_t>(b)] =
             level[static_cast<std::size_t>(order[static_cast<std::size_t>(b - blocks.begin) * element_lanes])];
-    set_viscosity(world.elements, blocks, step);
+    const auto first = static_cast<std::size_t>(blocks.begin), count = static_cast<std::size_t>(blocks.size());
+    find_viscous_times(world.elements.level.span().subspan(first, count), step, world.elements.viscous_time.span().subspan(first, count));
     return order;
 }
 

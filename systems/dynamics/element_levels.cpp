@@ -112,4 +112,14 @@ void find_element_levels(const ElementInputs& elements, Range blocks, std::span<
     drop_thin_levels(elements.volume.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size())), level);
 }
 
+void find_viscous_times(std::span<const std::uint8_t> block_level, Real step, std::span<Real> viscous_time) {
+    constexpr Real damping_ratio = 0.02;
+    const int top = block_level.empty() ? 0 : block_level.back();
+    for (std::size_t b = 0; b < block_level.size(); ++b) {
+        const int level = block_level[b];
+        const bool fine = top > 0 && (level == 0 || level <= top - 2);
+        viscous_time[b] = fine ? 2 * damping_ratio * step * static_cast<Real>(1 << level) / step_times_frequency : 0;
+    }
+}
+
 }  // namespace skerry

@@ -19,18 +19,18 @@ constexpr Real step_of_level(Real step, int level) {
     return level == 0 ? step : coarse_safety * step / static_cast<Real>(1 << level);
 }
 
-/// s, viscous time of elements whose own stable step is `step`: 2 % of critical damping at their highest frequency, and less in proportion
-/// below it. The stable step still holds: it needs omega h <= 2 (sqrt(1 + zeta^2) - zeta) = 1.96 (methods.md 4.2) and keeps 1.8.
-constexpr Real viscous_time(Real step) {
-    constexpr Real damping_ratio = 0.02;
-    return 2 * damping_ratio * step / step_times_frequency;
-}
-
 /// level[8 (b - blocks.begin) + lane] of the elements of one body in the shape that it has: the highest for which 2^level steps are stable by
 /// the bound of stiffness_share.h, with masses shared among elements of this level and of higher ones only. So a node may belong to one
 /// sliver and many good elements, and only the sliver is fine: the others would each get next to nothing of a mass shared among all.
 /// `step` is the stable step of the body, s; `stiffness_sum` is scratch, one entry a node. Sequential, for new bodies.
 void find_element_levels(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> mass, Real step,
                          std::span<Real> stiffness_sum, std::span<std::uint8_t> level);
+
+/// Viscous times (s) of the blocks of a body whose level 0 has the stable step `step`, sorted by level: fine blocks beside coarse ones get some
+/// viscosity, 2 % of critical damping at their own highest frequency and less in proportion below it. Impulses that come every 2^l steps are in
+/// time with some of the modes that take fewer than 2^(l + 1) steps, and would pump them up by some per cent each time (methods.md 4.4);
+/// modes of neighbouring levels are kept out of reach by coarse_safety. The stable step still holds: it needs
+/// omega h <= 2 (sqrt(1 + zeta^2) - zeta) = 1.96 (methods.md 4.2) and keeps 1.8.
+void find_viscous_times(std::span<const std::uint8_t> block_level, Real step, std::span<Real> viscous_time);
 
 }  // namespace skerry
