@@ -22,6 +22,7 @@ constexpr Real step_growth = 1.1;
 
 /// Tries at one length of step with the crossings of the last ones as contacts, before the step is shortened.
 constexpr int tries_at_one_length = 4;
+constexpr int most_halvings = 6;
 
 /// What a step overwrites that is not its result, so that a step that is not committed leaves it as it was.
 void keep_for_refusal(WorldState& world) {
@@ -206,7 +207,7 @@ StepReport World::advance(Real dt) {
     world.crossings.row.clear();                              // of a step that was given up: bodies may have changed since
     Real fast_limit = std::numeric_limits<Real>::infinity();  // s, while a body moves too fast for longer steps
     if (world.counters.steps == 0 && left > 0) check_balance(world);
-    int tries = 0;  // of this step, given up because something crossed
+    int tries = 0, halvings = 0;  // of this step, because something crossed
     while (left > 0) {
         const Real stable = world.settings.step_size.value_or(skerry::stable_step(world) * world.settings.step_safety);
         const Real longest = std::min(stable, fast_limit);
@@ -221,8 +222,8 @@ StepReport World::advance(Real dt) {
             continue;
         }
         tries = 0;
-        const bool too_fast = world.step.verdict.fault == StepFault::too_fast;
-        if ((too_fast || world.step.crossings > 0) && h > stable / most_shortening) {
+        const bool too_fast = world.step.verdict.fault == StepFault::too_fast && h > stable / most_shortening;
+        if (too_fast || (world.step.crossings > 0 && halvings++ < most_halvings)) {
             world.crossings.row.clear();
             fast_limit = h / 2;
             ++report.shortened;
@@ -234,6 +235,7 @@ StepReport World::advance(Real dt) {
             blame(world, report);
             break;
         }
+        halvings = 0;
         fast_limit *= step_growth;
         report.step_size = h;
         add_to_report(world, report);

@@ -48,26 +48,25 @@ public:
     /// Looks at the candidates that can have met by `front`. Returns how many were tested.
     std::uint64_t run(Index begin, Index end, Real front) {
         scale_ = pair_scale(inputs_, kind_, first_, second_);
+        const Real travel = pair_travel(inputs_, kind_, first_, second_);
         std::uint64_t tested = 0;
         for (Index c = begin; c < end; ++c)
-            if (!(front < asleep_until_[c])) tested += test(candidates_[c]);
+            if (!(front < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel);
         return tested;
     }
 
 private:
-    bool test(const Candidate& candidate) {
+    /// `least`: m, no distance is below it.
+    bool test(const Candidate& candidate, Real least) {
         const bool edges = is_edge_edge(candidate.feature);
         const FeaturePair kind = edges ? FeaturePair::edge_edge : FeaturePair::point_triangle;
         const std::array<Index, 4> node = edges ? nodes_of_edges(candidate) : nodes_of_point(candidate);
         FourPoints x, displacement;
-        bool moves = false;
-        for (std::size_t i = 0; i < 4; ++i) {
-            x[i] = inputs_.position[node[i]];
-            displacement[i] = motion_.of(node[i]);
-            moves |= inputs_.inverse_mass[node[i]] > 0;
-        }
-        const Real start = nearest(kind, node, x).offset.norm();
-        if (!moves || !(greatest_approach(kind, displacement) > slow_fraction * start)) return false;
+        for (std::size_t i = 0; i < 4; ++i) displacement[i] = motion_.of(node[i]);
+        const Real approach = greatest_approach(kind, displacement);
+        if (!(approach > slow_fraction * least) || !can_move(node)) return false;
+        for (std::size_t i = 0; i < 4; ++i) x[i] = inputs_.position[node[i]];
+        if (!(approach > slow_fraction * nearest(kind, node, x).offset.norm())) return false;
         const std::optional<Real> time = time_of_contact(kind, x, displacement);
         if (!time || is_own_piece(edges, node)) return true;
         FourPoints met;
@@ -83,6 +82,10 @@ private:
     std::array<Index, 4> nodes_of_edges(const Candidate& candidate) const {
         const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
         return {a[0], a[1], b[0], b[1]};
+    }
+
+    bool can_move(const std::array<Index, 4>& node) const {
+        return std::any_of(node.begin(), node.end(), [&](Index n) { return inputs_.inverse_mass[n] > 0; });
     }
 
     bool is_own_piece(bool edges, const std::array<Index, 4>& node) const {
