@@ -20,6 +20,9 @@ struct Candidate {
 
 enum class PairKind : std::uint8_t { bodies, collider, self };
 
+/// Whether the surfaces of a pair are known not to go through each other.
+enum class PairState : std::uint8_t { unknown, apart, overlapping };
+
 /// Place in the concatenated candidate lists.
 struct CandidatePlace {
     Index pair;
@@ -35,11 +38,13 @@ struct PairTable {
     Column<Index> second;      // row of BodyTable, or of ColliderTable
     Column<Real> front;        // m: sum of both travels and of what this step may add to the closing, written in every step
     Column<Real> valid_until;  // m: the list holds while front is below this
+    Column<PairState> state;   // as last searched; apart stays apart, find_crossings sees to it
     std::vector<Column<Candidate>> candidates;  // by pair, sorted by feature
     std::vector<Column<Real>> asleep_until;     // m, by pair and candidate: it cannot touch while front is below this
     Column<CandidatePlace> block;               // where the blocks of find_contacts start, and one past the last
     Column<std::size_t> block_first;            // row of ContactTable where the contacts of a block start
     std::vector<Column<ContactRow>> found;      // this step's contacts, by block, in candidate order
+    Column<Real> block_nearest;                 // m: no features that were looked at in this block are nearer to each other
 
     std::size_t size() const { return key.size(); }
 };
@@ -57,6 +62,18 @@ struct FoundPair {
     Index first;
     Index second;
     Real valid_until;  // m
+    PairState state;
+};
+
+/// Features that would have gone through each other in a try of this step. The step is tried again with them as contacts.
+struct CrossingTable {
+    Column<ContactRow> row;                 // in key order; empty once a step is taken
+    std::vector<Column<ContactRow>> found;  // of the last try, by block of find_contacts
+    Column<ContactRow> merged;              // working memory
+    bool last_try = false;                  // what crosses now is let through, and its pair counts as overlapping
+    std::uint64_t tested = 0;               // features, since the world was made
+    std::uint64_t hits = 0;                 // of these, crossings that were stopped
+    std::uint64_t let_through = 0;          // of these, crossings that no try could stop
 };
 
 /// No point of a body's surface is further than `radius` from `centre`.

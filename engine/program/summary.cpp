@@ -100,7 +100,9 @@ std::string summary_of(const RunResult& result) {
     if (r.steps > 0)
         text += line("steps", grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                   ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
-                                  (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : ""));
+                                  (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : "") +
+                                  (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : ""));
+    if (r.crossed > 0) text += line("crossed", grouped(r.crossed) + " features went through each other");
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " + with_unit(result.peak_kinetic_energy, "J") +

@@ -143,6 +143,8 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step that moves nodes by more than this fraction of an element is refused", .limits = above(0)})
             .key("contact_budgets", &S::contact_budgets, {.meaning = "skip what cannot have come close; false searches everything"})
+            .key("continuous_collision", &S::continuous_collision,
+                 {.meaning = "a step in which surfaces would go through each other is tried again with what crossed as contacts"})
             .key("certify_warm_start", &S::certify_warm_start, {.meaning = "no sweep where last step's impulses still solve a region"})
             .key("skip_separating", &S::skip_separating, {.meaning = "no impulse where no contact of a region closes"})
             .key("frictionless_rows", &S::frictionless_rows,

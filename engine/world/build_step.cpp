@@ -3,6 +3,7 @@
 #include "engine/world/world_state.h"
 #include "systems/collision/find_candidates.h"
 #include "systems/collision/find_contacts.h"
+#include "systems/collision/find_crossings.h"
 #include "systems/contact/match_warm_start.h"
 #include "systems/dynamics/advance_positions.h"
 #include "systems/dynamics/damp_velocity.h"
@@ -69,26 +70,32 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             read(n.velocity), value(w.step.h), write(k.sums), write(n.velocity_next), make(w.step.damped));
 }
 
-void list_contact_branch(WorldState& w, TaskGraph& g) {
+auto collision_inputs(WorldState& w) {
     NodeTable& n = w.nodes;
-    ContactTable& c = w.contacts;
-    const auto inputs = bundle(
+    return bundle(
         [&w, &n] {
             return CollisionInputs{w.bodies,   w.colliders,    w.surface,  n.inverse_mass, w.materials.surface,
                                    w.bvh.node, w.bvh.triangle, n.position, n.velocity,     n.rest_position};
         },
         reads(w.bodies, w.colliders, w.surface, n.inverse_mass, w.materials, w.bvh.node, w.bvh.triangle, n.position, n.velocity,
               n.rest_position));
+}
+
+void list_contact_branch(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.nodes;
+    ContactTable& c = w.contacts;
+    const auto inputs = collision_inputs(w);
     g.stage("collision/find_candidates", find_candidates, inputs, value(w.step.collision), value(w.step.h), write(w.bvh.box),
             make(w.search), make(w.pairs));
-    g.stage("collision/find_contacts", find_contacts, inputs, value(w.step.collision), value(w.step.h), make(w.pairs), make(c));
+    g.stage("collision/find_contacts", find_contacts, inputs, value(w.step.collision), value(w.step.h), make(w.pairs), make(w.crossings),
+            make(c));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.warm_start), value(w.step.h),
             write(c.impulse), only_if([&w] { return w.step.solver.warm_start == WarmStart::on; }, reads(w.step.solver)));
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(n.inverse_mass), value(w.step.contact_regions),
             make(w.union_find), make(w.regions), write(c.region));
 }
 
-void list_solve_and_join(WorldState& w, TaskGraph& g) {
+void list_solve(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.nodes;
     ContactTable& c = w.contacts;
     BodyTable& b = w.bodies;
@@ -121,6 +128,15 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
                 writes(c.impulse, n.velocity_next, n.push_out)));
     g.stage_with_result("contact/measure_contacts", w.step.measures, measure_contacts, read(c), read(n.inverse_mass), read(n.velocity),
                         read(n.velocity_next), write(c.slip), write(c.state), value(w.step.solver.friction));
+}
+
+/// Looks at the step, and commits it when it can be trusted.
+void list_join(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.nodes;
+    ContactTable& c = w.contacts;
+    BodyTable& b = w.bodies;
+    ElementBlockTable& e = w.elements;
+    NodeBlockTable& k = w.node_blocks;
     g.stage_with_result(
         "dynamics/check_state", w.step.verdict, check_state,
         bundle(
@@ -130,12 +146,16 @@ void list_solve_and_join(WorldState& w, TaskGraph& g) {
             },
             reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out, e.node, b.blocks)),
         value(w.step.h), value(w.step.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
-    const auto trusted = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
     g.stage_with_result(
         "dynamics/measure_work", w.step.external, measure_work,
         bundle([&w, &n] { return w.loaded ? std::span<const Vec3>(n.load.span()) : std::span<const Vec3>(); }, reads(n.load)),
         read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h), make(w.work_parts),
         only_if([&w] { return w.loaded || w.attachments.node.size() > 0; }, reads(w.attachments)));
+    g.stage_with_result("collision/find_crossings", w.step.crossings, find_crossings, collision_inputs(w), value(w.step.collision),
+                        value(w.step.h), read(n.velocity_next), read(n.push_out), make(w.pairs), make(w.crossings),
+                        only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict)));
+    const auto trusted =
+        only_if([&w] { return w.step.verdict.fault == StepFault::none && w.step.crossings == 0; }, reads(w.step.verdict, w.step.crossings));
     g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), value(w.settings.integrator),
             write(n.push_out), write(n.position), write(n.velocity), trusted);
     g.stage("dynamics/measure_drift", measure_drift,
@@ -157,7 +177,8 @@ void build_step(WorldState& world) {
     list_scripted_motion(world, world.graph);
     list_force_branch(world, world.graph);
     list_contact_branch(world, world.graph);
-    list_solve_and_join(world, world.graph);
+    list_solve(world, world.graph);
+    list_join(world, world.graph);
     world.graph.compile();
 }
 

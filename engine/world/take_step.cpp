@@ -22,14 +22,21 @@ constexpr std::uint64_t steps_per_watch = 256;
 constexpr Real most_shortening = 64;
 constexpr Real step_growth = 1.1;
 
-/// Velocities that drive_nodes overwrites, so that a step that is not committed leaves them as they were.
-void keep_driven_velocities(WorldState& world) {
+/// Tries at one length of step with the crossings of the last ones as contacts, before the step is shortened.
+constexpr int tries_at_one_length = 4;
+constexpr int most_halvings = 6;
+
+/// What a step overwrites that is not its result, so that a step that is not committed leaves it as it was.
+void keep_for_refusal(WorldState& world) {
+    world.speed_before.resize(world.bodies.max_speed.size());
+    std::copy(world.bodies.max_speed.begin(), world.bodies.max_speed.end(), world.speed_before.begin());
     world.velocity_before_drive.resize(world.attachments.node.size());
     for (std::size_t i = 0; i < world.attachments.node.size(); ++i)
         world.velocity_before_drive[i] = world.nodes.velocity[static_cast<std::size_t>(world.attachments.node[i])];
 }
 
-void put_back_driven_velocities(WorldState& world) {
+void put_back(WorldState& world) {
+    std::copy(world.speed_before.begin(), world.speed_before.end(), world.bodies.max_speed.begin());
     for (std::size_t i = 0; i < world.attachments.node.size(); ++i)
         world.nodes.velocity[static_cast<std::size_t>(world.attachments.node[i])] = world.velocity_before_drive[i];
 }
@@ -150,8 +157,9 @@ void take_step(WorldState& world, Real h) {
     world.step.measures = {};
     world.step.damped = 0;
     world.step.external = {};
+    world.step.crossings = 0;
     find_due_levels(world);
-    keep_driven_velocities(world);
+    keep_for_refusal(world);
     Trace* const trace = world.tracing ? &world.trace : nullptr;
     const bool small = world.elements.node.size() * element_lanes + world.contacts.size() < inline_work;
     if (small)
@@ -159,14 +167,15 @@ void take_step(WorldState& world, Real h) {
     else
         world.graph.run(*world.executor, trace);
     world.contact_view_is_current = false;
-    if (world.step.verdict.fault != StepFault::none) {
-        put_back_driven_velocities(world);
+    if (!world.step.taken()) {
+        put_back(world);
         if (world.step.verdict.fault == StepFault::not_finite) {
             for (Real& speed : world.bodies.max_speed) speed = 0;  // of this step; the search measures afresh
             world.search_afresh();
         }
         return;
     }
+    world.crossings.row.clear();
     ElementBlockTable& elements = world.elements;
     if (world.step.due.all())
         elements.rotation.swap(elements.rotation_next);
@@ -180,6 +189,19 @@ void take_step(WorldState& world, Real h) {
     world.step.time += h;
 }
 
+namespace {
+
+/// A step that crosses at any length is taken nevertheless, and reported: the push out of overlaps has to mend it.
+void take_crossing_step(WorldState& world, Real h, StepReport& report) {
+    const std::uint64_t before = world.crossings.let_through;
+    world.crossings.last_try = true;
+    take_step(world, h);
+    world.crossings.last_try = false;
+    report.crossed += static_cast<Index>(world.crossings.let_through - before);
+}
+
+}  // namespace
+
 StepReport World::advance(Real dt) {
     if (!(dt >= 0) || !std::isfinite(dt))
         Complaint{.file = {}, .object = "advance", .field = "dt", .found = std::to_string(dt), .expected = "a time >= 0 (s)", .hint = {}}
@@ -188,25 +210,37 @@ StepReport World::advance(Real dt) {
     StepReport report;
     const Real end = world.step.time + dt;
     Real left = dt;
+    world.crossings.row.clear();                              // of a step that was given up: bodies may have changed since
     Real fast_limit = std::numeric_limits<Real>::infinity();  // s, while a body moves too fast for longer steps
     if (world.counters.steps == 0 && left > 0) check_balance(world);
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     keep_start(world);
+    int tries = 0, halvings = 0;  // of this step, because something crossed
     while (left > 0) {
         const StepPlan plan = plan_step(world, left, fast_limit);
         if (world.settings.integrator == Integrator::leapfrog) drift_to(world, plan.h / 2);
         const Real start = world.step.time;
         take_step(world, plan.h);
-        if (world.step.verdict.fault == StepFault::too_fast && plan.h > plan.stable / most_shortening) {
+        if (world.step.crossings > 0 && ++tries < tries_at_one_length) {
+            ++report.retried;
+            ++world.counters.retried;
+            continue;
+        }
+        tries = 0;
+        const bool too_fast = world.step.verdict.fault == StepFault::too_fast && plan.h > plan.stable / most_shortening;
+        if (too_fast || (world.step.crossings > 0 && halvings++ < most_halvings)) {
+            world.crossings.row.clear();
             fast_limit = plan.h / 2;
             ++report.shortened;
             ++world.counters.shortened;
             continue;
         }
+        if (world.step.crossings > 0) take_crossing_step(world, plan.h, report);
         if (world.step.verdict.fault != StepFault::none) {
             blame(world, report);
             break;
         }
+        halvings = 0;
         fast_limit *= step_growth;
         report.step_size = plan.h;
         add_to_report(world, report);

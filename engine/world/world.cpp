@@ -38,6 +38,8 @@ WorldState::WorldState(const Settings& wanted) : settings(wanted), executor(make
     step.max_strain_step = settings.max_strain_step;
     step.collision.gravity = settings.gravity.norm();
     step.collision.use_budgets = settings.contact_budgets;
+    // forward Euler drifts with velocities that no contact has seen: there is nothing to hold it to
+    step.collision.continuous = settings.continuous_collision && settings.integrator != Integrator::literal;
     step.solver.method = settings.method;
     step.solver.friction = settings.friction;
     step.solver.warm_start = settings.warm_start;

@@ -138,6 +138,10 @@ WorldReport World::report() const {
     report.element_impulses = counters.element_impulses;
     report.inline_steps = counters.inline_steps;
     report.shortened = counters.shortened;
+    report.retried = counters.retried;
+    report.crossing_tests = world.crossings.tested;
+    report.crossings_found = world.crossings.hits;
+    report.crossed = world.crossings.let_through;
     report.energy = energy_of(world);
     for (std::size_t n = 0; n < world.nodes.position.size(); ++n) {
         const Vec3 momentum = world.nodes.mass[n] * world.nodes.velocity[n];

@@ -62,14 +62,17 @@ struct StepState {
     SolverSettings solver;
     Real max_strain_step = 0;
     StepVerdict verdict;
+    Index crossings = 0;  // features that would go through each other: not zero, and the step is tried again
     ContactMeasures measures;
     ExternalWork external;
     Real damped = 0;  // J, taken out by damping in this step
+
+    bool taken() const { return verdict.fault == StepFault::none && crossings == 0; }
 };
 
 /// Sums over all steps since the world was made.
 struct RunCounters {
-    std::uint64_t steps = 0, inline_steps = 0, shortened = 0;
+    std::uint64_t steps = 0, inline_steps = 0, shortened = 0, retried = 0;
     std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
     std::uint64_t separating = 0, frictionless = 0, in_lanes = 0, frozen = 0, contact_steps = 0, swept = 0;
     std::uint64_t element_steps = 0, element_impulses = 0;
@@ -135,6 +138,7 @@ struct WorldState {
 
     PairTable pairs;
     SearchState search;
+    CrossingTable crossings;
     ContactTable contacts;
     WarmStartTable warm_start;
     RegionTable regions;
@@ -151,6 +155,7 @@ struct WorldState {
     ProblemWatch problem_watch;
     KeptVelocities kept_velocities;
     KeptStart start;
+    Column<Real> speed_before;           // m/s, bodies.max_speed: put back when a step is not committed
     Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
     Column<Real> stiffness_sum;          // scratch of stable_step
     Column<ExternalWork> work_parts;     // scratch of measure_work

@@ -31,6 +31,7 @@ struct CollisionSettings {
     Real pair_skin = 0.25;    // fraction of the mean edge: candidates are kept this much beyond the distance at which they matter
     Real broad_skin = 4.0;    // fraction of the mean edge: pairs of bodies are kept this much beyond it
     bool use_budgets = true;  // off: search everything in every step (the simple twin, for tests)
+    bool continuous = true;   // off: the motion of a step is not looked at for crossings
 };
 
 }  // namespace skerry

@@ -9,8 +9,8 @@ namespace skerry {
 
 namespace {
 
-// rad: an edge that bends less counts as flat. Left out, it lets two edges come nearer by at most a quarter of this fraction of their
-// length than the points around show: an eighth of the default contact distance.
+// rad: an edge that bends less counts as flat. Left out, it lets two edges come nearer by at most a quarter of this fraction of the width of
+// its faces than the points around show: an eighth of the default contact distance.
 constexpr Real min_bend = 0.01;
 
 // rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that border exactly. To
@@ -38,23 +38,25 @@ public:
         const auto& ends = surface.edges.node[edge];
         const auto& around = surface.edges.triangle[edge];
         const Vec3& origin = position[ends[0]];
-        length_ = (position[ends[1]] - origin).norm();
-        border_ = border_angle * length_ + closing;
+        const Vec3 along = position[ends[1]] - origin;
         const auto& first = surface.triangles.node[around[0]];
         const Vec3 normal = unit_normal(position, first);
         outward_ = normal;
-        into_[0] = position[opposite(first, ends)] - origin;
+        into_[0] = across(along, position[opposite(first, ends)] - origin);
+        border_[0] = border_angle * into_[0].norm() + closing;
         if (around[1] == no_index) {
             // The rim of an open surface: as if a wall went down from it.
-            into_[1] = -length_ * normal;
+            into_[1] = -into_[0].norm() * normal;
+            border_[1] = border_[0];
             convex_ = true;
             return;
         }
         const auto& second = surface.triangles.node[around[1]];
-        into_[1] = position[opposite(second, ends)] - origin;
+        into_[1] = across(along, position[opposite(second, ends)] - origin);
+        border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
         // The other face falls away below the plane of the first.
-        convex_ = normal.dot(into_[1]) < closing - min_bend * length_;
+        convex_ = normal.dot(into_[1]) < closing - min_bend * into_[1].norm();
     }
 
     bool convex() const { return convex_; }
@@ -62,21 +64,26 @@ public:
     /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
         // The mean normal tells the outside of a nearly flat edge from its inside, which the borders cannot.
-        return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_ && direction.dot(into_[1]) <= border_;
+        return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_[0] && direction.dot(into_[1]) <= border_[1];
     }
 
 private:
-    std::array<Vec3, 2> into_;  // m, from the edge into either face
-    Vec3 outward_;              // sum of the unit normals of both
-    Real length_;               // m
-    Real border_;               // m, how far the end of a face may stand out beyond the direction
+    /// What of `v` is normal to the edge: a face may be much wider or narrower than the edge is long.
+    static Vec3 across(const Vec3& along, const Vec3& v) {
+        const Real squared = along.squaredNorm();
+        return squared > 0 ? Vec3(v - along.dot(v) / squared * along) : v;
+    }
+
+    std::array<Vec3, 2> into_;    // m, from the edge across either face
+    std::array<Real, 2> border_;  // m, how far the end of a face may stand out beyond the direction
+    Vec3 outward_;                // sum of the unit normals of both
     bool convex_;
 };
 
 }  // namespace
 
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first, Index second,
-                                  const PairScale& scale, Real near) {
+                                  const PairScale& scale, Real near, Surfaces surfaces) {
     const auto &ea = surface.edges.node[first], &eb = surface.edges.node[second];
     const Vec3 &a0 = position[ea[0]], &a1 = position[ea[1]], &b0 = position[eb[0]], &b1 = position[eb[1]];
     EdgeEdgeContact contact;
@@ -97,7 +104,7 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
     if (wedge_b.faces(normal) && wedge_a.faces(-normal)) {
         contact.distance = distance;
         contact.normal = normal;
-    } else if (distance <= scale.edge_depth && wedge_b.faces(-normal) && wedge_a.faces(normal)) {
+    } else if (surfaces == Surfaces::may_overlap && distance <= scale.edge_depth && wedge_b.faces(-normal) && wedge_a.faces(normal)) {
         contact.distance = -distance;  // they have passed each other
         contact.normal = -normal;
     } else {

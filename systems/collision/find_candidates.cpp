@@ -9,6 +9,7 @@
 #include "systems/collision/find_pairs.h"
 #include "systems/collision/search_pair.h"
 #include "systems/collision/step_reach.h"
+#include "systems/collision/surfaces_cross.h"
 
 namespace skerry {
 
@@ -91,6 +92,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     pair.margin = settings.pair_skin * pair.scale.edge + closing(inputs, memory, pair, h);
     if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
+    if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart)
+        pairs.state[p] = !found.empty() && surfaces_cross(inputs, pair, boxes) ? PairState::overlapping : PairState::apart;
 
     pairs.candidates[p].resize(found.size());
     pairs.asleep_until[p].resize(found.size());

@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <limits>
 
 #include "jobs/parallel_for.h"
 #include "systems/collision/collider_distance.h"
 #include "systems/collision/contact_key.h"
 #include "systems/collision/contact_reach.h"
+#include "systems/collision/contact_rows.h"
 #include "systems/collision/edge_edge_contact.h"
 #include "systems/collision/point_triangle_contact.h"
+#include "systems/collision/rest_distance.h"
 
 namespace skerry {
 
@@ -41,18 +43,21 @@ public:
           kind_(pairs.kind[p]),
           first_(pairs.first[p]),
           second_(pairs.second[p]),
+          apart_(pairs.state[p] == PairState::apart && settings.continuous),
           front_(pairs.front[p]),
           candidates_(pairs.candidates[p].span()),
           asleep_until_(pairs.asleep_until[p].span()),
           found_(found) {}
 
-    void run(Index begin, Index end) {
+    /// Returns the least distance of the features that were looked at, m.
+    Real run(Index begin, Index end) {
         for (Index i = begin; i < end; i += candidates_at_once) {
             const Index stop = std::min(i + candidates_at_once, end);
             if (settings_.use_budgets && all_asleep(i, stop)) continue;
             for (Index c = i; c < stop; ++c)
                 if (!settings_.use_budgets || !(front_ < asleep_until_[c])) wake(c);
         }
+        return std::sqrt(nearest_squared_);
     }
 
 private:
@@ -80,6 +85,8 @@ private:
         scale_ = pair_scale(inputs_, kind_, first_, second_);
         surface_ = pair_surface(inputs_, kind_, first_, second_);
         datum_ = pair_datum(inputs_, kind_, first_, second_);
+        // Without a shell touching surfaces may overlap by rounding.
+        surfaces_ = apart_ && scale_.contact_distance > 0 ? Surfaces::apart : Surfaces::may_overlap;
         const Real closing = front_ - pair_travel(inputs_, kind_, first_, second_);
         near_ = scale_.contact_distance + (closing >= 0 ? closing : 0);
         prepared_ = true;
@@ -99,22 +106,9 @@ private:
     void add(const Candidate& candidate, ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
              const Vec3& surface_velocity) {
         if (!moves(stencil)) return;
-        const bool turned = kind == ContactKind::point_triangle && is_point_of_second(candidate.feature);
-        ContactRow row;
-        row.key = {key_, candidate.feature};
-        row.kind = kind;
-        row.stencil = stencil;
-        row.point = point;
-        row.normal = normal;
-        row.gap = distance - scale_.contact_distance;
-        row.distance = distance;
+        ContactRow row = contact_row(inputs_, {key_, kind_, first_, second_}, candidate, kind, stencil, point, normal, distance,
+                                     scale_.contact_distance, surface_);
         row.surface_velocity = surface_velocity;
-        row.static_friction = surface_.static_friction;
-        row.dynamic_friction = surface_.dynamic_friction;
-        row.restitution = surface_.restitution;
-        row.first_body = turned ? second_ : first_;
-        row.second_body = kind_ == PairKind::collider ? no_index : turned ? first_ : second_;
-        row.collider = kind_ == PairKind::collider ? second_ : inputs_.body.collider[second_];
         found_.push_back(row);
     }
 
@@ -134,28 +128,24 @@ private:
     void point_against_triangle(Index c, const Candidate& candidate) {
         const Index node = inputs_.surface.vertices.node[candidate.first];
         const PointTriangleContact contact =
-            point_triangle_contact(inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_);
+            point_triangle_contact(inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_, surfaces_);
+        nearest_squared_ = std::min(nearest_squared_, contact.closest.distance_squared);
         asleep_until_[c] = datum_ + contact.sleep;
         if (contact.side == Side::none) return;
         const auto& corner = inputs_.surface.triangles.node[candidate.second];
         Real speed_squared = 0;
         for (Index n : corner) speed_squared = std::max(speed_squared, (inputs_.velocity[node] - inputs_.velocity[n]).squaredNorm());
         if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
-        if (contact.side == Side::inside && !is_truly_inside(c, node, corner, -contact.distance)) return;
-
-        Stencil stencil{{node, node, node, node}, {1, 0, 0, 0}};
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (contact.closest.weight[k] == 0) continue;  // a node without weight joins no regions
-            stencil.node[k + 1] = corner[k];
-            stencil.weight[k + 1] = -contact.closest.weight[k];
-        }
-        add(candidate, ContactKind::point_triangle, stencil, contact.closest.nearest, contact.normal, contact.distance, Vec3::Zero());
+        if (contact.side == Side::behind && !is_truly_behind(c, node, corner, std::abs(contact.distance))) return;
+        add(candidate, ContactKind::point_triangle, stencil_of_point({node, corner[0], corner[1], corner[2]}, contact.closest),
+            contact.closest.nearest, contact.normal, contact.distance, Vec3::Zero());
     }
 
-    /// A point behind a triangle is inside the body only if no other of its triangles is nearer: it may be in front of the far side of a thin
+    /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front of the far side of a thin
     /// part, or be pushed out through a nearer face. All triangles as near as that are candidates of the same point, in one row.
-    bool is_truly_inside(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
-        if (kind_ == PairKind::self && !was_far_at_rest(point, corner)) return false;
+    bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
+        // In a body's contact with itself it may simply be on the other side of a thin part.
+        if (kind_ == PairKind::self && !was_far_at_rest(inputs_, scale_, point, corner)) return false;
         const std::uint64_t group = point_of_feature(candidates_[c].feature);
         const Index count = static_cast<Index>(candidates_.size());
         const Real limit = depth - nearer_fraction * (depth + scale_.edge);
@@ -172,17 +162,10 @@ private:
         return true;
     }
 
-    /// In a body's contact with itself a point behind a triangle may simply be on the other side of a thin part.
-    bool was_far_at_rest(Index point, const std::array<Index, 3>& corner) const {
-        if (inputs_.rest_position.empty()) return false;
-        const auto& rest = inputs_.rest_position;
-        const Real squared = closest_point_on_triangle(rest[point], rest[corner[0]], rest[corner[1]], rest[corner[2]]).distance_squared;
-        return squared > 4 * scale_.face_depth * scale_.face_depth;
-    }
-
     void edge_against_edge(Index c, const Candidate& candidate) {
         const EdgeEdgeContact contact =
-            edge_edge_contact(inputs_.surface, inputs_.position, candidate.first, candidate.second, scale_, near_);
+            edge_edge_contact(inputs_.surface, inputs_.position, candidate.first, candidate.second, scale_, near_, surfaces_);
+        nearest_squared_ = std::min(nearest_squared_, contact.closest.distance_squared);
         asleep_until_[c] = datum_ + contact.sleep;
         if (!contact.touching) return;
         const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
@@ -190,8 +173,7 @@ private:
         for (Index m : a)
             for (Index n : b) speed_squared = std::max(speed_squared, (inputs_.velocity[m] - inputs_.velocity[n]).squaredNorm());
         if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
-        const Real s = contact.closest.s, t = contact.closest.t;
-        add(candidate, ContactKind::edge_edge, {{a[0], a[1], b[0], b[1]}, {1 - s, s, -(1 - t), -t}}, contact.closest.on_second,
+        add(candidate, ContactKind::edge_edge, stencil_of_edges({a[0], a[1], b[0], b[1]}, contact.closest), contact.closest.on_second,
             contact.normal, contact.distance, Vec3::Zero());
     }
 
@@ -201,11 +183,14 @@ private:
     const std::uint64_t key_;
     const PairKind kind_;
     const Index first_, second_;
+    const bool apart_;
     const Real front_;
     std::span<const Candidate> candidates_;
     std::span<Real> asleep_until_;
     Column<ContactRow>& found_;
+    Real nearest_squared_ = std::numeric_limits<Real>::infinity();
     bool prepared_ = false;
+    Surfaces surfaces_ = Surfaces::may_overlap;
     PairScale scale_;
     SurfaceProperties surface_;
     Real datum_ = 0;
@@ -237,11 +222,13 @@ void look_at_block(const CollisionInputs& inputs, const CollisionSettings& setti
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     Column<ContactRow>& found = pairs.found[b];
     found.clear();
+    Real nearest = std::numeric_limits<Real>::infinity();
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        if (from < to) PairContacts(inputs, settings, h, pairs, p, found).run(from, to);
+        if (from < to) nearest = std::min(nearest, PairContacts(inputs, settings, h, pairs, p, found).run(from, to));
     }
+    pairs.block_nearest[b] = nearest;
 }
 
 void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTable& contacts) {
@@ -269,20 +256,33 @@ void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTab
     }
 }
 
+/// Crossings take the place of what was found of the same features.
+void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& crossings, ContactTable& contacts) {
+    for (std::size_t b = blocks; b < pairs.found.size(); ++b) pairs.found[b].clear();
+    merge_rows(pairs.found, crossings.row, false, crossings.merged);
+    contacts.resize(crossings.merged.size());
+    write_rows(crossings.merged.span(), 0, contacts);
+}
+
 }  // namespace
 
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
-                   ContactTable& contacts) {
+                   CrossingTable& crossings, ContactTable& contacts) {
     const Index blocks = cut_blocks(pairs);
     if (blocks == 0) {
         contacts.resize(0);
         return false;
     }
+    pairs.block_nearest.resize(static_cast<std::size_t>(blocks));
     if (pairs.found.size() < static_cast<std::size_t>(blocks)) pairs.found.resize(static_cast<std::size_t>(blocks));
     parallel_for(executor, static_cast<std::size_t>(blocks), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) look_at_block(inputs, settings, h, static_cast<Index>(b), pairs);
     });
 
+    if (!crossings.row.empty()) {
+        write_with_crossings(static_cast<std::size_t>(blocks), pairs, crossings, contacts);
+        return true;
+    }
     // Pairs are in key order, candidates in feature order, blocks in both: so are the contacts.
     pairs.block_first.resize(static_cast<std::size_t>(blocks));
     std::size_t count = 0;

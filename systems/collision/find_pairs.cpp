@@ -172,7 +172,7 @@ private:
 
     /// A new pair is searched at once: only that tells how far apart the two really are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second) {
-        memory_.pairs.push_back({key, kind, first, second, -std::numeric_limits<Real>::infinity()});
+        memory_.pairs.push_back({key, kind, first, second, -std::numeric_limits<Real>::infinity(), PairState::unknown});
     }
 
     void add_planes() {
@@ -214,6 +214,7 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
         while (old < old_count && pairs.key[old] < memory.pairs[row].key) ++old;
         if (old == old_count || pairs.key[old] != memory.pairs[row].key) continue;
         memory.pairs[row].valid_until = pairs.valid_until[old];
+        memory.pairs[row].state = pairs.state[old];
         move_list(old, row);
         memory.moved[old] |= 1;  // has given its list away
         memory.moved[row] |= 2;  // has got one
@@ -233,6 +234,7 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
     pairs.first.resize(count);
     pairs.second.resize(count);
     pairs.valid_until.resize(count);
+    pairs.state.resize(count);
     pairs.front.resize(count);
     for (std::size_t row = 0; row < count; ++row) {
         const FoundPair& found = memory.pairs[row];
@@ -241,6 +243,7 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
         pairs.first[row] = found.first;
         pairs.second[row] = found.second;
         pairs.valid_until[row] = found.valid_until;
+        pairs.state[row] = found.state;
     }
 }
 

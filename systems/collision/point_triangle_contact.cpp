@@ -73,13 +73,19 @@ Vec3 vertex_normal(const Query& q, Index triangle, std::size_t k) {
 }
 
 /// Contact with an edge or a vertex around which the faces have this mean normal.
-void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, PointTriangleContact& contact) {
+void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, Surfaces surfaces, PointTriangleContact& contact) {
     const Real length = mean_normal.norm();
     if (!(length > 0)) return;
     const bool outside = q.offset.dot(mean_normal) >= 0;
+    if (!outside && surfaces == Surfaces::apart) {
+        contact.side = Side::behind;
+        contact.distance = q.distance;
+        contact.normal = q.offset / q.distance;
+        return;
+    }
     // Straight behind an edge inside a flat face: as deep as behind the face itself.
     if (!outside && q.distance > (straight_behind ? q.scale.face_depth : q.scale.edge_depth)) return;
-    contact.side = outside ? Side::outside : Side::inside;
+    contact.side = outside ? Side::outside : Side::behind;
     contact.distance = outside ? q.distance : -q.distance;
     const bool noise = q.distance <= std::max(normal_distance_fraction * q.scale.contact_distance, normal_edge_fraction * q.scale.edge);
     contact.normal = noise ? Vec3(mean_normal / length) : Vec3(q.offset / contact.distance);
@@ -88,7 +94,7 @@ void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind,
 }  // namespace
 
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position, const Vec3& point, Index triangle,
-                                            const PairScale& scale, Real near) {
+                                            const PairScale& scale, Real near, Surfaces surfaces) {
     const auto& corner = surface.triangles.node[triangle];
     PointTriangleContact contact;
     contact.closest = closest_point_on_triangle(point, position[corner[0]], position[corner[1]], position[corner[2]]);
@@ -109,19 +115,21 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const std::size_t region = static_cast<std::size_t>(contact.closest.region);
     if (contact.closest.region == TriangleRegion::face) {
         if (height < -scale.face_depth) return contact;
-        contact.side = height >= 0 ? Side::outside : Side::inside;
-        contact.distance = height;
-        contact.normal = face_normal;
+        contact.side = height >= 0 ? Side::outside : Side::behind;
+        const bool turned = height < 0 && surfaces == Surfaces::apart;
+        contact.distance = turned ? -height : height;
+        contact.normal = turned ? Vec3(-face_normal) : face_normal;
         return contact;
     }
     const bool straight_behind = aside_squared <= tie_fraction * tie_fraction * distance * distance;
     if (region <= static_cast<std::size_t>(TriangleRegion::edge20)) {
         const std::size_t k = region - static_cast<std::size_t>(TriangleRegion::edge01);
         if (surface.triangles.owned_edges[triangle] >> k & 1)
-            touch_border(q, edge_normal(q, triangle, k, face_normal), straight_behind, contact);
+            touch_border(q, edge_normal(q, triangle, k, face_normal), straight_behind, surfaces, contact);
     } else {
         const std::size_t k = region - static_cast<std::size_t>(TriangleRegion::vertex0);
-        if (surface.triangles.owned_vertices[triangle] >> k & 1) touch_border(q, vertex_normal(q, triangle, k), straight_behind, contact);
+        if (surface.triangles.owned_vertices[triangle] >> k & 1)
+            touch_border(q, vertex_normal(q, triangle, k), straight_behind, surfaces, contact);
     }
     return contact;
 }

@@ -12,13 +12,17 @@ namespace skerry {
 enum class Side : std::uint8_t {
     none,     // no contact by this triangle: a neighbour owns it, or the point is out of its way
     outside,  // a contact
-    inside,   // a contact if no other triangle of the body is nearer to the point
+    behind,   // a contact if no other triangle of the body is nearer to the point
 };
+
+/// What is known of two surfaces. Where they are apart a point behind a triangle has not come through it: the body is thin or folded there,
+/// or an element has turned inside out, and the point stays behind. Where they may overlap it is pushed out to the front.
+enum class Surfaces : std::uint8_t { apart, may_overlap };
 
 struct PointTriangleContact {
     Side side = Side::none;
     Real distance = 0;  // m, signed
-    Vec3 normal;        // unit, out of the triangle's body
+    Vec3 normal;        // unit, out of the triangle's body, or away from its back
     PointTriangle closest;
     Real sleep = 0;  // m: travel after which this may be a contact of gap 0; not above 0: look again in the next step
 };
@@ -27,6 +31,6 @@ struct PointTriangleContact {
 /// lowest triangle around it, and is a contact only where no other triangle around comes nearer. Normals: of the face; from the edge or
 /// vertex to the point, or, too near for that, the mean of the faces around. Features further than `near` are not looked at closely.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position, const Vec3& point, Index triangle,
-                                            const PairScale& scale, Real near);
+                                            const PairScale& scale, Real near, Surfaces surfaces);
 
 }  // namespace skerry

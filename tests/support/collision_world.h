@@ -26,6 +26,7 @@ struct CollisionWorld {
     Column<SurfaceProperties> material;
     SearchState search;
     PairTable pairs;
+    CrossingTable crossings;
     ContactTable contacts;
     CollisionSettings settings;
     std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
@@ -77,7 +78,7 @@ struct CollisionWorld {
     /// Both stages, as in a step.
     void find(Real h) {
         find_candidates(*executor, inputs(), settings, h, bvh.box, search, pairs);
-        find_contacts(*executor, inputs(), settings, h, pairs, contacts);
+        find_contacts(*executor, inputs(), settings, h, pairs, crossings, contacts);
     }
 
     /// Moves every node by h velocity and keeps the books of the engine.

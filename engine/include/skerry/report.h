@@ -59,7 +59,8 @@ public:
     Real value = 0;      // too_fast: displacement over smallest altitude
     Real step_size = 0;  // s, of the steps taken
     int steps = 0;       // committed
-    int shortened = 0;   // tries given up because a body was too fast; each was repeated at half the length
+    int shortened = 0;   // tries given up because a body was too fast or surfaces crossed; each was repeated at half the length
+    int retried = 0;     // tries given up because surfaces crossed; each was repeated with the crossings as contacts
     Index contacts = 0;  // of the last step
     Index regions = 0;
     Index largest_region = 0;    // contacts
@@ -68,6 +69,7 @@ public:
     Index worst_region = 0;      // contacts of the region that had it
     Real max_penetration = 0;    // m, overlap of surfaces, largest over the steps
     Real max_gap_violation = 0;  // m, pressed into the contact shell, largest over the steps
+    Index crossed = 0;           // features that went through each other, since no try could stop them
     std::string body_name;       // when not ok
 };
 
@@ -98,8 +100,11 @@ struct WorldReport {
     std::vector<std::uint64_t> level_elements;
     std::uint64_t element_steps = 0;     // elements times steps
     std::uint64_t element_impulses = 0;  // of them, how many were evaluated
-    std::uint64_t inline_steps = 0;      // too small to pay for threads
-    std::uint64_t shortened = 0;         // steps tried again at half the length, since a body was too fast
+    std::uint64_t inline_steps = 0;  // too small to pay for threads
+    std::uint64_t shortened = 0;     // steps tried again at half the length, since a body was too fast or surfaces crossed
+    std::uint64_t retried = 0;       // steps tried again with what crossed in them as contacts
+    // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could stop them.
+    std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
     Energy energy;
     Vec3 momentum = Vec3::Zero();                     // kg m/s
     Vec3 angular_momentum = Vec3::Zero();             // kg m^2/s, about the origin

@@ -108,6 +108,8 @@ struct Settings {
     Real relaxation = 1;            // of the sweeps, > 0 and < 2; only for methods that sweep
     Real max_strain_step = 0.2;     // a step that moves nodes by more than this fraction of an element is refused
     bool contact_budgets = true;    // skip what cannot have come close; off searches everything
+    // A step in which surfaces would go through each other is tried again with what crossed as contacts. Only fast pairs are looked at.
+    bool continuous_collision = true;
     // What the solver leaves out where it can; off changes no result beyond the tolerance.
     bool certify_warm_start = true;      // no sweep where last step's impulses still solve a region
     bool skip_separating = true;         // no impulse where no contact closes

@@ -67,7 +67,7 @@ TEST_CASE("figures of the collision stages", "[.benchmark]") {
         };
         const double narrow = time_of(20, expire);
         const double check = time_of(200, [&] { find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs); });
-        const auto contacts = [&] { find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.contacts); };
+        const auto contacts = [&] { find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts); };
         contacts();
         const double awake_some = time_of(200, contacts);
         for (auto& column : w.pairs.asleep_until) std::fill(column.begin(), column.end(), 1e9);
@@ -112,7 +112,7 @@ TEST_CASE("figures of a fall", "[.benchmark]") {
         const double t0 = cpu_time();
         find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
         const double t1 = cpu_time();
-        find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.contacts);
+        find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts);
         const double t2 = cpu_time();
         if (s > 0) {
             candidates += t1 - t0;

@@ -327,6 +327,22 @@ TEST_CASE("a folded body touches itself, a thin one does not touch its own other
     }
 }
 
+TEST_CASE("a body touches itself neither at rest nor when it is squeezed evenly to a tenth", "[unit]") {
+    for (const test::SolidMesh& mesh : {test::box_mesh({8, 2, 1}, {8, 2, 0.2}), test::ball_mesh(1, 4)}) {
+        CollisionWorld w;
+        const Index b = w.add_solid(mesh, w.at(Vec3::Zero()), 0.02);
+        w.body.self_contact[b] = 1;
+        for (Real squeeze : {1.0, 0.5, 0.1}) {
+            for (std::size_t n = 0; n < w.nodes.position.size(); ++n) w.nodes.position[n] = squeeze * w.nodes.rest_position[n];
+            w.search.body_valid_until.clear();
+            w.find(h);
+            REQUIRE(w.pairs.size() == 1);
+            CHECK(w.pairs.state[0] == PairState::apart);
+            CHECK(w.contacts.size() == 0);
+        }
+    }
+}
+
 TEST_CASE("two ridges that have passed each other are pushed back, however flat they are", "[unit]") {
     const PairScale scale{0.02, 1, 0.25, 0.02, 0.25};
     for (Real bend : {0.025, 0.05, 0.5, 2.0})
@@ -346,7 +362,8 @@ TEST_CASE("two ridges that have passed each other are pushed back, however flat 
                 return e;
             };
             for (Real closing : {0.0, 0.004}) {
-                const EdgeEdgeContact contact = edge_edge_contact(surface, x, ridge(4), ridge(0), scale, 0.02 + closing);
+                const EdgeEdgeContact contact =
+                    edge_edge_contact(surface, x, ridge(4), ridge(0), scale, 0.02 + closing, Surfaces::may_overlap);
                 REQUIRE(contact.touching);
                 CHECK(contact.distance == Approx(height).margin(1e-14));
                 CHECK((contact.normal - Vec3(0, 0, 1)).norm() < 1e-12);

@@ -226,6 +226,6 @@ TEST_CASE("no bodies, or one alone, give no pairs", "[unit]") {
     w.add_solid(test::ball_mesh(1, 2), w.at(Vec3::Zero()), 0.02);
     search(w);
     CHECK(w.pairs.size() == 0);
-    CHECK_FALSE(find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.contacts));
+    CHECK_FALSE(find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts));
     CHECK(w.contacts.size() == 0);
 }

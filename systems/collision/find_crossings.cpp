@@ -1,0 +1,208 @@
+#include "systems/collision/find_crossings.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "jobs/parallel_for.h"
+#include "systems/collision/contact_key.h"
+#include "systems/collision/contact_reach.h"
+#include "systems/collision/contact_rows.h"
+#include "systems/collision/rest_distance.h"
+#include "systems/geometry/closest_points.h"
+#include "systems/geometry/time_of_contact.h"
+
+namespace skerry {
+
+namespace {
+
+// Features that approach each other by less than this fraction of their distance in the step cannot meet, by far.
+constexpr Real slow_fraction = 0.5;
+
+struct Motion {
+    std::span<const Vec3> velocity_next, push_out;
+    Real h;
+
+    Vec3 of(Index node) const { return h * (velocity_next[node] + push_out[node]); }
+};
+
+/// Where the features are at some time of the step, and how they are nearest.
+struct Nearest {
+    Stencil stencil;
+    Vec3 offset;  // m, from the second feature to the first
+    Vec3 point;   // m, on the second
+};
+
+class PairCrossings {
+public:
+    PairCrossings(const CollisionInputs& inputs, const Motion& motion, const PairTable& pairs, Index p, Column<ContactRow>& found)
+        : inputs_(inputs),
+          motion_(motion),
+          key_(pairs.key[p]),
+          kind_(pairs.kind[p]),
+          first_(pairs.first[p]),
+          second_(pairs.second[p]),
+          candidates_(pairs.candidates[p].span()),
+          asleep_until_(pairs.asleep_until[p].span()),
+          found_(found) {}
+
+    /// Looks at the candidates that can have met by `front`. Returns how many were tested.
+    std::uint64_t run(Index begin, Index end, Real front) {
+        scale_ = pair_scale(inputs_, kind_, first_, second_);
+        const Real travel = pair_travel(inputs_, kind_, first_, second_);
+        std::uint64_t tested = 0;
+        for (Index c = begin; c < end; ++c)
+            if (!(front < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel);
+        return tested;
+    }
+
+private:
+    /// `least`: m, no distance is below it.
+    bool test(const Candidate& candidate, Real least) {
+        const bool edges = is_edge_edge(candidate.feature);
+        const FeaturePair kind = edges ? FeaturePair::edge_edge : FeaturePair::point_triangle;
+        const std::array<Index, 4> node = edges ? nodes_of_edges(candidate) : nodes_of_point(candidate);
+        FourPoints x, displacement;
+        for (std::size_t i = 0; i < 4; ++i) displacement[i] = motion_.of(node[i]);
+        const Real approach = greatest_approach(kind, displacement);
+        if (!(approach > slow_fraction * least) || !can_move(node)) return false;
+        for (std::size_t i = 0; i < 4; ++i) x[i] = inputs_.position[node[i]];
+        if (!(approach > slow_fraction * nearest(kind, node, x).offset.norm())) return false;
+        const std::optional<Real> time = time_of_contact(kind, x, displacement);
+        if (!time || is_own_piece(edges, node)) return true;
+        FourPoints met;
+        for (std::size_t i = 0; i < 4; ++i) met[i] = x[i] + *time * displacement[i];
+        add(candidate, kind, nearest(kind, node, met));
+        return true;
+    }
+
+    std::array<Index, 4> nodes_of_point(const Candidate& candidate) const {
+        const auto& corner = inputs_.surface.triangles.node[candidate.second];
+        return {inputs_.surface.vertices.node[candidate.first], corner[0], corner[1], corner[2]};
+    }
+    std::array<Index, 4> nodes_of_edges(const Candidate& candidate) const {
+        const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
+        return {a[0], a[1], b[0], b[1]};
+    }
+
+    bool can_move(const std::array<Index, 4>& node) const {
+        return std::any_of(node.begin(), node.end(), [&](Index n) { return inputs_.inverse_mass[n] > 0; });
+    }
+
+    bool is_own_piece(bool edges, const std::array<Index, 4>& node) const {
+        if (kind_ != PairKind::self) return false;
+        return edges ? !was_far_at_rest(inputs_, scale_, std::array{node[0], node[1]}, std::array{node[2], node[3]})
+                     : !was_far_at_rest(inputs_, scale_, node[0], std::array{node[1], node[2], node[3]});
+    }
+
+    static Nearest nearest(FeaturePair kind, const std::array<Index, 4>& node, const FourPoints& x) {
+        if (kind == FeaturePair::edge_edge) {
+            const SegmentSegment c = closest_points_of_segments(x[0], x[1], x[2], x[3]);
+            return {stencil_of_edges(node, c), c.on_first - c.on_second, c.on_second};
+        }
+        const PointTriangle c = closest_point_on_triangle(x[0], x[1], x[2], x[3]);
+        return {stencil_of_point(node, c), x[0] - c.nearest, c.nearest};
+    }
+
+    void add(const Candidate& candidate, FeaturePair kind, const Nearest& met) {
+        const Real length = met.offset.norm();
+        if (!(length > 0)) return;  // they touched before the step
+        const Vec3 normal = met.offset / length;
+        Real along = 0;  // m, of the two points at the start of the step
+        for (std::size_t a = 0; a < 4; ++a) along += met.stencil.weight[a] * normal.dot(inputs_.position[met.stencil.node[a]]);
+        const Real distance = std::max(along, Real(0));  // features that turn by more than a right angle have not overlapped
+        found_.push_back(contact_row(inputs_, {key_, kind_, first_, second_}, candidate,
+                                     kind == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle, met.stencil,
+                                     met.point, normal, distance, scale_.contact_distance, pair_surface(inputs_, kind_, first_, second_)));
+    }
+
+    const CollisionInputs& inputs_;
+    const Motion& motion_;
+    const std::uint64_t key_;
+    const PairKind kind_;
+    const Index first_, second_;
+    std::span<const Candidate> candidates_;
+    std::span<const Real> asleep_until_;
+    Column<ContactRow>& found_;
+    PairScale scale_;
+};
+
+/// How far a pair can come in this step, m.
+struct PairReach {
+    Real motion;  // of both together
+    Real front;   // travel of both with it
+};
+
+PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
+    const Real motion = h * (inputs.body.max_speed[pairs.first[p]] + inputs.body.max_speed[pairs.second[p]]);
+    return {motion, pair_travel(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) + motion};
+}
+
+bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
+    return pairs.kind[p] != PairKind::collider && pairs.state[p] == PairState::apart &&
+           pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).contact_distance > 0;
+}
+
+std::uint64_t look_at_block(const CollisionInputs& inputs, const Motion& motion, const PairTable& pairs, std::size_t b,
+                            Column<ContactRow>& found) {
+    const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
+    std::uint64_t tested = 0;
+    for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
+        const Index from = p == begin.pair ? begin.candidate : 0;
+        const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
+        if (from >= to || pairs.kind[p] == PairKind::collider) continue;
+        const PairReach reach = reach_of(inputs, pairs, p, motion.h);
+        // What slept in find_contacts was not measured: it may be nearer than block_nearest, though not within the front of then.
+        const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && reach.front <= pairs.front[p];
+        if (!slow && is_watched(inputs, pairs, p)) tested += PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.front);
+    }
+    return tested;
+}
+
+/// Pairs that move further than their list is good for.
+Index count_beyond_lists(const CollisionInputs& inputs, const PairTable& pairs, Real h) {
+    Index count = 0;
+    for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
+        if (pairs.kind[p] == PairKind::collider || pairs.state[p] != PairState::apart) continue;
+        count += !(reach_of(inputs, pairs, p, h).front < pairs.valid_until[p]);
+    }
+    return count;
+}
+
+void let_through(const CrossingTable& crossings, PairTable& pairs) {
+    for (const auto& found : crossings.found)
+        for (const ContactRow& row : found) {
+            const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
+            pairs.state[static_cast<std::size_t>(at - pairs.key.begin())] = PairState::overlapping;
+        }
+}
+
+}  // namespace
+
+Index find_crossings(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+                     std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs, CrossingTable& crossings) {
+    const std::size_t blocks = pairs.block.size() > 0 ? pairs.block.size() - 1 : 0;
+    if (!settings.continuous || blocks == 0) return 0;
+    if (crossings.found.size() < blocks) crossings.found.resize(blocks);
+    const Motion motion{velocity_next, push_out, h};
+    std::atomic<std::uint64_t> tested{0};
+    for (auto& found : crossings.found) found.clear();
+    parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) tested += look_at_block(inputs, motion, pairs, b, crossings.found[b]);
+    });
+    crossings.tested += tested;
+    std::size_t hits = 0;
+    for (const auto& found : crossings.found) hits += found.size();
+    if (crossings.last_try) {
+        let_through(crossings, pairs);
+        crossings.let_through += hits;
+        return 0;
+    }
+    crossings.hits += hits;
+    if (hits > 0) {
+        merge_rows(crossings.found, crossings.row, true, crossings.merged);
+        crossings.row.swap(crossings.merged);
+    }
+    return static_cast<Index>(hits) + count_beyond_lists(inputs, pairs, h);
+}
+
+}  // namespace skerry

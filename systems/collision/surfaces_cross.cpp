@@ -1,0 +1,65 @@
+#include "systems/collision/surfaces_cross.h"
+
+#include <Eigen/Geometry>
+
+#include "systems/collision/box.h"
+#include "systems/collision/rest_distance.h"
+
+namespace skerry {
+
+namespace {
+
+/// Six times the volume of a tetrahedron: its sign says on which side of abc the point d lies.
+Real orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return (b - a).cross(c - a).dot(d - a);
+}
+
+bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+    if (!(orientation(a, b, c, p) * orientation(a, b, c, q) < 0)) return false;
+    const Real u = orientation(p, q, a, b), v = orientation(p, q, b, c), w = orientation(p, q, c, a);
+    return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+}
+
+class CrossingSearch {
+public:
+    CrossingSearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes)
+        : inputs_(inputs), pair_(pair), boxes_(boxes) {}
+
+    bool run(Index a, Index b) const {
+        const bool same = pair_.kind == PairKind::self && a == b;
+        if (!same && distance_squared(boxes_[a], boxes_[b]) > 0) return false;
+        const BvhNode &own = inputs_.bvh_node[a], &other = inputs_.bvh_node[b];
+        if (own.count > 0 && other.count > 0)
+            return !same && triangles_cross(inputs_.bvh_triangle[own.first], inputs_.bvh_triangle[other.first]);
+        if (same) return run(a + 1, a + 1) || run(own.right, own.right) || run(a + 1, own.right);
+        if (other.count > 0 || (own.count == 0 && own.skip - a >= other.skip - b)) return run(a + 1, b) || run(own.right, b);
+        return run(a, b + 1) || run(a, other.right);
+    }
+
+private:
+    bool triangles_cross(Index a, Index b) const { return edges_pass(a, b) || edges_pass(b, a); }
+
+    bool edges_pass(Index owner, Index through) const {
+        const auto &edge = inputs_.surface.triangles.node[owner], &face = inputs_.surface.triangles.node[through];
+        const auto& x = inputs_.position;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index p = edge[k], q = edge[(k + 1) % 3];
+            if (!passes_through(x[p], x[q], x[face[0]], x[face[1]], x[face[2]])) continue;
+            if (pair_.kind != PairKind::self) return true;
+            if (was_far_at_rest(inputs_, pair_.scale, p, face) && was_far_at_rest(inputs_, pair_.scale, q, face)) return true;
+        }
+        return false;
+    }
+
+    const CollisionInputs& inputs_;
+    const PairToSearch& pair_;
+    std::span<const Aabb> boxes_;
+};
+
+}  // namespace
+
+bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes) {
+    return CrossingSearch(inputs, pair, boxes).run(inputs.body.bvh_nodes[pair.first].begin, inputs.body.bvh_nodes[pair.second].begin);
+}
+
+}  // namespace skerry
