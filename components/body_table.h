@@ -47,6 +47,8 @@ struct BodyTable {
     Column<std::uint8_t> level;     // of the whole body in the present cycle of steps: its own steps are 2^level steps long
     Column<std::array<Index, element_level_count>> level_count;  // elements of each level, within the body
     Column<LevelMask> due;                                       // levels of elements, within the body, that get an impulse in this step
+    Column<std::uint8_t> asleep;                                 // at rest: left out of the step until something touches it
+    Column<Real> calm;                                           // s, for how long no node has been as fast as sleep_speed
     Column<Real> max_speed;                                      // m/s, of this step's motion
     Column<Real> drift;                                          // m, greatest distance of a node from its drift origin
     Column<Real> travel;  // m: since any earlier time no node has come further than the growth of travel plus twice the drift then
@@ -74,6 +76,8 @@ struct BodyTable {
         visit("level", level);
         visit("level_count", level_count);
         visit("due", due);
+        visit("asleep", asleep);
+        visit("calm", calm);
         visit("max_speed", max_speed);
         visit("drift", drift);
         visit("travel", travel);

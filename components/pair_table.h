@@ -36,6 +36,7 @@ struct PairTable {
     Column<PairKind> kind;
     Column<Index> first;       // row of BodyTable; never a kinematic body
     Column<Index> second;      // row of BodyTable, or of ColliderTable
+    Column<std::uint8_t> resting;  // neither partner moves in this step: no contacts are looked for, last ones are kept
     Column<Real> front;        // m: sum of both travels and of what this step may add to the closing, written in every step
     Column<Real> valid_until;  // m: the list holds while front is below this
     Column<PairState> state;   // as last searched; apart stays apart, find_crossings sees to it

@@ -35,8 +35,10 @@ struct ElementSchedule {
     std::span<const Index> body = {};               // by block
     std::span<const std::uint8_t> body_level = {};  // by body
     DueLevels due = {};
+    std::span<const std::uint8_t> body_asleep = {};  // by body; empty: none
 
     Real duration(std::size_t block) const {
+        if (!body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[block])]) return 0;
         return level.empty() ? 1 : due.duration[std::size_t{level[block]} + body_level[static_cast<std::size_t>(body[block])]];
     }
 };

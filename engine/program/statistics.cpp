@@ -92,6 +92,7 @@ Json statistics_of(const RunResult& result) {
         {"threads", result.threads},
         {"backend", name_of(result.settings.backend)},
         {"bodies", r.bodies},
+        {"asleep", r.asleep},
         {"colliders", r.colliders},
         {"nodes", r.nodes},
         {"elements", r.elements},

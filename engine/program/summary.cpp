@@ -96,7 +96,7 @@ std::string summary_of(const RunResult& result) {
     text += line("status", result.status);
     text += line("threads", std::to_string(result.threads) + " (" + std::string(name_of(result.settings.backend)) + ")");
     text += line("bodies", grouped(r.bodies) + ", " + grouped(r.nodes) + " nodes, " + grouped(r.elements) + " tetrahedra, " +
-                               grouped(r.colliders) + " colliders");
+                               grouped(r.colliders) + " colliders" + (r.asleep > 0 ? ", " + grouped(r.asleep) + " at rest" : ""));
     if (r.steps > 0)
         text += line("steps", grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                   ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +

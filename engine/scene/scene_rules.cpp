@@ -142,6 +142,13 @@ const Rule<Settings>& rule_of<Settings>() {
                   .limits = {.at_least = {}, .above = 0, .at_most = {}, .below = 2}})
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step that moves nodes by more than this fraction of an element is refused", .limits = above(0)})
+            .key("sleep_speed", &S::sleep_speed,
+                 {.meaning =
+                      "bodies slower than this for sleep_time rest with all that they touch, until something presses on them; 0: never",
+                  .unit = "m/s",
+                  .limits = at_least(0)})
+            .key("sleep_time", &S::sleep_time,
+                 {.meaning = "how long a body has to be slow to be put to rest", .unit = "s", .limits = at_least(0)})
             .key("contact_budgets", &S::contact_budgets, {.meaning = "skip what cannot have come close; false searches everything"})
             .key("continuous_collision", &S::continuous_collision,
                  {.meaning = "a step in which surfaces would go through each other is tried again with what crossed as contacts"})

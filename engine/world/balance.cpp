@@ -68,8 +68,9 @@ void add_step(WorldState& world) {
     if (!balance.open) return;
     const ContactMeasures& contacts = world.step.measures;
     const ExternalWork& external = world.step.external;
-    const Vec3 impulse = world.step.h * world.total_mass * world.step.gravity + external.impulse + contacts.outer_impulse;
-    const Real work = external.work + contacts.outer_work - contacts.dissipated - world.step.damped;
+    const Vec3 impulse =
+        world.step.h * world.step.awake_mass * world.step.gravity + external.impulse + contacts.outer_impulse - world.step.rest.momentum;
+    const Real work = external.work + contacts.outer_work - contacts.dissipated - world.step.damped - world.step.rest.energy;
     ++balance.steps;
     balance.impulse += impulse;
     balance.momentum_flow += impulse.norm();

@@ -48,10 +48,12 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
         if (state_->nodes.inverse_mass[n] == 0) state_->nodes.velocity[n] = Vec3::Zero();
     state_->search_afresh();  // the search counts on the speed of the last step
     state_->balance.close();
+    state_->wake(static_cast<std::size_t>(state_->row(body, "set_velocities")));
 }
 
 void World::set_loads(BodyHandle body, std::span<const Vec3> load) {
     set_nodes(*state_, body, "set_loads", "load", load, state_->nodes.load);
+    state_->wake(static_cast<std::size_t>(state_->row(body, "set_loads")));
     state_->loaded = std::ranges::any_of(state_->nodes.load, [](const Vec3& l) { return l != Vec3::Zero(); });
 }
 
@@ -103,6 +105,14 @@ Real World::contact_distance(BodyHandle body) const {
 
 Real World::mean_edge(BodyHandle body) const {
     return state_->bodies.mean_edge[static_cast<std::size_t>(state_->row(body, "mean_edge"))];
+}
+
+bool World::asleep(BodyHandle body) const {
+    return state_->bodies.asleep[static_cast<std::size_t>(state_->row(body, "asleep"))] != 0;
+}
+
+void World::wake(BodyHandle body) {
+    state_->wake(static_cast<std::size_t>(state_->row(body, "wake")));
 }
 
 std::vector<BodyHandle> World::bodies() const {

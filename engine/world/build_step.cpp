@@ -12,6 +12,7 @@
 #include "systems/dynamics/measure_work.h"
 #include "systems/dynamics/move_colliders.h"
 #include "systems/dynamics/predict_velocity.h"
+#include "systems/dynamics/update_sleep.h"
 
 namespace skerry {
 
@@ -52,14 +53,17 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     NodeBlockTable& k = w.node_blocks;
     g.stage("dynamics/compute_element_forces", compute_element_forces,
             bundle([&w] { return w.element_inputs(); },
-                   reads(e.node, e.inverse_rest, e.volume, e.material, w.materials, e.level, e.body, e.viscous_time, b.level)),
+                   reads(e.node, e.inverse_rest, e.volume, e.material, w.materials, e.level, e.body, e.viscous_time, b.level, b.asleep)),
             read(n.position), read(n.velocity), read(e.rotation), write(e.rotation_next), write(e.force));
     g.stage("dynamics/gather_node_forces", gather_node_forces, read(w.corners),
-            bundle([&n, &b, &e, &k] { return DueCorners{k.begin, k.end, k.body, b.due, n.levels, e.level}; },
-                   reads(k.begin, k.end, k.body, b.due, n.levels, e.level)),
+            bundle(
+                [&w, &n, &b, &e, &k] {
+                    return DueCorners{k.begin, k.end, k.body, b.due, n.levels, e.level, w.resting_nodes().body_asleep};
+                },
+                reads(k.begin, k.end, k.body, b.due, n.levels, e.level, b.asleep)),
             read(e.force), read(n.mass), value(w.step.gravity), read(n.load), write(n.force));
     g.stage("dynamics/predict_velocity", predict_velocity, read(n.force), read(n.inverse_mass), read(n.velocity), value(w.step.h),
-            write(n.velocity_next));
+            bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", damp_velocity,
             bundle(
                 [&w, &n, &b, &k] {
@@ -149,15 +153,21 @@ void list_join(WorldState& w, TaskGraph& g) {
     g.stage_with_result(
         "dynamics/measure_work", w.step.external, measure_work,
         bundle([&w, &n] { return w.loaded ? std::span<const Vec3>(n.load.span()) : std::span<const Vec3>(); }, reads(n.load)),
-        read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h), make(w.work_parts),
+        read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h),
+        bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), make(w.work_parts),
         only_if([&w] { return w.loaded || w.attachments.node.size() > 0; }, reads(w.attachments)));
     g.stage_with_result("collision/find_crossings", w.step.crossings, find_crossings, collision_inputs(w), value(w.step.collision),
                         value(w.step.h), read(n.velocity_next), read(n.push_out), make(w.pairs), make(w.crossings),
                         only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict)));
     const auto trusted =
         only_if([&w] { return w.step.verdict.fault == StepFault::none && w.step.crossings == 0; }, reads(w.step.verdict, w.step.crossings));
+    const auto sleepy = only_if([&w] { return w.step.taken() && w.step.sleep.speed > 0; }, reads(w.step.verdict, w.step.crossings, w.step.sleep));
+    const auto touches = bundle([&w] { return w.touches(); }, reads(c.first_body, c.second_body, c.state, c.gap, c.surface_velocity));
+    g.stage("dynamics/wake_bodies", wake_bodies, touches, read(w.attachments.body), read(w.attachments.motion), write(b.asleep),
+            write(b.calm), sleepy);
     g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), value(w.settings.integrator),
-            write(n.push_out), write(n.position), write(n.velocity), trusted);
+            bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), write(n.push_out), write(n.position), write(n.velocity),
+            trusted);
     g.stage("dynamics/measure_drift", measure_drift,
             bundle([&n, &b, &k] { return DriftInputs{k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position}; },
                    reads(k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position)),
@@ -167,8 +177,21 @@ void list_join(WorldState& w, TaskGraph& g) {
                 },
                 writes(n.drift_origin, k.drift_squared, w.search.memory.rebase, b.drift, b.travel)),
             trusted);
-    g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse), value(w.step.h), make(w.warm_start),
-            trusted);
+    g.stage_with_result("dynamics/rest_bodies", w.step.rest, rest_bodies, touches,
+                        bundle(
+                            [&n, &b] {
+                                return RestInputs{b.kind, b.nodes, b.max_speed, n.mass, n.inverse_mass};
+                            },
+                            reads(b.kind, b.nodes, b.max_speed, n.mass, n.inverse_mass)),
+                        value(w.step.sleep), value(w.step.h), make(w.sleep_memory), write(b.asleep), write(b.calm), write(n.velocity),
+                        write(n.velocity_next), sleepy);
+    g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse),
+            bundle(
+                [&w] {
+                    return RestingPairs{w.pairs.key, w.pairs.resting};
+                },
+                reads(w.pairs)),
+            value(w.step.h), make(w.warm_start), make(w.warm_start_next), trusted);
 }
 
 }  // namespace

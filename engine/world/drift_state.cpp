@@ -28,7 +28,8 @@ void drift_to(WorldState& world, Real offset) {
     move_colliders({c.script, c.keyframe, c.initial}, world.step.time, seconds, c.motion);
     move_colliders({a.script, a.keyframe, a.initial}, world.step.time, seconds, a.motion);
     drive_nodes({a.motion, a.nodes, a.node, a.anchor}, seconds, n.position, n.velocity);
-    advance_positions(*world.executor, n.velocity, seconds, Integrator::leapfrog, n.push_out, n.position, n.velocity);
+    advance_positions(*world.executor, n.velocity, seconds, Integrator::leapfrog, world.resting_nodes(), n.push_out, n.position,
+                      n.velocity);
     measure_drift_of(world);
     add_collider_travel(world, std::abs(seconds));
     world.step.time += seconds;

@@ -41,6 +41,16 @@ void put_back(WorldState& world) {
         world.nodes.velocity[static_cast<std::size_t>(world.attachments.node[i])] = world.velocity_before_drive[i];
 }
 
+/// A contact may have given bodies at rest a velocity that was not committed.
+void keep_at_rest(WorldState& world) {
+    if (!world.any_asleep) return;
+    for (std::size_t b = 0; b < world.bodies.asleep.size(); ++b) {
+        const Range nodes = world.bodies.nodes[b];
+        if (world.bodies.asleep[b])
+            std::fill(world.nodes.velocity_next.begin() + nodes.begin, world.nodes.velocity_next.begin() + nodes.end, Vec3::Zero());
+    }
+}
+
 void count_shortcuts(const RegionTable& regions, std::size_t r, RunCounters& counters) {
     const RegionShortcut shortcut = regions.shortcut[r];
     counters.closed_form += (shortcut & shortcut_closed_form) != 0;
@@ -75,7 +85,7 @@ void count(WorldState& world) {
         counters.worst_error = regions.error[r];
         counters.worst_region = size;
     }
-    counters.dissipated += world.step.measures.dissipated + world.step.damped;
+    counters.dissipated += world.step.measures.dissipated + world.step.damped + world.step.rest.energy;
     counters.max_penetration = std::max(counters.max_penetration, world.step.measures.max_penetration);
     counters.max_gap_violation = std::max(counters.max_gap_violation, world.step.measures.max_gap_violation);
 }
@@ -157,7 +167,9 @@ void take_step(WorldState& world, Real h) {
     world.step.measures = {};
     world.step.damped = 0;
     world.step.external = {};
+    world.step.rest = {};
     world.step.crossings = 0;
+    world.note_rest();
     find_due_levels(world);
     keep_for_refusal(world);
     Trace* const trace = world.tracing ? &world.trace : nullptr;
@@ -169,6 +181,7 @@ void take_step(WorldState& world, Real h) {
     world.contact_view_is_current = false;
     if (!world.step.taken()) {
         put_back(world);
+        keep_at_rest(world);
         if (world.step.verdict.fault == StepFault::not_finite) {
             for (Real& speed : world.bodies.max_speed) speed = 0;  // of this step; the search measures afresh
             world.search_afresh();
@@ -177,7 +190,7 @@ void take_step(WorldState& world, Real h) {
     }
     world.crossings.row.clear();
     ElementBlockTable& elements = world.elements;
-    if (world.step.due.all())
+    if (world.step.due.all() && !world.any_asleep)
         elements.rotation.swap(elements.rotation_next);
     else
         keep_frames(*world.executor, world.element_inputs(), elements.rotation_next, elements.rotation);

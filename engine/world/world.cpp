@@ -36,6 +36,7 @@ WorldState::WorldState(const Settings& wanted) : settings(wanted), executor(make
     step.gravity = settings.gravity;
     step.contact_regions = settings.contact_regions;
     step.max_strain_step = settings.max_strain_step;
+    step.sleep = {settings.sleep_speed, settings.sleep_time};
     step.collision.gravity = settings.gravity.norm();
     step.collision.use_budgets = settings.contact_budgets;
     // forward Euler drifts with velocities that no contact has seen: there is nothing to hold it to
@@ -75,7 +76,17 @@ ElementInputs WorldState::element_inputs() const {
             elements.material,
             materials.constants,
             elements.viscous_time,
-            {elements.level, elements.body, bodies.level, step.due}};
+            {elements.level, elements.body, bodies.level, step.due,
+             any_asleep ? std::span<const std::uint8_t>(bodies.asleep.span()) : std::span<const std::uint8_t>()}};
+}
+
+TouchInputs WorldState::touches() const {
+    return {contacts.first_body, contacts.second_body, contacts.state, contacts.gap, contacts.surface_velocity};
+}
+
+RestingNodes WorldState::resting_nodes() const {
+    if (!any_asleep) return {};
+    return {nodes.body, bodies.asleep};
 }
 
 World::World(const Settings& settings) {
@@ -199,6 +210,7 @@ void World::set_gravity(const Vec3& gravity) {
     state_->settings.gravity = state_->step.gravity = gravity;
     state_->step.collision.gravity = gravity.norm();
     state_->balance.close();
+    state_->wake_all();
 }
 
 Real World::stable_step() const {

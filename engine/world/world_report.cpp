@@ -50,6 +50,8 @@ std::uint64_t hash_of(WorldState& world) {
     world.nodes.for_each_state_column(add);
     world.elements.for_each_state_column(add);
     world.warm_start.for_each_column(add);
+    hash.add(world.bodies.asleep);
+    hash.add(world.bodies.calm);
     hash.add(static_cast<std::uint64_t>(world.step.cycle.index));
     hash.add(&world.step.cycle.lead, sizeof world.step.cycle.lead);
     return hash.value();
@@ -99,6 +101,7 @@ WorldReport World::report() const {
     report.time = world.step.time;
     report.steps = counters.steps;
     for (BodyKind kind : world.bodies.kind) report.bodies += kind == BodyKind::deformable;
+    for (std::uint8_t asleep : world.bodies.asleep) report.asleep += asleep != 0;
     report.colliders = world.colliders.slot.size();
     report.nodes = world.nodes.position.size();
     for (Index count : world.bodies.element_count) report.elements += static_cast<std::size_t>(count);

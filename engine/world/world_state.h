@@ -33,6 +33,7 @@
 #include "systems/dynamics/compute_element_forces.h"
 #include "systems/dynamics/measure_work.h"
 #include "systems/dynamics/move_colliders.h"
+#include "systems/dynamics/update_sleep.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -65,7 +66,10 @@ struct StepState {
     Index crossings = 0;  // features that would go through each other: not zero, and the step is tried again
     ContactMeasures measures;
     ExternalWork external;
-    Real damped = 0;  // J, taken out by damping in this step
+    SleepSettings sleep;
+    TakenByRest rest;
+    Real awake_mass = 0;  // kg, at the start of the step
+    Real damped = 0;      // J, taken out by damping in this step
 
     bool taken() const { return verdict.fault == StepFault::none && crossings == 0; }
 };
@@ -158,10 +162,13 @@ struct WorldState {
     Column<Real> speed_before;           // m/s, bodies.max_speed: put back when a step is not committed
     Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
     Column<Real> stiffness_sum;          // scratch of stable_step
-    Column<ExternalWork> work_parts;     // scratch of measure_work
+    SleepMemory sleep_memory;
+    WarmStartTable warm_start_next;   // scratch of store_warm_start
+    bool any_asleep = false;          // some body rests
+    Column<ExternalWork> work_parts;  // scratch of measure_work
     std::uint64_t steps_since_watch = 0;
     Balance balance;
-    Real total_mass = 0;                        // kg, of all nodes
+    Column<Real> body_mass;                     // kg, of all nodes of a body, held ones, too
     bool loaded = false;                        // some node has a load
     mutable std::vector<Contact> contact_view;  // what contacts() shows
     mutable bool contact_view_is_current = false;
@@ -172,6 +179,14 @@ struct WorldState {
     Index row(AttachmentHandle attachment, const char* call) const;
 
     ElementInputs element_inputs() const;
+    /// Nothing while no body rests: then the stages do not ask node by node.
+    RestingNodes resting_nodes() const;
+    TouchInputs touches() const;
+    /// Ends the rest of one body, or of all.
+    void wake(std::size_t body);
+    void wake_all();
+    /// Before a step: which bodies are in it.
+    void note_rest();
     /// Forgets what the search believes of distances.
     void search_afresh();
     /// After bodies or colliders came or went: what is derived from all of them.

@@ -197,12 +197,32 @@ private:
     Real near_ = 0;
 };
 
-/// Cuts the concatenated candidate lists into blocks of about equal length. Returns their number.
+bool collider_stands_still(const CollisionInputs& inputs, Index collider) {
+    const RigidMotion& motion = inputs.collider.motion[collider];
+    return motion.velocity == Vec3::Zero() && motion.angular_velocity == Vec3::Zero();
+}
+
+bool body_stands_still(const CollisionInputs& inputs, Index body) {
+    if (inputs.body.kind[body] == BodyKind::kinematic) return collider_stands_still(inputs, inputs.body.collider[body]);
+    return inputs.body.asleep[body] != 0;
+}
+
+/// Pairs of which neither partner moves: what is between them is in equilibrium, or they would not rest.
+void mark_resting(const CollisionInputs& inputs, PairTable& pairs) {
+    pairs.resting.resize(pairs.size());
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        pairs.resting[p] =
+            inputs.body.asleep[pairs.first[p]] && (pairs.kind[p] == PairKind::collider ? collider_stands_still(inputs, pairs.second[p])
+                                                                                       : body_stands_still(inputs, pairs.second[p]));
+    }
+}
+
+/// Cuts the concatenated candidate lists of the pairs that do not rest into blocks of about equal length. Returns their number.
 Index cut_blocks(PairTable& pairs) {
     pairs.block.clear();
     Index filled = candidates_per_block;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const Index count = static_cast<Index>(pairs.candidates[p].size());
+        const Index count = pairs.resting[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
         for (Index begin = 0; begin < count;) {
             if (filled >= candidates_per_block) {
                 pairs.block.push_back({static_cast<Index>(p), begin});
@@ -226,7 +246,7 @@ void look_at_block(const CollisionInputs& inputs, const CollisionSettings& setti
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        if (from < to) nearest = std::min(nearest, PairContacts(inputs, settings, h, pairs, p, found).run(from, to));
+        if (from < to && !pairs.resting[p]) nearest = std::min(nearest, PairContacts(inputs, settings, h, pairs, p, found).run(from, to));
     }
     pairs.block_nearest[b] = nearest;
 }
@@ -268,6 +288,7 @@ void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& c
 
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
                    CrossingTable& crossings, ContactTable& contacts) {
+    mark_resting(inputs, pairs);
     const Index blocks = cut_blocks(pairs);
     if (blocks == 0) {
         contacts.resize(0);

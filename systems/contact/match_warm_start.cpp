@@ -21,6 +21,36 @@ Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     return cosine * impulse + axis.cross(impulse) + (axis.dot(impulse) / (1 + cosine)) * axis;
 }
 
+/// Merges this step's impulses with those of resting pairs, which stand for a step of length `h` from now on. Both are in key order, and no
+/// pair is in both.
+void keep_resting(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse, const RestingPairs& pairs,
+                  Real h, const WarmStartTable& last, WarmStartTable& next) {
+    next.key.clear();
+    next.normal.clear();
+    next.impulse.clear();
+    const Real scale = h / last.step[0];
+    std::size_t p = 0, i = 0;
+    const auto take_new = [&](std::size_t end) {
+        for (; i < end; ++i) {
+            next.key.push_back(key[i]);
+            next.normal.push_back(normal[i]);
+            next.impulse.push_back(impulse[i]);
+        }
+    };
+    for (std::size_t old = 0; old < last.key.size(); ++old) {
+        const std::uint64_t pair = last.key[old].pair;
+        while (p < pairs.key.size() && pairs.key[p] < pair) ++p;
+        if (p == pairs.key.size()) break;
+        if (pairs.key[p] != pair || !pairs.resting[p]) continue;
+        take_new(static_cast<std::size_t>(std::lower_bound(key.begin() + static_cast<std::ptrdiff_t>(i), key.end(), ContactKey{pair, 0}) -
+                                          key.begin()));
+        next.key.push_back(last.key[old]);
+        next.normal.push_back(last.normal[old]);
+        next.impulse.push_back(scale * last.impulse[old]);
+    }
+    take_new(key.size());
+}
+
 }  // namespace
 
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal, const WarmStartTable& last, Real h,
@@ -45,16 +75,24 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     return true;
 }
 
-void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse, Real h,
-                      WarmStartTable& last) {
-    SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size());
-    last.key.resize(key.size());
-    last.normal.resize(key.size());
-    last.impulse.resize(key.size());
+void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse,
+                      const RestingPairs& pairs, Real h, WarmStartTable& last, WarmStartTable& next) {
+    SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size() && pairs.resting.size() == pairs.key.size());
+    const bool any_rests = std::ranges::find(pairs.resting, 1) != pairs.resting.end();
+    if (any_rests && !last.key.empty()) {
+        keep_resting(key, normal, impulse, pairs, h, last, next);
+        std::swap(last.key, next.key);
+        std::swap(last.normal, next.normal);
+        std::swap(last.impulse, next.impulse);
+    } else {
+        last.key.resize(key.size());
+        last.normal.resize(key.size());
+        last.impulse.resize(key.size());
+        std::copy(key.begin(), key.end(), last.key.begin());
+        std::copy(normal.begin(), normal.end(), last.normal.begin());
+        std::copy(impulse.begin(), impulse.end(), last.impulse.begin());
+    }
     last.step.assign(1, h);
-    std::copy(key.begin(), key.end(), last.key.begin());
-    std::copy(normal.begin(), normal.end(), last.normal.begin());
-    std::copy(impulse.begin(), impulse.end(), last.impulse.begin());
 }
 
 }  // namespace skerry

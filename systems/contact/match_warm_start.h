@@ -11,8 +11,14 @@ namespace skerry {
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal, const WarmStartTable& last, Real h,
                       std::span<Vec3> impulse);
 
-/// Keeps this step's impulses for the next.
-void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse, Real h,
-                      WarmStartTable& last);
+/// Pairs whose contacts were not looked for, since neither partner moves: PairTable::key, ascending, and PairTable::resting.
+struct RestingPairs {
+    std::span<const std::uint64_t> key = {};
+    std::span<const std::uint8_t> resting = {};
+};
+
+/// Keeps this step's impulses for the next, and those of resting pairs as they were. `next` is room to merge them in.
+void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse,
+                      const RestingPairs& pairs, Real h, WarmStartTable& last, WarmStartTable& next);
 
 }  // namespace skerry

@@ -62,6 +62,7 @@ void gather_node_forces(Executor& executor, RaggedView<Index> corners, const Due
     constexpr std::size_t blocks_per_job = 4;
     parallel_for(executor, due.block_begin.size(), blocks_per_job, [&](std::size_t first, std::size_t last) {
         for (std::size_t b = first; b < last; ++b) {
+            if (!due.body_asleep.empty() && due.body_asleep[static_cast<std::size_t>(due.block_body[b])]) continue;
             const auto begin = static_cast<std::size_t>(due.block_begin[b]), end = static_cast<std::size_t>(due.block_end[b]);
             const unsigned counts = due.body_due[static_cast<std::size_t>(due.block_body[b])];
             unsigned around = 0;

@@ -16,6 +16,7 @@ struct DueCorners {
     std::span<const LevelMask> body_due = {};                                  // BodyTable
     std::span<const LevelMask> node_levels = {};                               // NodeTable
     std::span<const std::uint8_t> level = {};                                  // ElementBlockTable
+    std::span<const std::uint8_t> body_asleep = {};                            // BodyTable; nodes at rest keep what they had
 };
 
 /// force = sum of the element forces of the corners around the node that are due, in a fixed order, + mass gravity + load. `corners` lists

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "components/column.h"
-#include "components/types.h"
+#include "components/resting_nodes.h"
 #include "jobs/executor.h"
 
 namespace skerry {
@@ -15,8 +15,9 @@ struct ExternalWork {
 };
 
 /// Loads on all nodes (none: `load` empty) and the forces that hold the nodes `held`, which are the opposite of `force` there: impulse h F and
-/// work h F . velocity_next, the displacement of a symplectic step. The loads' sum goes over fixed blocks, in their order.
+/// work h F . velocity_next, the displacement of a symplectic step. Nodes at rest do not count:
+/// what holds them is not known. The loads' sum goes over fixed blocks, in their order.
 ExternalWork measure_work(Executor& executor, std::span<const Vec3> load, std::span<const Vec3> force, std::span<const Index> held,
-                          std::span<const Vec3> velocity_next, Real h, Column<ExternalWork>& partial);
+                          std::span<const Vec3> velocity_next, Real h, const RestingNodes& resting, Column<ExternalWork>& partial);
 
 }  // namespace skerry

@@ -25,9 +25,9 @@ struct Motion {
 
     void predict(Real h, const Vec3& gravity = Vec3::Zero()) {
         body.compute_forces(*executor, gravity);
-        predict_velocity(*executor, body.force, body.inverse_mass, body.velocity, h, next);
+        predict_velocity(*executor, body.force, body.inverse_mass, body.velocity, h, {}, next);
     }
-    void advance(Real h) { advance_positions(*executor, next, h, Integrator::symplectic_euler, push, body.position, body.velocity); }
+    void advance(Real h) { advance_positions(*executor, next, h, Integrator::symplectic_euler, {}, push, body.position, body.velocity); }
 };
 
 /// One element, all corners pinned but the last: an oscillator with a known frequency along x, sqrt(k / m), k = V mu |g|^2 for motion across its

@@ -77,6 +77,7 @@ public:
 struct WorldReport {
     Real time = 0;
     std::uint64_t steps = 0;
+    std::size_t asleep = 0;  // bodies at rest, now
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
     Real stable_step = 0;                                             // s, of the stiffest body, now
     std::string stable_step_body;                                     // which body that is

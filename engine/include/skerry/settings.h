@@ -107,6 +107,10 @@ struct Settings {
     bool fixed_iterations = false;  // do exactly max_iterations sweeps
     Real relaxation = 1;            // of the sweeps, > 0 and < 2; only for methods that sweep
     Real max_strain_step = 0.2;     // a step that moves nodes by more than this fraction of an element is refused
+    // A body all of whose nodes have been slower than sleep_speed for sleep_time is put to rest, together with all that it touches: it is left
+    // out of the step and its contacts are not reported until something presses on it or changes it. 0: nothing rests.
+    Real sleep_speed = 0;         // m/s, >= 0
+    Real sleep_time = 0.5;        // s, >= 0
     bool contact_budgets = true;    // skip what cannot have come close; off searches everything
     // A step in which surfaces would go through each other is tried again with what crossed as contacts. Only fast pairs are looked at.
     bool continuous_collision = true;

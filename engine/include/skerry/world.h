@@ -64,6 +64,8 @@ public:
     Real mass(BodyHandle body) const;              // kg
     Vec3 center_of_mass(BodyHandle body) const;    // m
     Real contact_distance(BodyHandle body) const;  // m
+    bool asleep(BodyHandle body) const;            // at rest, see Settings::sleep_speed
+    void wake(BodyHandle body);                    // ends its rest; what it touches wakes within steps
     Real mean_edge(BodyHandle body) const;         // m, of the rest surface
     std::vector<BodyHandle> bodies() const;        // in the order added
     std::vector<ColliderHandle> colliders() const;

@@ -22,8 +22,8 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
     const std::vector<ContactKey> before{key(10), key(20), key(30), key(40)};
     const std::vector<Vec3> normal(4, Vec3::UnitZ());
     const std::vector<Vec3> impulse{{0, 0, 1}, {0, 0, 2}, {0, 1, 3}, {0, 0, 4}};
-    WarmStartTable last;
-    store_warm_start(before, normal, impulse, 0.1, last);
+    WarmStartTable last, next;
+    store_warm_start(before, normal, impulse, {}, 0.1, last, next);
 
     const std::vector<ContactKey> now{key(5), key(10), key(25), key(30), key(50)};  // 20 and 40 gone, 5, 25 and 50 new
     std::vector<Vec3> matched(5, Vec3::Ones());
@@ -32,7 +32,7 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
 }
 
 TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]") {
-    WarmStartTable last;
+    WarmStartTable last, next;
     store_warm_start(std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()), std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}},
                      1, last);
     std::vector<Vec3> matched(3);
@@ -48,8 +48,8 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
         const Vec3 to = (from + 0.5 * Vec3(normal_number(random), normal_number(random), normal_number(random))).normalized();
         if (from.dot(to) < -0.99) continue;
         const Vec3 impulse(normal_number(random), normal_number(random), normal_number(random));
-        WarmStartTable last;
-        store_warm_start(std::vector{key(1)}, std::vector{from}, std::vector{impulse}, 0.2, last);
+        WarmStartTable last, next;
+        store_warm_start(std::vector{key(1)}, std::vector{from}, std::vector{impulse}, {}, 0.2, last, next);
         std::vector<Vec3> matched(1);
         match_warm_start(*serial, std::vector{key(1)}, std::vector{to}, last, 0.1, matched);
         const Vec3 expected = 0.5 * (Eigen::AngleAxisd(std::acos(from.dot(to)), from.cross(to).normalized()) * impulse);
@@ -59,8 +59,8 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
 }
 
 TEST_CASE("a normal that flipped carries nothing over", "[unit][contact]") {
-    WarmStartTable last;
-    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, 1, last);
+    WarmStartTable last, next;
+    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, {}, 1, last, next);
     std::vector<Vec3> matched(1, Vec3::Ones());
     match_warm_start(*serial, std::vector{key(1)}, std::vector<Vec3>{-Vec3::UnitZ()}, last, 1, matched);
     CHECK(matched[0] == Vec3::Zero());
@@ -81,8 +81,8 @@ TEST_CASE("matching many contacts gives the same on any number of workers", "[un
     }
     std::vector<Vec3> impulse(before.size());
     for (std::size_t i = 0; i < before.size(); ++i) impulse[i] = Vec3(0, 0, static_cast<Real>(before[i].feature));
-    WarmStartTable last;
-    store_warm_start(before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse, 1, last);
+    WarmStartTable last, next;
+    store_warm_start(before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse, {}, 1, last, next);
     for (const int workers : {1, 2, 3, 8}) {
         std::vector<Vec3> matched(now.size());
         const auto executor = make_executor(Backend::threads, workers);

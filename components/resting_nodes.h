@@ -1,0 +1,19 @@
+// Which nodes lie in bodies at rest: nothing happens to them in a step.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// With empty spans no body rests.
+struct RestingNodes {
+    std::span<const Index> node_body = {};           // NodeTable
+    std::span<const std::uint8_t> body_asleep = {};  // BodyTable
+
+    bool contain(std::size_t node) const { return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(node_body[node])] != 0; }
+};
+
+}  // namespace skerry

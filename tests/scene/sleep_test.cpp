@@ -1,0 +1,158 @@
+// Bodies at rest: left out of the step, and woken by whatever concerns them.
+#include <catch2/catch.hpp>
+
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+constexpr Real sleep_speed = 2e-3;  // m/s
+constexpr Real sleep_time = 0.1;    // s
+
+/// A tower of two blocks on a plane, and a block beside it.
+struct Tower {
+    World world;
+    BodyHandle low, high, beside;
+    ColliderHandle floor;
+    Mesh block = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
+    MaterialHandle rubber;
+
+    explicit Tower(Real speed = sleep_speed, int threads = 1) : world(settings(speed, threads)) {
+        rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
+        floor = world.add_collider(Plane{});
+        low = add({0, 0, 0.051});
+        high = add({0.01, 0, 0.153});
+        beside = add({1, 0, 0.051});
+    }
+    static Settings settings(Real speed, int threads) {
+        Settings settings;
+        settings.sleep_speed = speed;
+        settings.sleep_time = sleep_time;
+        settings.threads = threads;
+        return settings;
+    }
+    BodyHandle add(const Vec3& where, const Vec3& velocity = Vec3::Zero()) {
+        return world.add_body(block, {.material = rubber, .position = where, .velocity = velocity, .contact_distance = 0.002});
+    }
+    std::vector<Vec3> copy(BodyHandle body) const {
+        const auto x = world.positions(body);
+        return {x.begin(), x.end()};
+    }
+    bool all_asleep() const { return world.report().asleep == world.bodies().size(); }
+    /// Until all bodies rest; false when they do not within two seconds.
+    bool settle() {
+        for (int i = 0; i < 40 && !all_asleep(); ++i)
+            if (!world.advance(0.05).ok()) return false;
+        return all_asleep();
+    }
+};
+
+Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    Real largest = 0;
+    for (std::size_t n = 0; n < a.size(); ++n) largest = std::max(largest, (a[n] - b[n]).norm());
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("what has settled rests to the last bit, near to where it would have settled", "[scene]") {
+    Tower tower, awake(0);
+    REQUIRE(tower.settle());
+    CHECK(tower.world.asleep(tower.low));
+    const auto low = tower.copy(tower.low), high = tower.copy(tower.high);
+    const WorldReport before = tower.world.report();
+    REQUIRE(tower.world.advance(0.5).ok());
+    const WorldReport after = tower.world.report();
+    CHECK(distance(low, tower.copy(tower.low)) == 0);
+    CHECK(distance(high, tower.copy(tower.high)) == 0);
+    CHECK(after.energy.kinetic == 0);
+    CHECK(after.steps > before.steps + 100);
+    CHECK(tower.world.contacts().empty());  // nobody looks for them
+    CHECK(after.momentum_error_share < 1e-12 * static_cast<Real>(after.steps));
+    CHECK(after.energy_error_share < 0.05);
+
+    REQUIRE(awake.world.advance(tower.world.time()).ok());
+    CHECK(awake.world.report().asleep == 0);
+    // a calm body drifts by less than its speed limit in the time that it is watched for
+    CHECK(distance(high, awake.copy(awake.high)) < sleep_speed * sleep_time);
+}
+
+TEST_CASE("a body that falls on a tower wakes all of it, and only it, and all come to rest again", "[scene]") {
+    Tower tower;
+    REQUIRE(tower.settle());
+    tower.add({0, 0.02, 0.26}, {0, 0, -0.5});
+    // adding a body changes the tables for all: they wake, and rest again before it lands
+    bool woken = false, beside_rested = true, landed = false;
+    for (int i = 0; i < 100; ++i) {
+        REQUIRE(tower.world.advance(0.01).ok());
+        landed |= !tower.world.contacts().empty() && tower.world.time() > 0.2;
+        woken |= !tower.world.asleep(tower.low) && !tower.world.asleep(tower.high);
+        beside_rested &= tower.world.time() < 1 || tower.world.asleep(tower.beside);
+    }
+    CHECK(landed);
+    CHECK(woken);
+    CHECK(tower.settle());
+    CHECK(tower.world.report().worst_volume_ratio > 0.5);
+}
+
+TEST_CASE("taking the support away, a load, a kick or a hand that asks wakes a body", "[scene]") {
+    Tower tower;
+    REQUIRE(tower.settle());
+    SECTION("the collider under it goes") {
+        tower.world.remove(tower.floor);
+        REQUIRE(tower.world.advance(0.1).ok());
+        CHECK(mean_velocity(tower.world, tower.low, node_masses(tower.world, tower.low, tower.block, 500)).z() < -0.9);
+    }
+    SECTION("a load") {
+        tower.world.set_loads(tower.beside, std::vector<Vec3>(tower.block.nodes.size(), Vec3(0, 0, 1)));
+        CHECK_FALSE(tower.world.asleep(tower.beside));
+        REQUIRE(tower.world.advance(0.1).ok());
+        CHECK(mean_velocity(tower.world, tower.beside, node_masses(tower.world, tower.beside, tower.block, 500)).z() > 0.1);
+        CHECK(tower.world.asleep(tower.low));
+    }
+    SECTION("a kick to the low block carries the high one along") {
+        tower.world.set_velocities(tower.low, std::vector<Vec3>(tower.block.nodes.size(), Vec3(0.3, 0, 0)));
+        CHECK(tower.world.asleep(tower.high));
+        REQUIRE(tower.world.advance(0.02).ok());
+        CHECK_FALSE(tower.world.asleep(tower.high));
+        CHECK(tower.world.asleep(tower.beside));
+    }
+    SECTION("wake") {
+        tower.world.wake(tower.high);
+        CHECK_FALSE(tower.world.asleep(tower.high));
+        CHECK(tower.settle());
+    }
+    SECTION("gravity that turns") {
+        tower.world.set_gravity({0, 0, 5});
+        REQUIRE(tower.world.advance(0.1).ok());
+        CHECK(mean_velocity(tower.world, tower.high, node_masses(tower.world, tower.high, tower.block, 500)).z() > 0.4);
+    }
+}
+
+TEST_CASE("a collider that starts to move wakes what lies on it, and nothing rests on one that moves", "[scene]") {
+    World world(Tower::settings(sleep_speed, 1));
+    const auto rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
+    // a box that stands for two seconds and then moves on
+    world.add_collider(Box{{1, 1, 0.1}}, {.motion = {.keys = {{.time = 0}, {.time = 2}, {.time = 4, .position = {0.4, 0, 0}}}}});
+    const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
+    const auto block = world.add_body(mesh, {.material = rubber, .position = {0, 0, 0.101}, .contact_distance = 0.002});
+    REQUIRE(world.advance(1.9).ok());
+    REQUIRE(world.asleep(block));
+    const Real start = world.center_of_mass(block).x();
+    REQUIRE(world.advance(1.1).ok());
+    CHECK_FALSE(world.asleep(block));
+    CHECK(world.center_of_mass(block).x() - start == Approx(0.2).margin(0.01));  // carried along by friction
+}
+
+TEST_CASE("rest is the same on any number of threads", "[scene]") {
+    std::vector<std::uint64_t> hash;
+    for (const int threads : {1, 2, 3}) {
+        Tower tower(sleep_speed, threads);
+        for (int i = 0; i < 40; ++i) REQUIRE(tower.world.advance(0.02).ok());
+        hash.push_back(tower.world.state_hash());
+    }
+    CHECK(hash[1] == hash[0]);
+    CHECK(hash[2] == hash[0]);
+}
