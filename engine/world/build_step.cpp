@@ -95,6 +95,13 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
             make(c));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.warm_start), value(w.step.h),
             write(c.impulse), only_if([&w] { return w.step.solver.warm_start == WarmStart::on; }, reads(w.step.solver)));
+    g.stage("dynamics/mark_pressed", mark_pressed, read(c.first_body), read(c.second_body),
+            bundle(
+                [&w, &c] {
+                    return w.step.solver.warm_start == WarmStart::on ? std::span<const Vec3>(c.impulse.span()) : std::span<const Vec3>();
+                },
+                reads(c.impulse, w.step.solver)),
+            read(w.bodies.asleep), make(w.pressed), only_if([&w] { return w.any_asleep; }, reads(w.any_asleep)));
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(n.inverse_mass), value(w.step.contact_regions),
             make(w.union_find), make(w.regions), write(c.region));
 }
@@ -163,8 +170,8 @@ void list_join(WorldState& w, TaskGraph& g) {
         only_if([&w] { return w.step.verdict.fault == StepFault::none && w.step.crossings == 0; }, reads(w.step.verdict, w.step.crossings));
     const auto sleepy = only_if([&w] { return w.step.taken() && w.step.sleep.speed > 0; }, reads(w.step.verdict, w.step.crossings, w.step.sleep));
     const auto touches = bundle([&w] { return w.touches(); }, reads(c.first_body, c.second_body, c.state, c.gap, c.surface_velocity));
-    g.stage("dynamics/wake_bodies", wake_bodies, touches, read(w.attachments.body), read(w.attachments.motion), write(b.asleep),
-            write(b.calm), sleepy);
+    g.stage("dynamics/wake_bodies", wake_bodies, touches, read(w.pressed), read(w.attachments.body), read(w.attachments.motion),
+            write(b.asleep), write(b.calm), sleepy);
     g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), value(w.settings.integrator),
             bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), write(n.push_out), write(n.position), write(n.velocity),
             trusted);

@@ -44,6 +44,7 @@ void WorldState::wake_all() {
 
 void WorldState::note_rest() {
     any_asleep = false;
+    pressed.clear();
     step.awake_mass = 0;
     for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
         any_asleep |= bodies.asleep[b] != 0;

@@ -163,6 +163,7 @@ struct WorldState {
     Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
     Column<Real> stiffness_sum;          // scratch of stable_step
     SleepMemory sleep_memory;
+    Column<std::uint8_t> pressed;     // by body at rest, in this step
     WarmStartTable warm_start_next;   // scratch of store_warm_start
     bool any_asleep = false;          // some body rests
     Column<ExternalWork> work_parts;  // scratch of measure_work

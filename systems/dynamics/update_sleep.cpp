@@ -42,8 +42,18 @@ void put_to_rest(const RestInputs& bodies, std::size_t body, std::span<Vec3> vel
 
 }  // namespace
 
-bool wake_bodies(const TouchInputs& touches, std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
-                 std::span<std::uint8_t> asleep, std::span<Real> calm) {
+void mark_pressed(std::span<const Index> first_body, std::span<const Index> second_body, std::span<const Vec3> warm_impulse,
+                  std::span<const std::uint8_t> asleep, Column<std::uint8_t>& pressed) {
+    pressed.assign(asleep.size(), 0);
+    for (std::size_t c = 0; c < first_body.size(); ++c) {
+        if (!warm_impulse.empty() && warm_impulse[c] == Vec3::Zero()) continue;
+        pressed[first_body[c]] = 1;
+        if (second_body[c] != no_index) pressed[second_body[c]] = 1;
+    }
+}
+
+bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed, std::span<const Index> attached_body,
+                 std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep, std::span<Real> calm) {
     bool any = false;
     const auto wake = [&](Index body) {
         if (body == no_index || !asleep[body]) return;
@@ -56,6 +66,8 @@ bool wake_bodies(const TouchInputs& touches, std::span<const Index> attached_bod
         wake(touches.first_body[c]);
         wake(touches.second_body[c]);
     }
+    for (std::size_t b = 0; b < pressed.size(); ++b)
+        if (pressed[b]) wake(static_cast<Index>(b));
     for (std::size_t a = 0; a < attached_body.size(); ++a)
         if (attached_motion[a].velocity != Vec3::Zero() || attached_motion[a].angular_velocity != Vec3::Zero()) wake(attached_body[a]);
     return any;

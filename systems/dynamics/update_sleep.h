@@ -24,10 +24,15 @@ struct TouchInputs {
     std::span<const Vec3> surface_velocity;  // m/s
 };
 
-/// Wakes every body that a contact of this step presses on, by an impulse or by overlap, or that an attachment leads. Contacts between bodies
-/// at rest are not looked for, so what presses moves. Returns false when none was woken.
-bool wake_bodies(const TouchInputs& touches, std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
-                 std::span<std::uint8_t> asleep, std::span<Real> calm);
+/// Marks bodies at rest that a contact has pressed on: by the impulse that it had when they were put to rest, since without their weight they may
+/// not press now. Before the solve. `warm_impulse` is empty when none is kept: then every contact counts.
+void mark_pressed(std::span<const Index> first_body, std::span<const Index> second_body, std::span<const Vec3> warm_impulse,
+                  std::span<const std::uint8_t> asleep, Column<std::uint8_t>& pressed);
+
+/// Wakes every body that is marked, that a contact of this step presses on, by an impulse or by overlap, or that an attachment leads. Contacts
+/// between bodies at rest are not looked for, so what presses moves. Returns false when none was woken.
+bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed, std::span<const Index> attached_body,
+                 std::span<const RigidMotion> attached_motion, std::span<std::uint8_t> asleep, std::span<Real> calm);
 
 struct RestInputs {
     std::span<const BodyKind> kind;

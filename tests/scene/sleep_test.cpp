@@ -8,7 +8,7 @@ using namespace skerry::test;
 
 namespace {
 
-constexpr Real sleep_speed = 2e-3;  // m/s
+constexpr Real sleep_speed = 5e-3;  // m/s
 constexpr Real sleep_time = 0.1;    // s
 
 /// A tower of two blocks on a plane, and a block beside it.
@@ -41,9 +41,9 @@ struct Tower {
         return {x.begin(), x.end()};
     }
     bool all_asleep() const { return world.report().asleep == world.bodies().size(); }
-    /// Until all bodies rest; false when they do not within two seconds.
+    /// Until all bodies rest: the tower sways for a while. False when they do not within eight seconds.
     bool settle() {
-        for (int i = 0; i < 40 && !all_asleep(); ++i)
+        for (int i = 0; i < 160 && !all_asleep(); ++i)
             if (!world.advance(0.05).ok()) return false;
         return all_asleep();
     }
