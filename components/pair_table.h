@@ -34,12 +34,12 @@ struct CandidatePlace {
 struct PairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
     Column<PairKind> kind;
-    Column<Index> first;       // row of BodyTable; never a kinematic body
-    Column<Index> second;      // row of BodyTable, or of ColliderTable
+    Column<Index> first;           // row of BodyTable; never a kinematic body
+    Column<Index> second;          // row of BodyTable, or of ColliderTable
     Column<std::uint8_t> resting;  // neither partner moves in this step: no contacts are looked for, last ones are kept
-    Column<Real> front;        // m: sum of both travels and of what this step may add to the closing, written in every step
-    Column<Real> valid_until;  // m: the list holds while front is below this
-    Column<PairState> state;   // as last searched; apart stays apart, find_crossings sees to it
+    Column<Real> front;            // m: sum of both travels and of what this step may add to the closing, written in every step
+    Column<Real> valid_until;      // m: the list holds while front is below this
+    Column<PairState> state;       // as last searched; apart stays apart, find_crossings sees to it
     std::vector<Column<Candidate>> candidates;  // by pair, sorted by feature
     std::vector<Column<Real>> asleep_until;     // m, by pair and candidate: it cannot touch while front is below this
     Column<CandidatePlace> block;               // where the blocks of find_contacts start, and one past the last

@@ -55,13 +55,11 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             bundle([&w] { return w.element_inputs(); },
                    reads(e.node, e.inverse_rest, e.volume, e.material, w.materials, e.level, e.body, e.viscous_time, b.level, b.asleep)),
             read(n.position), read(n.velocity), read(e.rotation), write(e.rotation_next), write(e.force));
-    g.stage("dynamics/gather_node_forces", gather_node_forces, read(w.corners),
-            bundle(
-                [&w, &n, &b, &e, &k] {
-                    return DueCorners{k.begin, k.end, k.body, b.due, n.levels, e.level, w.resting_nodes().body_asleep};
-                },
-                reads(k.begin, k.end, k.body, b.due, n.levels, e.level, b.asleep)),
-            read(e.force), read(n.mass), value(w.step.gravity), read(n.load), write(n.force));
+    g.stage(
+        "dynamics/gather_node_forces", gather_node_forces, read(w.corners),
+        bundle([&w, &n, &b, &e, &k] { return DueCorners{k.begin, k.end, k.body, b.due, n.levels, e.level, w.resting_nodes().body_asleep}; },
+               reads(k.begin, k.end, k.body, b.due, n.levels, e.level, b.asleep)),
+        read(e.force), read(n.mass), value(w.step.gravity), read(n.load), write(n.force));
     g.stage("dynamics/predict_velocity", predict_velocity, read(n.force), read(n.inverse_mass), read(n.velocity), value(w.step.h),
             bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", damp_velocity,
@@ -109,9 +107,6 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
 void list_solve(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.nodes;
     ContactTable& c = w.contacts;
-    BodyTable& b = w.bodies;
-    ElementBlockTable& e = w.elements;
-    NodeBlockTable& k = w.node_blocks;
     g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next), make(w.kept_velocities),
             only_if([&w] { return w.problem_watch.wants(w.counters.steps + 1); }, reads(w.problem_watch)));
     g.stage("solver/solve_regions", solve_regions,
@@ -168,7 +163,8 @@ void list_join(WorldState& w, TaskGraph& g) {
                         only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict)));
     const auto trusted =
         only_if([&w] { return w.step.verdict.fault == StepFault::none && w.step.crossings == 0; }, reads(w.step.verdict, w.step.crossings));
-    const auto sleepy = only_if([&w] { return w.step.taken() && w.step.sleep.speed > 0; }, reads(w.step.verdict, w.step.crossings, w.step.sleep));
+    const auto sleepy =
+        only_if([&w] { return w.step.taken() && w.step.sleep.speed > 0; }, reads(w.step.verdict, w.step.crossings, w.step.sleep));
     const auto touches = bundle([&w] { return w.touches(); }, reads(c.first_body, c.second_body, c.state, c.gap, c.surface_velocity));
     g.stage("dynamics/wake_bodies", wake_bodies, touches, read(w.pressed), read(w.attachments.body), read(w.attachments.motion),
             write(b.asleep), write(b.calm), sleepy);

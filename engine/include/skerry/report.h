@@ -101,9 +101,9 @@ struct WorldReport {
     std::vector<std::uint64_t> level_elements;
     std::uint64_t element_steps = 0;     // elements times steps
     std::uint64_t element_impulses = 0;  // of them, how many were evaluated
-    std::uint64_t inline_steps = 0;  // too small to pay for threads
-    std::uint64_t shortened = 0;     // steps tried again at half the length, since a body was too fast or surfaces crossed
-    std::uint64_t retried = 0;       // steps tried again with what crossed in them as contacts
+    std::uint64_t inline_steps = 0;      // too small to pay for threads
+    std::uint64_t shortened = 0;         // steps tried again at half the length, since a body was too fast or surfaces crossed
+    std::uint64_t retried = 0;           // steps tried again with what crossed in them as contacts
     // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could stop them.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
     Energy energy;

@@ -111,7 +111,7 @@ struct Settings {
     // out of the step and its contacts are not reported until something presses on it or changes it. 0: nothing rests.
     Real sleep_speed = 0;         // m/s, >= 0
     Real sleep_time = 0.5;        // s, >= 0
-    bool contact_budgets = true;    // skip what cannot have come close; off searches everything
+    bool contact_budgets = true;  // skip what cannot have come close; off searches everything
     // A step in which surfaces would go through each other is tried again with what crossed as contacts. Only fast pairs are looked at.
     bool continuous_collision = true;
     // What the solver leaves out where it can; off changes no result beyond the tolerance.
