@@ -9,7 +9,7 @@ import statistics
 import plot_style as style
 from plot_style import plt
 
-WORST = 0.5  # larger errors say no more than that the run is lost
+WORST = 2  # larger errors say no more than that the run is lost
 ENGINES = ("Skerry", "Bullet", "MuJoCo")
 LOOK = {"Skerry": "-", "Bullet": "--", "MuJoCo": "-."}
 
