@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+
+#include "profiling/measure.h"
+#include "profiling/work_precision/runs.h"
+#include "skerry/world.h"
+
+namespace skerry::profiling {
+namespace {
+
+struct Built {
+    World world;
+    std::vector<BodyHandle> bodies;
+};
+
+Built build(const PrecisionScene& scene, Settings settings, Real step) {
+    settings.gravity = scene.gravity.front().gravity;
+    settings.backend = Backend::serial;
+    if (step > 0) settings.step_size = step;
+    Built built{World(settings), {}};
+    World& world = built.world;
+    const MaterialHandle material = world.add_material(scene.material);
+    for (const PrecisionBody& body : scene.bodies) {
+        const BodyHandle handle = world.add_body(body.mesh, {.material = material, .contact_distance = scene.contact_distance});
+        world.set_velocities(handle, body.velocity);
+        if (!body.fixed.empty()) world.attach(handle, body.fixed);
+        built.bodies.push_back(handle);
+    }
+    // A body keeps half its contact distance from a collider; the plane is moved by the other half.
+    for (const PrecisionPlane& plane : scene.planes)
+        world.add_collider(Plane{.normal = plane.normal, .point = plane.point + scene.contact_distance / 2 * plane.normal});
+    return built;
+}
+
+Vec3 gravity_at(const PrecisionScene& scene, Real time) {
+    const std::vector<GravityKey>& keys = scene.gravity;
+    if (time <= keys.front().time) return keys.front().gravity;
+    for (std::size_t k = 1; k < keys.size(); ++k)
+        if (time < keys[k].time) {
+            const Real share = (time - keys[k - 1].time) / (keys[k].time - keys[k - 1].time);
+            return (1 - share) * keys[k - 1].gravity + share * keys[k].gravity;
+        }
+    return keys.back().gravity;
+}
+
+void sample(const Built& built, Record& record) {
+    std::vector<Vec3> x, v;
+    for (const BodyHandle body : built.bodies) {
+        const auto position = built.world.positions(body), velocity = built.world.velocities(body);
+        x.insert(x.end(), position.begin(), position.end());
+        v.insert(v.end(), velocity.begin(), velocity.end());
+    }
+    record.positions.push_back(std::move(x));
+    record.velocities.push_back(std::move(v));
+}
+
+/// While gravity changes it is set this often, s: as often as any step that is compared.
+constexpr Real gravity_interval = 2e-3;
+
+Record run_once(const PrecisionScene& scene, const Settings& settings, Real step, double cap) {
+    Built built = build(scene, settings, step);
+    Record record;
+    record.finished = true;
+    const Real interval = scene.seconds / scene.samples;
+    const int parts = scene.gravity.size() > 1 ? static_cast<int>(std::ceil(interval / gravity_interval)) : 1;
+    for (int s = 0; s < scene.samples && record.finished; ++s) {
+        const double start = cpu_seconds();
+        for (int p = 0; p < parts && record.finished; ++p) {
+            if (parts > 1) built.world.set_gravity(gravity_at(scene, s * interval + (p + 0.5) * interval / parts));
+            const StepReport report = built.world.advance(interval / parts);
+            record.finished = report.ok();
+            record.steps += report.steps;
+            record.step = report.step_size;
+        }
+        record.seconds += cpu_seconds() - start;
+        sample(built, record);
+        if (record.seconds > cap) record.finished = false;
+    }
+    return record;
+}
+
+}  // namespace
+
+std::vector<SkerryVariant> time_variants() {
+    const auto variant = [](std::string name, Integrator integrator, Real tolerance) {
+        SkerryVariant one{.name = std::move(name), .settings = {}};
+        one.settings.integrator = integrator;
+        one.settings.tolerance = tolerance;
+        one.settings.max_iterations = 20000;
+        return one;
+    };
+    return {variant("symplectic Euler 1e-3", Integrator::symplectic_euler, 1e-3), variant("leapfrog 1e-3", Integrator::leapfrog, 1e-3),
+            variant("leapfrog 1e-8", Integrator::leapfrog, 1e-8)};
+}
+
+Real stable_step_of(const PrecisionScene& scene) {
+    return build(scene, {}, 0).world.stable_step();
+}
+
+Record run_skerry(const PrecisionScene& scene, const SkerryVariant& variant, Real step, int repeat, double cap) {
+    Record record = run_once(scene, variant.settings, step, cap);
+    std::vector<double> seconds{record.seconds};
+    for (int r = 1; r < repeat && record.finished; ++r) seconds.push_back(run_once(scene, variant.settings, step, cap).seconds);
+    record.seconds = median(std::move(seconds));
+    return record;
+}
+
+}  // namespace skerry::profiling
