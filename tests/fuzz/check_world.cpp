@@ -44,7 +44,10 @@ void check_contacts(const World& world) {
         expect(std::abs(c.normal.norm() - 1) < 1e-6, who + "normal of length " + std::to_string(c.normal.norm()));
         expect(world.alive(c.first) || world.alive(c.second), who + "of no body");
         // rounding of the sums that a method projects with
-        expect(c.impulse.dot(c.normal) >= -1e-9 * largest, who + "pulls with " + std::to_string(-c.impulse.dot(c.normal) / largest) + " of the largest impulse " + std::to_string(largest) + " region " + std::to_string(c.region) + " state " + std::to_string((int)c.motion) + " gap " + std::to_string(c.gap) + " of " + std::to_string(world.contacts().size()));
+        expect(c.impulse.dot(c.normal) >= -1e-9 * largest,
+               who + "pulls with " + std::to_string(-c.impulse.dot(c.normal) / largest) + " of the largest impulse " +
+                   std::to_string(largest) + " region " + std::to_string(c.region) + " state " + std::to_string((int)c.motion) + " gap " +
+                   std::to_string(c.gap) + " of " + std::to_string(world.contacts().size()));
         for (std::size_t a = 0; a < 4; ++a) {
             expect(std::isfinite(c.weight[a]) && std::abs(c.weight[a]) <= 1 + 1e-9, who + "weight " + std::to_string(c.weight[a]));
             if (c.weight[a] == 0) continue;

@@ -25,7 +25,7 @@ struct RandomScene {
     Real steps_per_advance = 1;   // stable steps
     Real length = 1;              // m, of its bodies, about
     Real speed = 0;               // m/s, the highest that something starts or is moved with
-    bool passive = true;          // nothing does work on it but gravity: its energy must not grow
+    bool passive = true;          // nothing does work on it but gravity, and contacts that are pressed in at its start
     bool oversized_step = false;  // it asks for a step that may be longer than the stable one
 };
 

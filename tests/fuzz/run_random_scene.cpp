@@ -106,6 +106,10 @@ private:
     std::vector<AttachmentHandle> attachments_;
 };
 
+/// Symplectic Euler's own error, close to the limit of stability, and contacts pushed out of each other in between; what blows up grows by
+/// orders of magnitude.
+constexpr Real most_growth = 3;
+
 /// Energy of a scene that nothing does work on but gravity.
 class EnergyWatch {
 public:
@@ -157,6 +161,7 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
     World& world = built->world;
     check_bodies(world);
     const EnergyWatch energy(world);
+    bool passive = scene.passive;
     Changer changer(world, scene);
     std::size_t next_change = 0;
     for (int a = 0; a < scene.advances; ++a) {
@@ -176,7 +181,11 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
             break;
         }
         if (world.time() != before + dt) throw std::runtime_error("time went wrong");
-        if (scene.passive && next_change == 0) run.energy_growth = std::max(run.energy_growth, energy.growth(world.energy()));
+        // what is pressed in from the start is pushed out, which loads it
+        passive &= next_change == 0 && !(a == 0 && report.max_gap_violation > 0);
+        if (passive) run.energy_growth = std::max(run.energy_growth, energy.growth(world.energy()));
+        if (run.energy_growth > most_growth)
+            throw std::runtime_error("energy out of nothing: " + std::to_string(run.energy_growth) + " times that of the start");
         if (cpu_seconds() - start > seconds) {
             run.end = SceneEnd::cut_short;
             break;
