@@ -113,16 +113,19 @@ constexpr Real most_growth = 3;
 /// Energy of a scene that nothing does work on but gravity.
 class EnergyWatch {
 public:
-    explicit EnergyWatch(const World& world) : start_(world.energy()) {
+    EnergyWatch(const World& world, Real length) : start_(world.energy()) {
         for (const BodyHandle body : world.bodies()) mass_ += world.mass(body);
         // what falling through one stable step gains: the order of symplectic Euler's error in a field of weight
         const Real fall = world.settings().gravity.norm() * world.stable_step();
-        floor_ = 10 * mass_ * fall * fall;
+        // and what rounding does to strains, in the energy that a strain of one would hold
+        const Real sound = length / world.stable_step();
+        floor_ = mass_ * (10 * fall * fall + 1e-20 * sound * sound);
     }
 
+    Real start() const { return start_.kinetic + start_.elastic + floor_; }
     /// The mechanical energy over that of the start.
     Real growth(const Energy& now) const {
-        const Real begun = start_.kinetic + start_.elastic + floor_;
+        const Real begun = start();
         const Real gained = now.kinetic + now.elastic + now.potential - start_.potential;
         // Potential energies are small differences of large numbers far from the origin.
         const Real rounding = 1e-12 * (std::abs(now.potential) + std::abs(start_.potential));
@@ -160,7 +163,7 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
     }
     World& world = built->world;
     check_bodies(world);
-    const EnergyWatch energy(world);
+    const EnergyWatch energy(world, scene.length);
     bool passive = scene.passive;
     Changer changer(world, scene);
     std::size_t next_change = 0;
@@ -185,7 +188,8 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
         passive &= next_change == 0 && !(a == 0 && report.max_gap_violation > 0);
         if (passive) run.energy_growth = std::max(run.energy_growth, energy.growth(world.energy()));
         if (run.energy_growth > most_growth)
-            throw std::runtime_error("energy out of nothing: " + std::to_string(run.energy_growth) + " times that of the start");
+            throw std::runtime_error("energy out of nothing: " + std::to_string(run.energy_growth) + " times the " +
+                                     std::to_string(energy.start()) + " J of the start");
         if (cpu_seconds() - start > seconds) {
             run.end = SceneEnd::cut_short;
             break;

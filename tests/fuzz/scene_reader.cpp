@@ -62,7 +62,7 @@ bool affordable(const SceneFile& scene) {
 
 }  // namespace
 
-void read_scene_bytes(Bytes bytes) {
+void read_scene_bytes(FileBytes bytes) {
     const auto file = folder().write("scene.json", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     try {
         if (!affordable(read_scene_file(file))) return;
