@@ -1,4 +1,4 @@
-// The random scenes themselves, and a few of them in every test run; scripts/random_scenes runs them for as long as asked.
+// The random scenes themselves, and a few of them in every test run. The program random_scenes runs them for as long as asked.
 #include <catch2/catch.hpp>
 
 #include "run_random_scene.h"

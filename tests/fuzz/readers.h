@@ -21,8 +21,8 @@ struct FileReaderCase {
     std::string_view name;  // also of its folder of found cases
     ReadBytes read;
 };
-/// gmsh, vtk, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj), scene (and drop files), problem (FCLIB as bytes of HDF5), problem_values (FCLIB in
-/// whole HDF5 files, so that what stands in them is reached).
+/// gmsh, vtk, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj), scene (and drop files),
+/// problem (FCLIB as bytes of HDF5), problem_values (FCLIB in whole HDF5 files, so that what stands in them is reached).
 std::span<const FileReaderCase> all_readers();
 
 /// Ends the program when something that was read is not valid.
