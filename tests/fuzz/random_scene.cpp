@@ -66,6 +66,13 @@ private:
             scene_.oversized_step = true;
             scene_.passive = false;
         }
+        if (random_.chance(0.3)) s["integrator"] = random_.one_of<const char*>({"leapfrog", "leapfrog", "leapfrog", "literal"});
+        if (s.contains("integrator") && s["integrator"] == "literal") scene_.passive = false;  // forward Euler gains energy by its nature
+        if (random_.chance(0.3)) s["multirate"] = true;
+        if (random_.chance(0.2)) {
+            s["sleep_speed"] = top_speed_ * random_.by_decade(1e-3, 1);
+            s["sleep_time"] = duration_ * random_.one_of<Real>({0, random_.by_decade(1e-3, 1)});
+        }
         s["backend"] = any_name<Backend>();
         s["threads"] = random_.one_of<int>({1, 1, 1, 2, 3});
         // the paper's Algorithm 1 takes quadratic time: few scenes with it say as much as many
@@ -82,8 +89,8 @@ private:
         // sweeps that go too far may add energy before they converge, and may be cut off there
         if (random_.chance(0.1)) s["relaxation"] = random_.within(0.1, 1.9);
         if (random_.chance(0.2)) s["max_strain_step"] = random_.by_decade(0.01, 1);
-        for (const char* key :
-             {"contact_budgets", "certify_warm_start", "skip_separating", "frictionless_rows", "freeze_contacts", "small_regions_in_lanes"})
+        for (const char* key : {"contact_budgets", "continuous_collision", "certify_warm_start", "skip_separating", "frictionless_rows",
+                                "freeze_contacts", "small_regions_in_lanes"})
             if (random_.chance(0.3)) s[key] = random_.chance(0.5);
         return s;
     }
