@@ -25,6 +25,12 @@ hid_t open_file(const std::filesystem::path& path) {
 
 Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()), file_(open_file(path), H5Fclose) {}
 
+bool Hdf5File::can_hold(hsize_t bytes) const {
+    constexpr hsize_t largest_ratio = 1032;  // of deflate, the strongest filter that files of this kind come with
+    hsize_t size = 0;
+    return H5Fget_filesize(file_.id(), &size) >= 0 && bytes / largest_ratio <= size;
+}
+
 void Hdf5File::complain(const std::string& path, const std::string& found, const std::string& expected, const std::string& hint) const {
     const std::size_t slash = path.rfind('/');
     const std::string object = slash == 0 ? "" : path.substr(0, slash);
@@ -58,6 +64,8 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER)) complain(path, "values of another type", expected);
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     if (count < 0 || count > std::numeric_limits<Index>::max()) complain(path, std::to_string(count) + " values", expected);
+    if (!can_hold(static_cast<hsize_t>(count) * sizeof(T)))
+        complain(path, std::to_string(count) + " values", "values that the file can hold");
     std::vector<T> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
         complain(path, "values that cannot be read", expected);
@@ -95,6 +103,7 @@ std::string Hdf5File::text_or_nothing(const std::string& path) const {
         H5free_memory(text);
         return result;
     }
+    if (!can_hold(H5Tget_size(type.id()))) return {};
     std::string text(H5Tget_size(type.id()), '\0');
     if (H5Dread(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return {};
     return text.substr(0, text.find('\0'));  // with or without the zero at the end

@@ -64,6 +64,8 @@ public:
                                const std::string& hint = {}) const;
 
 private:
+    /// Whether so much can come out of the file: a few bytes of it may claim any size.
+    bool can_hold(hsize_t bytes) const;
     template <class T>
     std::vector<T> numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const;
 

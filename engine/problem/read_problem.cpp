@@ -88,6 +88,15 @@ void read_global(const Hdf5File& file, ContactProblem& problem) {
         file.complain(root + "/M", fault.found, fault.expected);
 }
 
+/// Every number of the file is finite; sums and products of large ones need not be.
+void expect_finite(const Hdf5File& file, const std::string& root, const ContactProblem& problem) {
+    const auto finite = [](const auto& entries) {
+        return std::all_of(entries.begin(), entries.end(), [](const auto& e) { return e.allFinite(); });
+    };
+    if (!finite(problem.block) || !finite(problem.q))
+        file.complain(root + "/vectors", "numbers so large that W or q is not finite", "a problem in finite numbers");
+}
+
 }  // namespace
 
 ContactProblem read_problem(const std::filesystem::path& path) {
@@ -97,9 +106,11 @@ ContactProblem read_problem(const std::filesystem::path& path) {
     if (!file.has("/fclib_local") && file.has("/fclib_global")) {
         file.expect_group("/fclib_global");
         read_global(file, problem);
+        expect_finite(file, "/fclib_global", problem);
     } else {
         file.expect_group("/fclib_local", "the file holds no contact problem of FCLIB, local or global");
         read_local(file, problem);
+        expect_finite(file, "/fclib_local", problem);
     }
     return problem;
 }

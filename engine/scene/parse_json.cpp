@@ -78,6 +78,9 @@ private:
     }
 
     bool open(Json value) {
+        // scenes need fewer than ten; what walks values by recursion would use up the stack on a file of brackets
+        constexpr std::size_t deepest = 100;
+        if (open_.size() == deepest) Place(file_).refuse("lists and objects more than " + std::to_string(deepest) + " deep", "a scene");
         open_.push_back({put(std::move(value)), {}});
         return true;
     }

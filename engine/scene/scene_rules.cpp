@@ -1,6 +1,8 @@
 // The keys of a scene: settings, materials, bodies, colliders, probes.
 #include "engine/scene/scene_rules.h"
 
+#include <cstdint>
+
 namespace skerry {
 
 template <>
@@ -21,7 +23,14 @@ const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
             .key("count", &RepeatEntry::count, {.meaning = "copies along x, y and z", .limits = within(1, 1000), .required = true})
             .key("spacing", &RepeatEntry::spacing, {.meaning = "between copies", .unit = "m", .required = true})
             .key("jitter", &RepeatEntry::jitter, {.meaning = "largest random shift along each axis", .unit = "m", .limits = at_least(0)})
-            .key("seed", &RepeatEntry::seed, {.meaning = "of the shifts; the same seed gives the same scene", .limits = at_least(0)});
+            .key("seed", &RepeatEntry::seed, {.meaning = "of the shifts; the same seed gives the same scene", .limits = at_least(0)})
+            .check([](const Place& place, const RepeatEntry& grid) {
+                // more would not fit into any memory; a typing mistake is likelier
+                constexpr std::int64_t most_copies = 1000000;
+                const std::int64_t copies = std::int64_t{1} * grid.count[0] * grid.count[1] * grid.count[2];
+                if (copies > most_copies)
+                    place.key("count").refuse(std::to_string(copies) + " copies", "at most " + std::to_string(most_copies) + " in all");
+            });
     return rule;
 }
 

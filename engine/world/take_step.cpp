@@ -1,6 +1,7 @@
 // One step, all or nothing, and the loop that fills a span of time with steps.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "engine/world/world_state.h"
@@ -226,6 +227,15 @@ void take_step(WorldState& world, Real h) {
 
 namespace {
 
+/// Steps are counted with an int; a step so small that time does not move on by it would go on for ever.
+void require_countable(Real dt, Real step) {
+    constexpr Real most = std::numeric_limits<int>::max();
+    if (!(dt > most * step)) return;
+    char found[64];
+    std::snprintf(found, sizeof found, "%g s in steps of %g s", dt, step);
+    Complaint{.file = {}, .object = "advance", .field = "dt", .found = found, .expected = "at most 2147483647 steps", .hint = {}}.raise();
+}
+
 /// A step that crosses at any length is taken nevertheless, and reported: the push out of overlaps has to mend it.
 void take_crossing_step(WorldState& world, Real h, StepReport& report) {
     const std::uint64_t before = world.crossings.let_through;
@@ -243,6 +253,7 @@ StepReport World::advance(Real dt) {
             .raise();
     const ArithmeticScope arithmetic;  // what is done between the stages depends on the host no more than they do
     WorldState& world = *state_;
+    require_countable(dt, world.settings.step_size.value_or(skerry::stable_step(world) * world.settings.step_safety));
     StepReport report;
     const Real end = world.step.time + dt;
     Real left = dt;

@@ -8,6 +8,14 @@
 using namespace skerry;
 using namespace skerry::test;
 
+TEST_CASE("a time that more steps than an int counts would fill is refused before the first step", "[scene]") {
+    World world(Settings{.step_size = 1e-30});
+    world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}), {.material = world.add_material({}), .contact_distance = {}});
+    CHECK_THROWS_WITH(world.advance(1e-3), Catch::Contains("0.001 s in steps of 1e-30 s"));
+    CHECK(world.time() == 0);
+    CHECK(world.advance(1e-29).steps == 10);
+}
+
 TEST_CASE("two bodies that collide keep their common momentum", "[scene]") {
     const Friction friction = GENERATE(Friction::cone, Friction::pyramid);
     Settings settings;

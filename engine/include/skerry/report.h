@@ -17,8 +17,8 @@ enum class ContactMotion { open, stick, slide };
 
 /// One contact of the last step.
 struct Contact {
-    BodyHandle first{};           // the body of the point, or of the first edge
-    BodyHandle second{};          // the other body, or a stale handle (collider contacts)
+    BodyHandle first{};           // the body of the point, or of the first edge; a stale handle where that is of a mesh collider
+    BodyHandle second{};          // the other body; a stale handle where that is a collider
     ColliderHandle collider{};    // the collider, or a stale handle
     std::array<Index, 4> node{};  // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
     std::array<Real, 4> weight{};

@@ -66,8 +66,9 @@ inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
     const V tangential = z - along * normal;
     const Real length = tangential.norm();
-    if (length <= mu * along) return z;
+    // The polar cone first: without friction and without a tangential part both would hold of an impulse that pulls.
     if (mu * length <= -along) return V::Zero();
+    if (length <= mu * along) return z;
     const Real nearest = (along + mu * length) / (1 + mu * mu);
     if (length == 0) return nearest * normal;
     return nearest * normal + (mu * nearest / length) * tangential;

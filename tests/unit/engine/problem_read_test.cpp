@@ -1,4 +1,6 @@
 // Local problems from files: every storage, and every way to be wrong.
+#include <hdf5.h>
+
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <functional>
@@ -77,6 +79,26 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
     says(spoil([](auto& f) { f.reals["vectors/q"][2] = std::numeric_limits<double>::quiet_NaN(); }), {"q", "nan", "entry 2", "finite"});
     says(spoil([](auto& f) { f.reals["W/x"][4] = std::numeric_limits<double>::infinity(); }), {"x", "inf", "entry 4", "finite"});
     says(spoil([](auto& f) { f.reals["vectors/mu"][0] = std::numeric_limits<double>::quiet_NaN(); }), {"mu", "nan"});
+    // every number is finite, their sum is not
+    says(spoil([](auto& f) {
+             f.integers["W/i"][1] = 0;
+             f.reals["W/x"][0] = f.reals["W/x"][1] = 1.7e308;
+         }),
+         {"W", "not finite"});
+}
+
+TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for", "[unit][problem]") {
+    const TemporaryFolder folder;
+    const fs::path path = local_file().write(folder.path());
+    const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(file, "/fclib_local/vectors/q", H5P_DEFAULT);
+    const hsize_t size = 2000000000;  // 16 GB; without values none of it is stored
+    const hid_t space = H5Screate_simple(1, &size, nullptr);
+    H5Dclose(H5Dcreate2(file, "/fclib_local/vectors/q", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+    H5Fclose(file);
+    CHECK(fs::file_size(path) < 100000);
+    CHECK(refusal_of(path).find("2000000000 values, expected values that the file can hold") != std::string::npos);
 }
 
 TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][problem]") {

@@ -58,6 +58,8 @@ TEST_CASE("text that is not JSON is refused with its line and column", "[unit]")
         {"empty", "", {"found an empty file"}},
         {"only spaces", " \n ", {"found an empty file"}},
         {"a list", "[1, 2]", {"found the list [1,2]", "expected an object"}},
+        // once the end of the program's stack: what describes a value goes down into it
+        {"brackets", "{\"name\": " + std::string(100000, '[') + std::string(100000, ']') + "}", {"more than 100 deep"}},
     });
 }
 
@@ -119,6 +121,9 @@ TEST_CASE("values of the wrong kind or out of range are refused with unit and ra
          material_with(R"("static_friction": 0.3, "dynamic_friction": 0.5)"),
          {"materials.rubber.dynamic_friction", "at most static_friction, 0.3"}},
         {"only static", material_with(R"("static_friction": 0.3)"), {"only \"static_friction\"", "\"dynamic_friction\""}},
+        {"a billion copies",
+         body_with(R"("repeat": {"count": [1000, 1000, 1000], "spacing": [1, 1, 1]})"),
+         {"bodies[0].repeat.count: found 1000000000 copies", "at most 1000000"}},
         {"zero axis", body_with(R"("rotation": {"axis": [0, 0, 0], "degrees": 3})"), {"bodies[0].rotation.axis", "length 0"}},
         {"two angles",
          body_with(R"("rotation": {"axis": [0, 0, 1], "degrees": 3, "radians": 1})"),

@@ -32,6 +32,15 @@ TEST_CASE("the cone projection leaves a point of the cone and a remainder of its
     }
 }
 
+// Found by random scenes: the frictionless cone is a half line, and a pull along it lies on its backward extension.
+TEST_CASE("no projection leaves a pull, along the normal and without friction too", "[unit][solver]") {
+    const Vec3 normal = Vec3::UnitX(), pull = -2 * normal;
+    const FrictionLimits mu{0, 0};
+    CHECK(project_onto_cone(pull, normal, 0) == Vec3::Zero());
+    for (const Friction friction : {Friction::cone, Friction::pyramid, Friction::cone_convex})
+        CHECK(project_friction(pull, normal, mu, friction) == Vec3::Zero());
+}
+
 TEST_CASE("Coulomb's projection keeps the normal part and cuts the tangential part along itself", "[property][solver]") {
     Draw draw;
     for (int trial = 0; trial < 2000; ++trial) {

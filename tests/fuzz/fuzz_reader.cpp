@@ -1,0 +1,7 @@
+// libFuzzer's entry for one reader: SKERRY_READ is its function.
+#include "readers.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    skerry::test::SKERRY_READ({data, size});
+    return 0;
+}

@@ -1,0 +1,42 @@
+// The random scenes themselves, and a few of them in every test run. The program random_scenes runs them for as long as asked.
+#include <catch2/catch.hpp>
+
+#include "run_random_scene.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+TEST_CASE("the same seed gives the same random scene, another seed another one", "[unit]") {
+    const RandomScene scene = make_random_scene(7), again = make_random_scene(7);
+    CHECK(scene.json == again.json);
+    CHECK(scene.changes.size() == again.changes.size());
+    CHECK(scene.json != make_random_scene(8).json);
+}
+
+TEST_CASE("random scenes run or are refused, with finite numbers all the way", "[scene]") {
+    const TemporaryFolder folder;
+    std::uint64_t steps = 0;
+    Index contacts = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        INFO("seed " << seed);
+        const SceneRun run = run_random_scene(make_random_scene(seed), folder.path(), {}, 2);
+        steps += run.steps;
+        contacts = std::max(contacts, run.max_contacts);
+    }
+    // the scenes are worth running: they move, and they touch
+    CHECK(steps > 1000);
+    CHECK(contacts > 100);
+}
+
+TEST_CASE("a random scene has the same bits on other threads and another backend", "[scene][determinism]") {
+    const TemporaryFolder folder;
+    for (std::uint64_t seed = 21; seed <= 24; ++seed) {
+        INFO("seed " << seed);
+        const RandomScene scene = make_random_scene(seed);
+        const SceneRun alone = run_random_scene(scene, folder.path(), {.threads = 1, .backend = Backend::serial});
+        const SceneRun together = run_random_scene(scene, folder.path(), {.threads = 3, .backend = Backend::threads});
+        CHECK(alone.hash == together.hash);
+        CHECK(alone.steps == together.steps);
+    }
+}

@@ -1,0 +1,21 @@
+#include "readers.h"
+
+#include <array>
+
+namespace skerry::test {
+
+std::span<const FileReaderCase> all_readers() {
+    static constexpr std::array<FileReaderCase, 10> readers{{{"gmsh", read_gmsh_bytes},
+                                                             {"vtk", read_vtk_bytes},
+                                                             {"obj", read_obj_bytes},
+                                                             {"stl", read_stl_bytes},
+                                                             {"tetgen", read_tetgen_bytes},
+                                                             {"body", read_body_bytes},
+                                                             {"collider", read_collider_bytes},
+                                                             {"scene", read_scene_bytes},
+                                                             {"problem", read_problem_bytes},
+                                                             {"problem_values", read_problem_values_bytes}}};
+    return readers;
+}
+
+}  // namespace skerry::test

@@ -1,0 +1,43 @@
+// What the fuzzers have found is read once more by every test run. See docs/fuzzing.md.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "readers.h"
+
+using namespace skerry::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> found_cases(std::string_view reader) {
+    std::vector<fs::path> files;
+    const fs::path folder = fs::path(SKERRY_SOURCE_DIR) / "tests/fuzz/found" / reader;
+    if (fs::exists(folder))
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+}  // namespace
+
+TEST_CASE("every file that a fuzzer has found is read or refused", "[unit]") {
+    for (const FileReaderCase& reader : all_readers())
+        for (const fs::path& file : found_cases(reader.name)) {
+            INFO(file.string());
+            std::ifstream stream(file, std::ios::binary);
+            const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
+            REQUIRE_NOTHROW(reader.read({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
+        }
+}
+
+TEST_CASE("found cases lie in folders named after readers", "[unit]") {
+    const fs::path folder = fs::path(SKERRY_SOURCE_DIR) / "tests/fuzz/found";
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        CHECK(std::any_of(all_readers().begin(), all_readers().end(), [&](const FileReaderCase& reader) { return reader.name == name; }));
+    }
+}

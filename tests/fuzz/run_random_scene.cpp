@@ -1,0 +1,202 @@
+#include "run_random_scene.h"
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <numeric>
+#include <stdexcept>
+
+#include "check_world.h"
+#include "random_numbers.h"
+
+namespace skerry::test {
+
+namespace {
+
+double cpu_seconds() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+template <class Handle>
+std::optional<Handle> any_of(const std::vector<Handle>& handles, RandomNumbers& random) {
+    if (handles.empty()) return std::nullopt;
+    return handles[random.next() % handles.size()];
+}
+
+/// Makes the changes of a scene in mid-run.
+class Changer {
+public:
+    Changer(World& world, const RandomScene& scene) : world_(world), scene_(scene) {}
+
+    void make(const SceneChange& change) {
+        RandomNumbers random(change.seed);
+        const std::optional<BodyHandle> body = any_of(world_.bodies(), random);
+        switch (change.change) {
+            case Change::remove_body:
+                if (body) world_.remove(*body);
+                return;
+            case Change::remove_collider:
+                if (const auto collider = any_of(world_.colliders(), random)) world_.remove(*collider);
+                return;
+            case Change::add_body:
+                return add_body(random);
+            case Change::add_collider:
+                world_.add_collider(Sphere{scene_.length * random.by_decade(0.1, 10)}, {.position = anywhere(random), .motion = {}});
+                return;
+            case Change::attach:
+                if (body) attach(*body, random);
+                return;
+            case Change::detach:
+                if (!attachments_.empty() && world_.alive(attachments_.back())) world_.remove(attachments_.back());
+                return;
+            case Change::set_velocities:
+                if (body) set_velocities(*body, random);
+                return;
+            case Change::set_loads:
+                if (body) set_loads(*body, random);
+                return;
+            case Change::set_gravity:
+                world_.set_gravity(random.within(0, 100) * random.direction());
+                return;
+        }
+    }
+
+private:
+    Vec3 anywhere(RandomNumbers& random) {
+        const std::optional<BodyHandle> beside = any_of(world_.bodies(), random);
+        const Vec3 center = beside ? world_.center_of_mass(*beside) : Vec3(Vec3::Zero());
+        return center + scene_.length * random.within(0, 3) * random.direction();
+    }
+
+    void add_body(RandomNumbers& random) {
+        // of the softest kind that the scenes have, and light: the step of the others need not shrink for it
+        const MaterialHandle material = world_.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000, .friction = 0});
+        const Mesh mesh =
+            random.chance(0.5) ? mesh::ball(scene_.length / 2, random.count(1, 4)) : mesh::box(scene_.length * Vec3::Ones(), {2, 1, 3});
+        world_.add_body(mesh, {.material = material,
+                               .position = anywhere(random),
+                               .velocity = random.within(0, scene_.speed) * random.direction(),
+                               .self_contact = random.chance(0.5)});
+    }
+
+    void attach(BodyHandle body, RandomNumbers& random) {
+        const auto count = static_cast<int>(world_.positions(body).size());
+        std::vector<Index> nodes(static_cast<std::size_t>(random.count(1, count)));
+        std::iota(nodes.begin(), nodes.end(), 0);
+        Motion motion;
+        if (random.chance(0.5)) motion.velocity = random.within(0, scene_.speed) * random.direction();
+        attachments_.push_back(world_.attach(body, nodes, motion, world_.center_of_mass(body)));
+    }
+
+    void set_velocities(BodyHandle body, RandomNumbers& random) {
+        std::vector<Vec3> velocity(world_.positions(body).size());
+        for (Vec3& v : velocity) v = random.within(0, scene_.speed) * random.direction();
+        world_.set_velocities(body, velocity);
+    }
+
+    void set_loads(BodyHandle body, RandomNumbers& random) {
+        const Real weight = world_.mass(body) * 9.81 / static_cast<Real>(world_.positions(body).size());
+        std::vector<Vec3> load(world_.positions(body).size());
+        for (Vec3& f : load) f = random.by_decade(0.01, 100) * weight * random.direction();
+        world_.set_loads(body, load);
+    }
+
+    World& world_;
+    const RandomScene& scene_;
+    std::vector<AttachmentHandle> attachments_;
+};
+
+/// Symplectic Euler's own error, close to the limit of stability, and contacts pushed out of each other in between; what blows up grows by
+/// orders of magnitude.
+constexpr Real most_growth = 3;
+
+/// Energy of a scene that nothing does work on but gravity.
+class EnergyWatch {
+public:
+    EnergyWatch(const World& world, Real length) : start_(world.energy()) {
+        for (const BodyHandle body : world.bodies()) mass_ += world.mass(body);
+        // what falling through one stable step gains: the order of symplectic Euler's error in a field of weight
+        const Real fall = world.settings().gravity.norm() * world.stable_step();
+        // and what rounding does to strains, in the energy that a strain of one would hold
+        const Real sound = length / world.stable_step();
+        floor_ = mass_ * (10 * fall * fall + 1e-20 * sound * sound);
+    }
+
+    Real start() const { return start_.kinetic + start_.elastic + floor_; }
+    /// The mechanical energy over that of the start.
+    Real growth(const Energy& now) const {
+        const Real begun = start();
+        const Real gained = now.kinetic + now.elastic + now.potential - start_.potential;
+        // Potential energies are small differences of large numbers far from the origin.
+        const Real rounding = 1e-12 * (std::abs(now.potential) + std::abs(start_.potential));
+        return begun > 0 ? std::max(Real(0), gained - rounding) / begun : 0;
+    }
+
+private:
+    Energy start_;
+    Real mass_ = 0, floor_ = 0;
+};
+
+/// From end to end of the bodies, and how far things can have come.
+Real extent_of(const World& world, const RandomScene& scene) {
+    Vec3 lower = Vec3::Constant(1e300), upper = -lower;
+    for (const BodyHandle body : world.bodies())
+        for (const Vec3& x : world.positions(body)) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+    const Real bodies = world.bodies().empty() ? 0 : (upper - lower).norm();
+    return bodies + 100 * scene.length;  // the largest collider
+}
+
+}  // namespace
+
+SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path& folder, const SceneOverrides& overrides, double seconds) {
+    const std::filesystem::path file = folder / "scene.json";
+    std::ofstream(file) << scene.json;
+    const double start = cpu_seconds();
+    SceneRun run;
+    std::optional<Scene> built;
+    try {
+        built.emplace(load_scene(file, overrides));
+    } catch (const SceneError& error) {
+        run.end = SceneEnd::refused;
+        run.message = error.what();
+        return run;
+    }
+    World& world = built->world;
+    check_bodies(world);
+    const EnergyWatch energy(world, scene.length);
+    bool passive = scene.passive;
+    Changer changer(world, scene);
+    std::size_t next_change = 0;
+    for (int a = 0; a < scene.advances; ++a) {
+        for (; next_change < scene.changes.size() && scene.changes[next_change].advance == a; ++next_change)
+            changer.make(scene.changes[next_change]);
+        const Real step = world.stable_step();
+        const Real before = world.time(), dt = std::isfinite(step) ? scene.steps_per_advance * step : 1e-3;
+        const StepReport report = world.advance(dt);
+        run.steps += static_cast<std::uint64_t>(report.steps);
+        run.max_contacts = std::max(run.max_contacts, report.contacts);
+        check_report(report, extent_of(world, scene));
+        check_bodies(world);
+        check_contacts(world);
+        if (!report.ok()) {
+            run.end = SceneEnd::refused;
+            run.message = report.message();
+            break;
+        }
+        if (world.time() != before + dt) throw std::runtime_error("time went wrong");
+        // what is pressed in from the start is pushed out, which loads it
+        passive &= next_change == 0 && !(a == 0 && report.max_gap_violation > 0);
+        if (passive) run.energy_growth = std::max(run.energy_growth, energy.growth(world.energy()));
+        if (run.energy_growth > most_growth)
+            throw std::runtime_error("energy out of nothing: " + std::to_string(run.energy_growth) + " times the " +
+                                     std::to_string(energy.start()) + " J of the start");
+        if (cpu_seconds() - start > seconds) {
+            run.end = SceneEnd::cut_short;
+            break;
+        }
+    }
+    run.hash = world.state_hash();
+    return run;
+}
+
+}  // namespace skerry::test
