@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "jobs/arithmetic_scope.h"
 #include "jobs/executor.h"
 
 namespace skerry {
@@ -47,6 +48,7 @@ public:
     BlockJob(Index count, FunctionRef<void(Index)> body) : body_(body), count_(count) {}
 
     void drain() noexcept {
+        const ArithmeticScope arithmetic;
         for (Index block = take(); block < count_; block = take()) {
             try {
                 body_(block);
@@ -140,6 +142,7 @@ public:
 private:
     void run(Index stage) noexcept {
         if (error_.any()) return;
+        const ArithmeticScope arithmetic;
         try {
             run_stage_(stage);
         } catch (...) {

@@ -88,7 +88,8 @@ Course course_of(const RunOptions& options, const Scene& scene) {
 /// About how many steps a run takes: samples are cut into equal steps.
 double steps_of(const Course& course, const World& world) {
     const double sample = course.frame_step / course.samples;
-    const Real longest = world.settings().step_size.value_or(world.stable_step() * world.settings().step_safety);
+    const Real stable = world.stable_step() * world.settings().step_safety;
+    const Real longest = std::min(stable, world.settings().step_size.value_or(stable));
     return course.seconds / sample * std::ceil(sample / longest);
 }
 

@@ -84,6 +84,7 @@ Json statistics_of(const RunResult& result) {
         {"steps", r.steps},
         {"shortened_steps", r.shortened},
         {"retried_steps", r.retried},
+        {"limited_steps", r.limited},
         {"seconds_wall", wall},
         {"seconds_load", result.seconds_load},
         {"seconds_output", result.seconds_output},

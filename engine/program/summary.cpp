@@ -101,7 +101,8 @@ std::string summary_of(const RunResult& result) {
         text += line("steps", grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                   ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
                                   (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : "") +
-                                  (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : ""));
+                                  (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : "") +
+                                  (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long" : ""));
     if (r.crossed > 0) text += line("crossed", grouped(r.crossed) + " features went through each other");
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);

@@ -54,7 +54,7 @@ StepPlan plan_step(WorldState& world, Real left, Real fast_limit) {
     StepCycle& cycle = world.step.cycle;
     const bool between = cycle.index == 0;
     StepPlan plan;
-    plan.stable = world.settings.step_size.value_or(stable_step(world) * world.settings.step_safety);
+    plan.stable = trusted_step(world);
     const Real longest = std::min(between ? plan.stable : cycle.h, fast_limit);
     // A remainder of rounding size joins the last step.
     plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/world/world_state.h"
+#include "jobs/arithmetic_scope.h"
 #include "systems/dynamics/keep_frames.h"
 #include "systems/dynamics/stable_step.h"
 
@@ -96,6 +97,10 @@ StepStatus status_of(StepFault fault) {
             return StepStatus::not_finite;
         case StepFault::too_fast:
             return StepStatus::too_fast;
+        case StepFault::too_far:
+            return StepStatus::too_far;
+        case StepFault::too_stiff:
+            return StepStatus::too_stiff;
         case StepFault::none:
             break;
     }
@@ -130,6 +135,17 @@ void add_to_report(const WorldState& world, StepReport& report) {
     ++report.steps;
 }
 
+/// Says that the step asked for was too long for a body.
+void note_limit(WorldState& world, StepReport& report) {
+    Index body = no_index;
+    const Real trusted = trusted_step(world, &body);
+    if (!world.settings.step_size || body == no_index || *world.settings.step_size <= trusted) return;
+    ++report.limited;
+    ++world.counters.limited;
+    report.limited_step = trusted;
+    report.limited_by = world.body_records[static_cast<std::size_t>(body)].name;
+}
+
 }  // namespace
 
 void add_collider_travel(WorldState& world, Real seconds) {
@@ -153,6 +169,11 @@ Real stable_step(const WorldState& world, Index* body) {
     return smallest;
 }
 
+Real trusted_step(const WorldState& world, Index* body) {
+    const Real stable = stable_step(world, body) * world.settings.step_safety;
+    return std::min(stable, world.settings.step_size.value_or(stable));
+}
+
 void watch_stable_step(WorldState& world) {
     for (std::size_t b = 0; b < world.bodies.slot.size(); ++b)
         if (world.bodies.element_count[b] > 0)
@@ -163,12 +184,13 @@ void watch_stable_step(WorldState& world) {
 
 void take_step(WorldState& world, Real h) {
     world.step.h = h;
-    world.step.verdict = {};
     world.step.measures = {};
     world.step.damped = 0;
     world.step.external = {};
     world.step.rest = {};
     world.step.crossings = 0;
+    world.step.verdict = check_distance(world.nodes.position, world.bodies.nodes, world.bodies.mean_edge);
+    if (world.step.verdict.fault != StepFault::none) return;
     world.note_rest();
     find_due_levels(world);
     keep_for_refusal(world);
@@ -219,6 +241,7 @@ StepReport World::advance(Real dt) {
     if (!(dt >= 0) || !std::isfinite(dt))
         Complaint{.file = {}, .object = "advance", .field = "dt", .found = std::to_string(dt), .expected = "a time >= 0 (s)", .hint = {}}
             .raise();
+    const ArithmeticScope arithmetic;  // what is done between the stages depends on the host no more than they do
     WorldState& world = *state_;
     StepReport report;
     const Real end = world.step.time + dt;
@@ -230,6 +253,13 @@ StepReport World::advance(Real dt) {
     keep_start(world);
     int tries = 0, halvings = 0;  // of this step, because something crossed
     while (left > 0) {
+        Index stiffest = no_index;
+        const Real trusted = trusted_step(world, &stiffest);
+        if (!(std::min(trusted, fast_limit) > std::numeric_limits<Real>::epsilon() * end)) {
+            world.step.verdict = {StepFault::too_stiff, stiffest, no_index, trusted};
+            blame(world, report);
+            break;
+        }
         const StepPlan plan = plan_step(world, left, fast_limit);
         if (world.settings.integrator == Integrator::leapfrog) drift_to(world, plan.h / 2);
         const Real start = world.step.time;
@@ -257,6 +287,7 @@ StepReport World::advance(Real dt) {
         fast_limit *= step_growth;
         report.step_size = plan.h;
         add_to_report(world, report);
+        note_limit(world, report);
         left = plan.steps > 1 ? left - plan.h : 0;
         // Between cycles: within one, levels must stay.
         if (++world.steps_since_watch >= steps_per_watch << world.step.cycle.levels && world.step.cycle.index == 0) {

@@ -139,6 +139,11 @@ void validate(const Motion& motion, const std::string& object) {
     }
 }
 
+void validate(const Motion& motion, const Vec3& pivot) {
+    validate(motion, "attachment");
+    require_finite("attachment", "pivot", pivot);
+}
+
 void validate(const Shape& shape, const ColliderSettings& collider) {
     const std::string object = titled("collider", collider.name);
     std::visit(ShapeCheck{object}, shape);

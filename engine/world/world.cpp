@@ -148,7 +148,7 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 
 AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion, const Vec3& pivot) {
     const Index row = state_->row(body, "attach");
-    validate(motion, "attachment");
+    validate(motion, pivot);
     const Index count = state_->bodies.nodes[static_cast<std::size_t>(row)].size();
     for (Index node : nodes)
         if (node < 0 || node >= count)

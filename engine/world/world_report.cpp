@@ -1,5 +1,6 @@
 // What a world tells about itself: sums over its tables, energies, and the hash of its state.
 #include <Eigen/Geometry>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 
@@ -69,6 +70,16 @@ Energy energy_of(const WorldState& world) {
     return energy;
 }
 
+namespace {
+
+std::string short_text(Real value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+}  // namespace
+
 std::string StepReport::message() const {
     const std::string who = body_name.empty() ? "a body" : "body '" + body_name + "'";
     const std::string where = node < 0 ? "" : ", node " + std::to_string(node);
@@ -83,8 +94,20 @@ std::string StepReport::message() const {
                    " of its smallest element altitude in one step; in a sixty-fourth of the stable step, too; lower its velocities and "
                    "loads, or raise "
                    "max_strain_step";
+        case StepStatus::too_far:
+            return "the step was not taken: " + who + " is so far from the origin that neighbouring positions are " + short_text(value) +
+                   " of its mean edge apart; put the origin near the bodies, by a local frame of the scene";
+        case StepStatus::too_stiff:
+            return "the step was not taken: " + who + " stands no step longer than " + short_text(value) +
+                   " s, with which time would not go on; check its material, size and shape";
     }
     return {};
+}
+
+std::string StepReport::warning() const {
+    if (limited == 0) return {};
+    return "step_size is longer than body '" + limited_by + "' stands: " + std::to_string(limited) + " steps were taken at no more than " +
+           short_text(limited_step) + " s";
 }
 
 std::uint64_t World::state_hash() const {
@@ -145,6 +168,7 @@ WorldReport World::report() const {
     report.crossing_tests = world.crossings.tested;
     report.crossings_found = world.crossings.hits;
     report.crossed = world.crossings.let_through;
+    report.limited = counters.limited;
     report.energy = energy_of(world);
     for (std::size_t n = 0; n < world.nodes.position.size(); ++n) {
         const Vec3 momentum = world.nodes.mass[n] * world.nodes.velocity[n];

@@ -76,7 +76,7 @@ struct StepState {
 
 /// Sums over all steps since the world was made.
 struct RunCounters {
-    std::uint64_t steps = 0, inline_steps = 0, shortened = 0, retried = 0;
+    std::uint64_t steps = 0, inline_steps = 0, shortened = 0, retried = 0, limited = 0;
     std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
     std::uint64_t separating = 0, frictionless = 0, in_lanes = 0, frozen = 0, contact_steps = 0, swept = 0;
     std::uint64_t element_steps = 0, element_impulses = 0;
@@ -203,6 +203,8 @@ void build_step(WorldState& world);
 void take_step(WorldState& world, Real h);
 /// The largest step that the stiffest body stands, as last watched, and which body (row) that is.
 Real stable_step(const WorldState& world, Index* body = nullptr);
+/// The longest step that is taken: that of the settings, or the stable step where that is shorter.
+Real trusted_step(const WorldState& world, Index* body = nullptr);
 /// Looks at the stable step of every body again.
 void watch_stable_step(WorldState& world);
 
@@ -267,6 +269,7 @@ void validate(const MaterialSettings& material, const Settings& settings);
 void validate(const Mesh& mesh, const BodySettings& body);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
+void validate(const Motion& motion, const Vec3& pivot);
 
 // world_report.cpp
 Energy energy_of(const WorldState& world);

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """The table of docs/accuracy.md from what the accuracy tests recorded: accuracy_table.py FOLDER OUTPUT"""
 import collections
-import json
 import pathlib
 import sys
+
+from records import cells, rows_of
 
 HEADER = """# Accuracy
 
@@ -31,16 +32,11 @@ def line(row):
         error, tolerance = percent(error / abs(row["expected"])), percent(row["tolerance"])
     else:
         error, tolerance = f"{error:.2g}", f"{row['tolerance']:.2g}"
-    cells = [str(row["item"]) if row["item"] else "-", row["name"], f"`{row['formula']}`", number(row["expected"]), number(row["found"]), error,
-             tolerance]
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+    return cells([row["item"] or "-", row["name"], f"`{row['formula']}`", number(row["expected"]), number(row["found"]), error, tolerance])
 
 
 def main(folder, output):
-    rows = [json.loads(text) for file in sorted(pathlib.Path(folder).glob("*.jsonl")) for text in file.read_text().splitlines()]
-    if not rows:
-        sys.exit(f"{folder} holds no record of an accuracy test")
-    rows.sort(key=lambda row: row["item"] or 1000)  # stable: within an item the order of the tests
+    rows = rows_of(folder)
     notes = collections.defaultdict(list)
     for row in rows:
         if row["note"] and row["note"] not in notes[row["item"]]:

@@ -144,4 +144,15 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
     return verdict;
 }
 
+StepVerdict check_distance(std::span<const Vec3> position, std::span<const Range> body_nodes, std::span<const Real> body_mean_edge) {
+    for (std::size_t body = 0; body < body_nodes.size(); ++body) {
+        if (body_nodes[body].size() == 0 || !(body_mean_edge[body] > 0)) continue;
+        const Real distance = position[static_cast<std::size_t>(body_nodes[body].begin)].cwiseAbs().maxCoeff();
+        const Real spacing = std::numeric_limits<Real>::epsilon() * distance;
+        if (spacing > coarsest_place * body_mean_edge[body])
+            return {StepFault::too_far, static_cast<Index>(body), no_index, spacing / body_mean_edge[body]};
+    }
+    return {};
+}
+
 }  // namespace skerry

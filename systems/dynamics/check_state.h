@@ -10,14 +10,15 @@
 
 namespace skerry {
 
-enum class StepFault { none, not_finite, too_fast };
+enum class StepFault { none, not_finite, too_fast, too_far, too_stiff };
 
 /// Why a step must not be committed.
 struct StepVerdict {
     StepFault fault = StepFault::none;
     Index body = no_index;  // row of BodyTable
     Index node = no_index;  // row of NodeTable, when one node is to blame
-    Real value = 0;         // not_finite: -; too_fast: displacement of this step over the smallest element altitude
+    Real value = 0;         // not_finite: -; too_fast: displacement of this step over the smallest element altitude;
+                            // too_far: distance between neighbouring numbers there, over the mean edge
 };
 
 struct CheckInputs {
@@ -37,5 +38,12 @@ struct CheckInputs {
 /// its body instead, which refuses a quick turn of a large body, too. Parallel over node blocks.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step, std::span<Real> block_max_speed_squared,
                         std::span<Real> body_max_speed);
+
+/// Coordinates of a body that are further apart than this fraction of its mean edge are no ground for a step: motion below a millionth of
+/// the speed of sound would be lost to rounding.
+inline constexpr Real coarsest_place = 1e-6;
+
+/// Finds the first body that is too far from the origin for its size. Looks at one node a body: against such distances a body is small.
+StepVerdict check_distance(std::span<const Vec3> position, std::span<const Range> body_nodes, std::span<const Real> body_mean_edge);
 
 }  // namespace skerry

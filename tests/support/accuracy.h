@@ -21,8 +21,8 @@ struct Quantity {
     std::string note{};  // why it is tested in this way, where that is not plain
 };
 
-/// Requires that found is within the tolerance of expected. With the environment variable SKERRY_ACCURACY_RECORD, the name of a folder, the
-/// quantity is also appended as a line of JSON to the file of this process there: scripts/accuracy makes the table of these.
+/// Requires that found is within the tolerance of expected, and records the line (tests/support/record.h): scripts/accuracy makes the table of
+/// these.
 void check(const Quantity& quantity);
 
 }  // namespace skerry::test::accuracy

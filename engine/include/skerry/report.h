@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-enum class StepStatus { ok, not_finite, too_fast };
+enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff };
 enum class ContactMotion { open, stick, slide };
 
 /// One contact of the last step.
@@ -53,15 +53,22 @@ public:
     /// Empty when ok; else the body, the stage and the reason.
     std::string message() const;
 
+    /// Empty unless step_size of the settings was too long: then the body that does not stand it, and the step that it stands.
+    std::string warning() const;
+
     StepStatus status = StepStatus::ok;
-    BodyHandle body;     // to blame, when not ok
-    Index node = -1;     // local, when one node is to blame
-    Real value = 0;      // too_fast: displacement over smallest altitude
-    Real step_size = 0;  // s, of the steps taken
-    int steps = 0;       // committed
-    int shortened = 0;   // tries given up because a body was too fast or surfaces crossed; each was repeated at half the length
-    int retried = 0;     // tries given up because surfaces crossed; each was repeated with the crossings as contacts
-    Index contacts = 0;  // of the last step
+    BodyHandle body;         // to blame, when not ok
+    Index node = -1;         // local, when one node is to blame
+    Real value = 0;          // too_fast: displacement over smallest altitude; too_far: rounding of positions over mean edge;
+                             // too_stiff: stable step, s
+    Real step_size = 0;      // s, of the steps taken
+    int steps = 0;           // committed
+    int shortened = 0;       // tries given up because a body was too fast or surfaces crossed; each was repeated at half the length
+    int retried = 0;         // tries given up because surfaces crossed; each was repeated with the crossings as contacts
+    int limited = 0;         // steps that were shorter than step_size of the settings, which limited_by does not stand
+    Real limited_step = 0;   // s, what it stands
+    std::string limited_by;  // name of the body
+    Index contacts = 0;      // of the last step
     Index regions = 0;
     Index largest_region = 0;    // contacts
     Index unconverged = 0;       // regions, summed over the steps
@@ -104,6 +111,7 @@ struct WorldReport {
     std::uint64_t inline_steps = 0;      // too small to pay for threads
     std::uint64_t shortened = 0;         // steps tried again at half the length, since a body was too fast or surfaces crossed
     std::uint64_t retried = 0;           // steps tried again with what crossed in them as contacts
+    std::uint64_t limited = 0;           // steps shorter than step_size of the settings, which a body does not stand
     // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could stop them.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
     Energy energy;

@@ -92,7 +92,7 @@ struct ColliderSettings {
 /// Settings of the world and its step. Defaults work.
 struct Settings {
     Vec3 gravity = {0, 0, -9.81};     // m/s^2
-    std::optional<Real> step_size{};  // s; by default the stable step of the stiffest body
+    std::optional<Real> step_size{};  // s, at most; by default the stable step of the stiffest body, which is never exceeded
     Real step_safety = 1.0;           // fraction of the stable step that is used, in (0, 1]
     Integrator integrator = Integrator::symplectic_euler;
     bool multirate = false;                // elements that stand longer steps get impulses less often (docs/integration.md)

@@ -7,18 +7,23 @@ namespace skerry {
 
 static_assert(ContactOperator<LumpedOperator>);
 
-Real contact_bias(const RegionInputs& inputs, Index row, const SolverSettings& settings, Real h) {
+Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings, Real h) {
     const Real gap = inputs.gap[row];
     const Real closing = gap < 0 ? 0 : gap / h;
     const Real restitution = inputs.restitution[row];
     if (restitution == 0) return closing;
     const Stencil& stencil = inputs.stencil[row];
-    Vec3 before = -inputs.surface_velocity[row];
-    for (std::size_t a = 0; a < 4; ++a)
-        if (stencil.weight[a] != 0) before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
+    Vec3 before = -inputs.surface_velocity[row], coming = before;
+    for (std::size_t a = 0; a < 4; ++a) {
+        if (stencil.weight[a] == 0) continue;
+        before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
+        coming += stencil.weight[a] * velocity_next[stencil.node[a]];
+    }
     const Real approach = before.dot(inputs.normal[row]);
-    // weight alone gives a resting contact g h per step: what is not clearly faster does not bounce (methods.md 1.3 b)
-    const Real slowest_impact = std::max(settings.restitution_speed, 2 * inputs.gravity * h);
+    // What is not clearly faster than what forces give it in one step is no impact (methods.md 1.3 b): weight alone gives g h to a resting
+    // contact, and elastic forces can throw a node back down in each step, onto a floor that would throw it up again for ever.
+    const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
+    const Real slowest_impact = std::max({settings.restitution_speed, 2 * inputs.gravity * h, 2 * thrown});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;
 }

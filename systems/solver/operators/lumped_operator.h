@@ -81,7 +81,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
 
 /// b_n of methods.md 1.3 c: the gap may close within the step; an impact turns back with the restitution. Gaps below zero are left to
 /// push_out_region.
-Real contact_bias(const RegionInputs& inputs, Index row, const SolverSettings& settings, Real h);
+Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings, Real h);
 
 /// One region. The memory belongs to the caller.
 class LumpedOperator {
@@ -167,7 +167,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     const Stencil& stencil = inputs.stencil[row];
     LumpedContact contact;
     contact.normal = padded(inputs.normal[row]);
-    contact.bias = contact_bias(inputs, row, settings, h);
+    contact.bias = contact_bias(inputs, row, velocity_next, settings, h);
     Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
     contact.node_count = 0;
     contact.diagonal = 0;

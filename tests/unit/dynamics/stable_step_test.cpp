@@ -1,13 +1,14 @@
 #include "systems/dynamics/stable_step.h"
 
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "tests/support/elastic_body.h"
+#include "tests/support/exact_frequency.h"
 
 using namespace skerry;
 using test::ElasticBody;
+using test::exact_frequency_squared;
 using test::jittered_box;
 
 namespace {
@@ -17,27 +18,6 @@ constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, 
 StableStep step_of(const ElasticBody& body) {
     std::vector<Real> scratch(body.position.size(), 1e300);  // what was there before must not matter
     return stable_step(body.inputs(), body.blocks, body.position, body.mass, scratch);
-}
-
-/// Largest eigenvalue of M^-1/2 K M^-1/2 of the whole mesh in its present shape, K by central differences of the nodal forces.
-Real exact_frequency_squared(ElasticBody& body) {
-    const auto executor = make_executor(Backend::serial, 1);
-    const Eigen::Index size = 3 * static_cast<Eigen::Index>(body.position.size());
-    Eigen::MatrixXd K(size, size);
-    constexpr Real step = 1e-6;  // m; cells are 0.1 m
-    const auto forces = [&](Eigen::Index j, Real by) {
-        Real& x = body.position[static_cast<std::size_t>(j / 3)][j % 3];
-        const Real before = x;
-        x += by;
-        body.compute_forces(*executor);
-        x = before;
-        return Eigen::Map<const Eigen::VectorXd>(body.force[0].data(), size).eval();
-    };
-    for (Eigen::Index j = 0; j < size; ++j) K.col(j) = (forces(j, -step) - forces(j, step)) / (2 * step);
-    for (Eigen::Index i = 0; i < size; ++i)
-        for (Eigen::Index j = 0; j < size; ++j)
-            K(i, j) /= std::sqrt(body.mass[static_cast<std::size_t>(i / 3)] * body.mass[static_cast<std::size_t>(j / 3)]);
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (K + K.transpose()), Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
 }
 
 }  // namespace
