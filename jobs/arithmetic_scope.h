@@ -17,7 +17,9 @@ public:
     ArithmeticScope() : before_(_mm_getcsr()) {
         if (before_ != mode) _mm_setcsr(mode);
     }
-    ~ArithmeticScope() { _mm_setcsr(before_); }
+    ~ArithmeticScope() {
+        _mm_setcsr(before_);
+    }
 #else
     ArithmeticScope() = default;
 #endif

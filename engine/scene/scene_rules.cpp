@@ -132,7 +132,9 @@ const Rule<Settings>& rule_of<Settings>() {
         Rule<S>("settings", "How the world is stepped. Defaults work.")
             .key("gravity", &S::gravity, {.meaning = "gravity; [0, 0, -9.81] by default", .unit = "m/s^2"})
             .key("step_size", &S::step_size,
-                 {.meaning = "at most; by default the stable step of the stiffest body, which is never exceeded", .unit = "s", .limits = above(0)})
+                 {.meaning = "at most; by default the stable step of the stiffest body, which is never exceeded",
+                  .unit = "s",
+                  .limits = above(0)})
             .key("step_safety", &S::step_safety,
                  {.meaning = "fraction of the stable step that is used", .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
             .key("integrator", &S::integrator, {.meaning = "how velocities and positions are moved on; literal is for comparison only"})

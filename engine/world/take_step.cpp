@@ -190,6 +190,8 @@ void take_step(WorldState& world, Real h) {
     world.step.external = {};
     world.step.rest = {};
     world.step.crossings = 0;
+    world.step.verdict = check_distance(world.nodes.position, world.bodies.nodes, world.bodies.mean_edge);
+    if (world.step.verdict.fault != StepFault::none) return;
     world.note_rest();
     world.step.verdict = check_distance(world.nodes.position, world.bodies.nodes, world.bodies.mean_edge);
     if (world.step.verdict.fault != StepFault::none) return;

@@ -18,7 +18,7 @@ of other engines. SI units unless said; `h` is the step. {lines} lines, {items} 
 NOTES = """
 ## Notes
 
-- **2**: one step serves all bodies here; steps of their own for stiff bodies are the matter of multirate integration.
+- **2**: one step serves all bodies here; fewer impulses for soft ones are the matter of [multirate](integration.md).
 - **6, 25**: the stable neo-Hookean law without the logarithmic term has a minimum of its energy at F = 0 beside the one at rest: a body that is
   pressed together on all sides, below about mu / (lambda + mu) of its length, stays so. The corotational law has none, and recovers.
 - **9**: the push moves the nodes that are inside, at 0.5 m/s at most, and the body follows by its elasticity. The end of a bar that is moved at v
@@ -27,8 +27,8 @@ NOTES = """
 - **14**: the energy that does not rise is that of methods where kinetic and elastic energy are half a step apart; what is added up here wavers
   about it. `tests/property/elastic_motion_test.cpp` has it to rounding.
 - **18**: `tests/unit/engine` has the same for scene and mesh files.
-- **20**: contacts are solved to a relative error of 1e-3 by default, and a heap creeps by that part of what weight does in a step. Without
-  that, and until bodies can fall asleep, a heap that has to lie still for an hour needs `tolerance` 1e-8.
+- **20**: contacts are solved to a relative error of 1e-3 by default, and a heap creeps by that part of what weight does in a step. A heap that
+  has to lie still for an hour falls asleep (`sleep_speed`) or needs `tolerance` 1e-8.
 """
 
 

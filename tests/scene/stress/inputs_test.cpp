@@ -71,6 +71,8 @@ TEST_CASE("settings and materials that are no numbers or out of range are refuse
         settings("tolerance", {[bad](Settings& s) { s.tolerance = bad; }});
         settings("relaxation", {[bad](Settings& s) { s.relaxation = bad; }});
         settings("max_strain_step", {[bad](Settings& s) { s.max_strain_step = bad; }});
+        settings("sleep_speed", {[bad](Settings& s) { s.sleep_speed = bad; }});
+        settings("sleep_time", {[bad](Settings& s) { s.sleep_time = bad; }});
     }
     settings("step_size", {[](Settings& s) { s.step_size = 0; }, [](Settings& s) { s.step_size = -1e-3; }});
     settings("step_safety", {[](Settings& s) { s.step_safety = 0; }, [](Settings& s) { s.step_safety = 1.1; }});

@@ -53,10 +53,11 @@ void judge_rest(int item, const std::string& scene, const Rest& rest, int steps,
 }
 
 /// Three boxes of one cell, the third astride the other two.
-World small_heap(Real tolerance, Real modulus, Real damping) {
+World small_heap(Real tolerance, Real modulus, Real damping, Real sleep_speed = 0) {
     Settings settings;
     settings.tolerance = tolerance;
     settings.max_iterations = 10000;
+    settings.sleep_speed = sleep_speed;
     World world(settings);
     world.add_collider(Plane{});
     const auto material = world.add_material({.young_modulus = modulus, .poisson_ratio = 0.3, .friction = 0.6, .damping = damping});
@@ -97,6 +98,15 @@ TEST_CASE("a heap solved to the default tolerance creeps no faster than that all
         {20, scene, "every step taken, finite", rest.course.ok ? "all steps" : rest.course.message, rest.course.ok && rest.course.finite});
     // A contact has to stop g h in each step, and is solved to the tolerance of that.
     at_most(20, scene, "speed of creep / (tolerance g h)", rest.drift / seconds / (Settings{}.tolerance * standard_gravity * h), 1);
+}
+
+TEST_CASE("a heap falls asleep, and then nothing moves", "[scene][stress]") {
+    World world = small_heap(Settings{}.tolerance, 2e4, 300, 5e-3);
+    REQUIRE(world.advance(3).ok());
+    const std::string scene = "heap of 3 soft boxes, default tolerance 1e-3, sleep_speed 5 mm/s";
+    at_least(20, scene + ", 3 s", "bodies asleep", static_cast<Real>(world.report().asleep), 3);
+    const Rest rest(world, 10, 10000);
+    at_most(20, scene + ", 1e5 steps later", "drift, m", rest.drift, 0);
 }
 
 TEST_CASE("balls in a bucket rest for a hundred thousand steps", "[scene][stress][slow]") {

@@ -92,6 +92,12 @@ TEST_CASE("a bounce returns the restitution's share, and only fast impacts bounc
     scene.gap[0] = 0;
     scene.velocity_before[0] = scene.velocity[0] = Vec3(0, 0, -0.04);  // below restitution_speed
     CHECK(std::abs(scene.solve().velocity[0].z()) < 1e-16);
+    scene.gap[0] = 0;
+    scene.velocity_before[0] = Vec3(0, 0, -0.2);
+    scene.velocity[0] = Vec3(0, 0, -0.25);  // forces add less than half of it
+    CHECK(scene.solve().velocity[0].z() == Approx(0.12).epsilon(1e-14));
+    scene.velocity[0] = Vec3(0, 0, -0.4);  // forces of one step could have made it: not an impact
+    CHECK(std::abs(scene.solve().velocity[0].z()) < 1e-16);
 }
 
 TEST_CASE("the lowest contact of a stack of point masses carries them all", "[unit][solver]") {
