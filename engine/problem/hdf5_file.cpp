@@ -62,6 +62,9 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     const H5T_class_t found = H5Tget_class(type.id());
     // whole numbers may stand for reals
     if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER)) complain(path, "values of another type", expected);
+    // no number is longer than a long double; libhdf5 would convert ones of any length, with as much memory
+    constexpr std::size_t longest_number = 16;  // bytes
+    if (H5Tget_size(type.id()) > longest_number) complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes", expected);
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     if (count < 0 || count > std::numeric_limits<Index>::max()) complain(path, std::to_string(count) + " values", expected);
     if (!can_hold(static_cast<hsize_t>(count) * sizeof(T)))
