@@ -112,6 +112,7 @@ TEST_CASE("a data set that claims more than its file can hold is refused before 
     H5Tset_size(wide, 1000000);
     CHECK_THAT(refusal_of_empty_q(wide, 6), Catch::Contains("values of 1000000 bytes, expected numbers"));
     H5Tclose(wide);
+    CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 6), Catch::Contains("fewer bytes than 6 values take"));
 }
 
 TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][problem]") {
