@@ -51,6 +51,19 @@ void Hdf5File::expect_group(const std::string& path, const std::string& hint) co
     if (!group.ok()) complain(path, "something else", "a group", hint);
 }
 
+namespace {
+
+/// Whether as many bytes are stored as the values take; libhdf5 reads on behind the end of a compact data set that has fewer. Chunks may be
+/// compressed and tell nothing.
+bool all_stored(const Hdf5Handle& data, const Hdf5Handle& type, hssize_t count) {
+    const Hdf5Handle creation(H5Dget_create_plist(data.id()), H5Pclose);
+    const H5D_layout_t layout = H5Pget_layout(creation.id());
+    if (layout == H5D_CHUNKED) return true;
+    return H5Dget_storage_size(data.id()) >= static_cast<hsize_t>(count) * H5Tget_size(type.id());
+}
+
+}  // namespace
+
 template <class T>
 std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const {
     if (!has(path)) complain(path, "nothing", expected);
@@ -62,10 +75,14 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     const H5T_class_t found = H5Tget_class(type.id());
     // whole numbers may stand for reals
     if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER)) complain(path, "values of another type", expected);
+    // no number is longer than a long double; libhdf5 would convert ones of any length, with as much memory
+    constexpr std::size_t longest_number = 16;  // bytes
+    if (H5Tget_size(type.id()) > longest_number) complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes", expected);
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     if (count < 0 || count > std::numeric_limits<Index>::max()) complain(path, std::to_string(count) + " values", expected);
     if (!can_hold(static_cast<hsize_t>(count) * sizeof(T)))
         complain(path, std::to_string(count) + " values", "values that the file can hold");
+    if (!all_stored(data, type, count)) complain(path, "fewer bytes than " + std::to_string(count) + " values take", expected);
     std::vector<T> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
         complain(path, "values that cannot be read", expected);
@@ -104,6 +121,7 @@ std::string Hdf5File::text_or_nothing(const std::string& path) const {
         return result;
     }
     if (!can_hold(H5Tget_size(type.id()))) return {};
+    if (!all_stored(data, type, 1)) return {};
     std::string text(H5Tget_size(type.id()), '\0');
     if (H5Dread(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return {};
     return text.substr(0, text.find('\0'));  // with or without the zero at the end

@@ -87,18 +87,32 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
          {"W", "not finite"});
 }
 
-TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for", "[unit][problem]") {
+namespace {
+
+/// What the reader says to a local problem with the data set `q` of this type and size, and no values in it.
+std::string refusal_of_empty_q(hid_t type, hsize_t size) {
     const TemporaryFolder folder;
     const fs::path path = local_file().write(folder.path());
     const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     H5Ldelete(file, "/fclib_local/vectors/q", H5P_DEFAULT);
-    const hsize_t size = 2000000000;  // 16 GB; without values none of it is stored
     const hid_t space = H5Screate_simple(1, &size, nullptr);
-    H5Dclose(H5Dcreate2(file, "/fclib_local/vectors/q", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Dclose(H5Dcreate2(file, "/fclib_local/vectors/q", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     H5Sclose(space);
     H5Fclose(file);
     CHECK(fs::file_size(path) < 100000);
-    CHECK(refusal_of(path).find("2000000000 values, expected values that the file can hold") != std::string::npos);
+    return refusal_of(path);
+}
+
+}  // namespace
+
+TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for", "[unit][problem]") {
+    CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 2000000000),
+               Catch::Contains("2000000000 values, expected values that the file can hold"));
+    const hid_t wide = H5Tcopy(H5T_NATIVE_INT);
+    H5Tset_size(wide, 1000000);
+    CHECK_THAT(refusal_of_empty_q(wide, 6), Catch::Contains("values of 1000000 bytes, expected numbers"));
+    H5Tclose(wide);
+    CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 6), Catch::Contains("fewer bytes than 6 values take"));
 }
 
 TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][problem]") {
