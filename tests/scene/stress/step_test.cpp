@@ -95,8 +95,8 @@ TEST_CASE("velocities that decay to nothing end at zero, not in denormal numbers
         world.set_velocities(body, tiny);
         std::fesetround(FE_UPWARD);  // stands for whatever the host has set
         REQUIRE(world.advance(world.stable_step()).ok());
-        volatile Real one = 1, tiny = 0x1p-60;
-        const bool host_rounds_up = one + tiny > 1;
+        volatile Real one = 1, little = 0x1p-60;
+        const bool host_rounds_up = one + little > 1;
         volatile Real smallest = std::numeric_limits<Real>::min();
         const bool host_has_denormals = smallest / 2 > 0;
         std::fesetround(FE_TONEAREST);
