@@ -26,7 +26,7 @@ void judge(const Outcome& outcome, const std::source_location& place) {
 
 std::string text(Real value) {
     char digits[32];
-    std::snprintf(digits, sizeof digits, "%.3g", value);
+    std::snprintf(digits, sizeof digits, "%.4g", value);
     return digits;
 }
 

@@ -27,7 +27,7 @@ void at_most(int item, const std::string& what, const std::string& quantity, Rea
 void at_least(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
               const std::source_location& place = std::source_location::current());
 
-/// Three digits that say something.
+/// Four digits that say something.
 std::string text(Real value);
 
 /// What a run did, looked at now and then.

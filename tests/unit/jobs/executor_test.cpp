@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cfenv>
 #include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -32,6 +34,29 @@ TEST_CASE("a backend that was not built, or a negative number of workers, is ref
         if (backend == Backend::automatic || std::find(built.begin(), built.end(), backend) != built.end()) continue;
         REQUIRE_THROWS_WITH(make_executor(backend, 1), Catch::Contains(std::string(name)));
     }
+}
+
+TEST_CASE("blocks and stages calculate alike, whatever the host has set, and the host's thread is left as it was", "[unit]") {
+#if defined(__SSE2__)
+    const auto odd = [] {  // a denormal number that is one, or a sum that is not rounded to nearest
+        volatile Real smallest = std::numeric_limits<Real>::min(), one = 1, tiny = 0x1p-60;
+        return smallest / 2 > 0 || one + tiny > 1;
+    };
+    const RandomGraph graph(5, 30, 0.1);
+    for (const ExecutorChoice& choice : executor_choices()) {
+        CAPTURE(choice.text());
+        const auto executor = choice.make();
+        std::atomic<int> odd_blocks{0}, odd_stages{0};
+        std::fesetround(FE_UPWARD);
+        executor->run_blocks(64, [&](Index) { odd_blocks += odd(); });
+        executor->run_graph(graph.edges(), [&](Index) { odd_stages += odd(); });
+        const bool host_is_odd = odd();
+        std::fesetround(FE_TONEAREST);
+        CHECK(odd_blocks == 0);
+        CHECK(odd_stages == 0);
+        CHECK(host_is_odd);
+    }
+#endif
 }
 
 TEST_CASE("every block runs exactly once", "[unit]") {
