@@ -126,6 +126,8 @@ Json read_json(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) Complaint{file.string(), {}, {}, "no such file", "a scene in JSON", {}}.raise();
     if (std::filesystem::is_directory(file, error)) Complaint{file.string(), {}, {}, "a folder", "a scene in JSON", {}}.raise();
+    // such as /dev/zero, which has no end; a pipe has one
+    if (std::filesystem::is_character_file(file, error)) Complaint{file.string(), {}, {}, "a device", "a scene in JSON", {}}.raise();
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();

@@ -144,6 +144,7 @@ const std::string& World::name(ColliderHandle collider) const {
 
 std::span<const Contact> World::contacts() const {
     WorldState& world = *state_;
+    if (world.step.verdict.fault != StepFault::none) return {};  // of a step that was not taken: numbers that may not be finite
     if (world.contact_view_is_current) return world.contact_view;
     const ContactTable& table = world.contacts;
     world.contact_view.resize(table.size());

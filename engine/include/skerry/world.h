@@ -75,7 +75,7 @@ public:
     const std::string& name(ColliderHandle collider) const;
 
     // What happened.
-    std::span<const Contact> contacts() const;  // of the last step, in a fixed order
+    std::span<const Contact> contacts() const;  // of the last step, in a fixed order; none when it was refused
     WorldReport report() const;
     Energy energy() const;
     /// Hash of everything that the next step depends on; equal on any number of threads and on every backend.

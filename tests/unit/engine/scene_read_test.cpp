@@ -172,6 +172,7 @@ TEST_CASE("a file that is not there, or a folder, is refused", "[unit]") {
     const TemporaryFolder folder;
     CHECK_THROWS_WITH(read_scene_file(folder.path() / "none.json"), Catch::Contains("none.json: found no such file"));
     CHECK_THROWS_WITH(read_scene_file(folder.path()), Catch::Contains("found a folder"));
+    CHECK_THROWS_WITH(read_scene_file("/dev/zero"), Catch::Contains("found a device"));  // it never ends
 }
 
 TEST_CASE("short names of parameters mean the same as long ones", "[unit]") {
