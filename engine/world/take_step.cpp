@@ -20,13 +20,13 @@ constexpr std::size_t inline_work = 1024;
 /// In cycles of fine steps it is the coarse ones that count: all elements deform at the pace of the whole.
 constexpr std::uint64_t steps_per_watch = 256;
 
-/// A step that a body is too fast for is tried again at half its length, down to this fraction of the stable step; then steps grow back.
+/// A step that a body is too fast for, or in which something crosses, is tried again at half its length, down to this fraction of the stable
+/// step; then steps grow back. The bound is on the length: halvings counted step by step add up until time stands still.
 constexpr Real most_shortening = 64;
 constexpr Real step_growth = 1.1;
 
 /// Tries at one length of step with the crossings of the last ones as contacts, before the step is shortened.
 constexpr int tries_at_one_length = 4;
-constexpr int most_halvings = 6;
 
 /// What a step overwrites that is not its result, so that a step that is not committed leaves it as it was.
 void keep_for_refusal(WorldState& world) {
@@ -264,7 +264,7 @@ StepReport World::advance(Real dt) {
     if (world.counters.steps == 0 && left > 0) check_balance(world);
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     keep_start(world);
-    int tries = 0, halvings = 0;  // of this step, because something crossed
+    int tries = 0;  // of this step, because something crossed
     while (left > 0) {
         Index stiffest = no_index;
         const Real trusted = trusted_step(world, &stiffest);
@@ -283,8 +283,8 @@ StepReport World::advance(Real dt) {
             continue;
         }
         tries = 0;
-        const bool too_fast = world.step.verdict.fault == StepFault::too_fast && plan.h > plan.stable / most_shortening;
-        if (too_fast || (world.step.crossings > 0 && halvings++ < most_halvings)) {
+        const bool too_fast = world.step.verdict.fault == StepFault::too_fast;
+        if ((too_fast || world.step.crossings > 0) && plan.h > plan.stable / most_shortening) {
             world.crossings.row.clear();
             fast_limit = plan.h / 2;
             ++report.shortened;
@@ -296,7 +296,6 @@ StepReport World::advance(Real dt) {
             blame(world, report);
             break;
         }
-        halvings = 0;
         fast_limit *= step_growth;
         report.step_size = plan.h;
         add_to_report(world, report);
