@@ -56,6 +56,7 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     constexpr double rounding = 1e-9;  // sums of millions of terms stay far below
     if (r.momentum_error_share > rounding)
         doubts.push_back("momentum does not add up by " + short_number(100 * r.momentum_error_share) + " %");
+    if (r.crossed > 0) doubts.push_back(grouped(r.crossed) + " features went through each other");
     constexpr double visible = 0.05;
     if (result.mean_edge > 0 && r.max_penetration > visible * result.mean_edge)
         doubts.push_back("surfaces overlapped by " + short_number(100 * r.max_penetration / result.mean_edge) + " % of the mean edge");

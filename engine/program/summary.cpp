@@ -103,7 +103,6 @@ std::string summary_of(const RunResult& result) {
                                   (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : "") +
                                   (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : "") +
                                   (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long" : ""));
-    if (r.crossed > 0) text += line("crossed", grouped(r.crossed) + " features went through each other");
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " + with_unit(result.peak_kinetic_energy, "J") +

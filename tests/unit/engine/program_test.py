@@ -32,6 +32,7 @@ STATS_KEYS = {
     "regions": "mean max largest_contacts",
     "solver": "method iterations_mean worst_error unconverged",
     "energy": "kinetic elastic potential dissipated",
+    "trust": "solver energy momentum penetration elements doubts",
 }
 
 
@@ -82,6 +83,18 @@ class ProgramTest(unittest.TestCase):
         for word in ("real time", "steps", "contacts", "penetration", "state hash", found["state_hash"]):
             self.assertIn(word, done.stdout)
         self.assertEqual([p.name for p in stats.parent.iterdir()], ["stats.json"])  # no temporary file is left
+        self.assertEqual(found["trust"]["doubts"], [])
+        self.assertNotIn("DOUBT", done.stdout)
+
+    def test_a_run_that_is_not_to_be_relied_on_says_so(self):
+        stacked = dict(SCENE["bodies"][0], name="upper", position=[0.03, 0.02, 0.32])
+        scene = self.write("stack.json", dict(SCENE, bodies=[*SCENE["bodies"], stacked]))
+        stats = self.folder / "stats.json"
+        done = self.skerry("run", scene, "--tolerance", 1e-15, "--stats", stats)
+        trust = json.loads(stats.read_text())["trust"]
+        self.assertGreater(trust["solver"]["unconverged"], 0)
+        self.assertTrue(any("above the tolerance" in doubt for doubt in trust["doubts"]), trust)
+        self.assertIn("DOUBT", done.stdout)
 
     def test_probes_add_up_to_the_time_of_the_run(self):
         stats = self.folder / "stats.json"
