@@ -39,6 +39,7 @@ struct PairTable {
     Column<std::uint8_t> resting;  // neither partner moves in this step: no contacts are looked for, last ones are kept
     Column<Real> front;            // m: sum of both travels and of what this step may add to the closing, written in every step
     Column<Real> valid_until;      // m: the list holds while front is below this
+    Column<std::uint8_t> fresh;    // searched for this step: what its nodes drifted before takes nothing from the list
     Column<PairState> state;       // as last searched; apart stays apart, find_crossings sees to it
     std::vector<Column<Candidate>> candidates;  // by pair, sorted by feature
     std::vector<Column<Real>> asleep_until;     // m, by pair and candidate: it cannot touch while front is below this

@@ -151,6 +151,12 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("relaxation", &S::relaxation,
                  {.meaning = "of the sweeps; above 1 they go further than each contact asks",
                   .limits = {.at_least = {}, .above = 0, .at_most = {}, .below = 2}})
+            .key("restitution_speed", &S::restitution_speed,
+                 {.meaning = "slower impacts do not bounce, whatever the restitution", .unit = "m/s", .limits = at_least(0)})
+            .key("recovery_speed", &S::recovery_speed,
+                 {.meaning = "what overlaps, or lies within the contact distance, is pushed apart no faster",
+                  .unit = "m/s",
+                  .limits = above(0)})
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step that moves nodes by more than this fraction of an element is refused", .limits = above(0)})
             .key("sleep_speed", &S::sleep_speed,

@@ -174,6 +174,7 @@ std::span<const Contact> World::contacts() const {
         }
         contact.point = table.point[c];
         contact.normal = table.normal[c];
+        contact.distance = table.distance[c];
         contact.gap = table.gap[c];
         contact.slip = table.slip[c];
         contact.impulse = table.impulse[c];

@@ -84,6 +84,8 @@ void validate(const Settings& settings) {
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance, "a number > 0 and < 1");
     require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
     require(settings.relaxation > 0 && settings.relaxation < 2, "settings", "relaxation", settings.relaxation, "a number > 0 and < 2");
+    require(settings.restitution_speed >= 0, "settings", "restitution_speed", settings.restitution_speed, "a speed >= 0 (m/s)");
+    require(settings.recovery_speed > 0, "settings", "recovery_speed", settings.recovery_speed, "a speed > 0 (m/s)");
     require(settings.sleep_speed >= 0, "settings", "sleep_speed", settings.sleep_speed, "a speed >= 0 (m/s)");
     require(settings.sleep_time >= 0, "settings", "sleep_time", settings.sleep_time, "a time >= 0 (s)");
     require(settings.max_strain_step > 0, "settings", "max_strain_step", settings.max_strain_step, "a fraction > 0");

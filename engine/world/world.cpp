@@ -48,6 +48,8 @@ WorldState::WorldState(const Settings& wanted) : settings(wanted), executor(make
     step.solver.max_iterations = settings.max_iterations;
     step.solver.fixed_iterations = settings.fixed_iterations;
     step.solver.relaxation = settings.relaxation;
+    step.solver.restitution_speed = settings.restitution_speed;
+    step.solver.recovery_speed = settings.recovery_speed;
     step.solver.certify_warm_start = settings.certify_warm_start;
     step.solver.skip_separating = settings.skip_separating;
     step.solver.frictionless_rows = settings.frictionless_rows;

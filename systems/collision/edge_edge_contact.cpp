@@ -56,10 +56,18 @@ public:
         border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
         // The other face falls away below the plane of the first.
-        convex_ = normal.dot(into_[1]) < closing - min_bend * into_[1].norm();
+        const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
+        convex_ = fall > min_bend * other_width - closing;
+        // Taken across from the one face or from the other, the bend is the same.
+        slack_ =
+            other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width / (width + other_width) / 2 : 0;
     }
 
     bool convex() const { return convex_; }
+
+    /// m: how much nearer than the contact distance another edge may come, so that an edge that bends by min_bend starts to count where its points
+    /// have left the other, not with a gap below zero: blocks that lie on each other would tremble for ever.
+    Real slack() const { return slack_; }
 
     /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
@@ -78,6 +86,7 @@ private:
     std::array<Real, 2> border_;  // m, how far the end of a face may stand out beyond the direction
     Vec3 outward_;                // sum of the unit normals of both
     bool convex_;
+    Real slack_ = 0;
 };
 
 }  // namespace
@@ -111,6 +120,7 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
         return contact;
     }
     contact.touching = true;
+    contact.slack = std::min(wedge_a.slack() + wedge_b.slack(), scale.contact_distance / 2);
     return contact;
 }
 

@@ -13,6 +13,7 @@ namespace skerry {
 struct EdgeEdgeContact {
     bool touching = false;
     Real distance = 0;  // m, signed
+    Real slack = 0;     // m: how much nearer than the contact distance these edges may come, since they are nearly flat
     Vec3 normal;        // unit, from the second edge to the first
     SegmentSegment closest;
     Real sleep = 0;  // m: travel after which this may be a contact of gap 0

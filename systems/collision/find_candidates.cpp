@@ -45,11 +45,13 @@ bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
 
 void list_expired(const CollisionInputs& inputs, bool all, SearchMemory& memory, PairTable& pairs) {
     memory.expired.clear();
+    pairs.fresh.resize(pairs.size());
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const Real own = memory.body_front[pairs.first[p]];
         pairs.front[p] =
             own + (pairs.kind[p] == PairKind::collider ? memory.collider_front[pairs.second[p]] : memory.body_front[pairs.second[p]]);
-        if (all || !(pairs.front[p] < pairs.valid_until[p])) memory.expired.push_back(static_cast<Index>(p));
+        pairs.fresh[p] = all || !(pairs.front[p] < pairs.valid_until[p]);
+        if (pairs.fresh[p]) memory.expired.push_back(static_cast<Index>(p));
     }
     // A tree that several expired pairs share is fitted once.
     memory.refit.clear();

@@ -104,10 +104,10 @@ private:
     }
 
     void add(const Candidate& candidate, ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
-             const Vec3& surface_velocity) {
+             Real contact_distance, const Vec3& surface_velocity) {
         if (!moves(stencil)) return;
         ContactRow row = contact_row(inputs_, {key_, kind_, first_, second_}, candidate, kind, stencil, point, normal, distance,
-                                     scale_.contact_distance, surface_);
+                                     contact_distance, surface_);
         row.surface_velocity = surface_velocity;
         found_.push_back(row);
     }
@@ -122,7 +122,7 @@ private:
         const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(nearest.point - motion.position);
         if (!within_reach(nearest.distance, (inputs_.velocity[node] - velocity).norm())) return;
         add(candidate, ContactKind::point_collider, {{node, node, node, node}, {1, 0, 0, 0}}, nearest.point, nearest.normal,
-            nearest.distance, velocity);
+            nearest.distance, scale_.contact_distance, velocity);
     }
 
     void point_against_triangle(Index c, const Candidate& candidate) {
@@ -138,7 +138,7 @@ private:
         if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
         if (contact.side == Side::behind && !is_truly_behind(c, node, corner, std::abs(contact.distance))) return;
         add(candidate, ContactKind::point_triangle, stencil_of_point({node, corner[0], corner[1], corner[2]}, contact.closest),
-            contact.closest.nearest, contact.normal, contact.distance, Vec3::Zero());
+            contact.closest.nearest, contact.normal, contact.distance, scale_.contact_distance, Vec3::Zero());
     }
 
     /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front of the far side of a thin
@@ -174,7 +174,7 @@ private:
             for (Index n : b) speed_squared = std::max(speed_squared, (inputs_.velocity[m] - inputs_.velocity[n]).squaredNorm());
         if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
         add(candidate, ContactKind::edge_edge, stencil_of_edges({a[0], a[1], b[0], b[1]}, contact.closest), contact.closest.on_second,
-            contact.normal, contact.distance, Vec3::Zero());
+            contact.normal, contact.distance, scale_.contact_distance - contact.slack, Vec3::Zero());
     }
 
     const CollisionInputs& inputs_;

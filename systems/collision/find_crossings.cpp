@@ -163,7 +163,11 @@ Index count_beyond_lists(const CollisionInputs& inputs, const PairTable& pairs, 
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
         if (pairs.kind[p] == PairKind::collider || pairs.state[p] != PairState::apart) continue;
-        count += !(reach_of(inputs, pairs, p, h).front < pairs.valid_until[p]);
+        // valid_until allows for what was drifted before the search, since `travel` starts to count at a drift of zero. Now nothing has.
+        const Real drifted = pairs.fresh[p] ? pair_travel(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) -
+                                                  pair_datum(inputs, pairs.kind[p], pairs.first[p], pairs.second[p])
+                                            : 0;
+        count += !(reach_of(inputs, pairs, p, h).front < pairs.valid_until[p] + drifted);
     }
     return count;
 }

@@ -82,7 +82,7 @@ def check_contacts(path, frame):
     same("point", points(data), [row["point"] for row in rows] or np.zeros((0, 3)), 0)
     for name in ["normal", "impulse", "force", "slip"]:
         same(name, point_array(data, name), [row[name] for row in rows] or np.zeros((0, 3)), FLOAT)
-    for name in ["gap", "state", "region", "first_body"]:
+    for name in ["distance", "gap", "state", "region", "first_body"]:
         same(name, point_array(data, name), [row[name] for row in rows], FLOAT)
     same("second_body", point_array(data, "second_body"), [-1] * len(rows), 0)
     same("collider", point_array(data, "collider"), [0] * len(rows), 0)

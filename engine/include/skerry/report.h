@@ -24,7 +24,8 @@ struct Contact {
     std::array<Real, 4> weight{};
     Vec3 point = Vec3::Zero();    // m
     Vec3 normal = Vec3::Zero();   // unit, towards the first body
-    Real gap = 0;                 // m, > 0 apart, measured from the contact shell
+    Real distance = 0;            // m, between the surfaces; < 0: they overlap
+    Real gap = 0;                 // m, what may still close: distance less the contact distance, or a bit more where edges are nearly flat
     Vec3 slip = Vec3::Zero();     // m/s, tangential relative velocity after the step
     Vec3 impulse = Vec3::Zero();  // N s, on the first body
     ContactMotion motion = ContactMotion::open;

@@ -106,6 +106,8 @@ struct Settings {
     int max_iterations = 200;       // sweeps of a region
     bool fixed_iterations = false;  // do exactly max_iterations sweeps
     Real relaxation = 1;            // of the sweeps, > 0 and < 2; only for methods that sweep
+    Real restitution_speed = 0.05;  // m/s, >= 0: slower impacts do not bounce, whatever the restitution
+    Real recovery_speed = 0.5;      // m/s, > 0: what overlaps, or lies within the contact distance, is pushed apart no faster
     Real max_strain_step = 0.2;     // a step that moves nodes by more than this fraction of an element is refused
     // A body all of whose nodes have been slower than sleep_speed for sleep_time is put to rest, together with all that it touches: it is left
     // out of the step and its contacts are not reported until something presses on it or changes it. 0: nothing rests.

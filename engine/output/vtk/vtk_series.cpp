@@ -185,6 +185,7 @@ void VtkSeries::write_contacts(const Frame& frame, const std::string& name) cons
     vectors(file, "force", rows, [&](const Contact& c) { return frame.force(c); });
     vectors(file, "normal", rows, [](const Contact& c) { return c.normal; });
     vectors(file, "slip", rows, [](const Contact& c) { return c.slip; });
+    scalars<float>(file, "distance", rows, [](const Contact& c) { return c.distance; });
     scalars<float>(file, "gap", rows, [](const Contact& c) { return c.gap; });
     scalars<std::uint8_t>(file, "state", rows, [](const Contact& c) { return c.motion; });
     scalars<std::int32_t>(file, "region", rows, [](const Contact& c) { return c.region; });

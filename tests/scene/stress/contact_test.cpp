@@ -86,7 +86,7 @@ TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
     // The push moves the nodes that are inside, at push_speed at most, and the body follows by its elasticity. A bar whose end is moved at v gets
     // a wave that brings it to v and comes back from the far end at 2 v: so a rigid body would leave at no more than v without any energy, but
     // a deformable one leaves at up to 2 v, with the energy of that.
-    const Real push_speed = 0.5;  // m/s, recovery_speed of the solver
+    const Real push_speed = Settings{}.recovery_speed;
     struct Case {
         const char* name;
         bool body;

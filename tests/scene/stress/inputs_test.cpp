@@ -71,6 +71,8 @@ TEST_CASE("settings and materials that are no numbers or out of range are refuse
         settings("tolerance", {[bad](Settings& s) { s.tolerance = bad; }});
         settings("relaxation", {[bad](Settings& s) { s.relaxation = bad; }});
         settings("max_strain_step", {[bad](Settings& s) { s.max_strain_step = bad; }});
+        settings("restitution_speed", {[bad](Settings& s) { s.restitution_speed = bad; }});
+        settings("recovery_speed", {[bad](Settings& s) { s.recovery_speed = bad; }});
         settings("sleep_speed", {[bad](Settings& s) { s.sleep_speed = bad; }});
         settings("sleep_time", {[bad](Settings& s) { s.sleep_time = bad; }});
     }

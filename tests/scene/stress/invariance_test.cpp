@@ -47,6 +47,7 @@ std::vector<Vec3> drop_in(const Units& u, Real seconds) {
     const Real modulus = u.mass / (u.length * u.time * u.time), acceleration = u.length / (u.time * u.time);
     Settings settings;
     settings.gravity = tilted_gravity(20) / acceleration;
+    settings.recovery_speed /= u.length / u.time;
     settings.tolerance = 1e-10;
     settings.max_iterations = 10000;
     World world(settings);

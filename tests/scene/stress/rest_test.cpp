@@ -88,6 +88,37 @@ TEST_CASE("a heap at rest stays for a million steps", "[scene][stress][slow]") {
     rest_small_heap(100);
 }
 
+TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "[scene][stress]") {
+    // Wide faces on wide faces, with edges inside of them that bend this way and that: what the contacts do to them must not shake the tower.
+    Settings settings;
+    settings.tolerance = 1e-6;
+    settings.max_iterations = 2000;
+    World world(settings);
+    world.add_collider(Plane{});
+    const auto rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
+    const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
+    Real weight = 0;
+    for (int i = 0; i < 3; ++i) {
+        const auto block =
+            world.add_body(mesh, {.material = rubber, .position = {0.01 * i, 0.007 * i, 0.051 + 0.1025 * i}, .contact_distance = 2e-3});
+        weight += world.mass(block) * standard_gravity;
+    }
+    REQUIRE(world.advance(4).ok());
+    const auto swing = [&world] {  // over a second
+        Real most = 0;
+        for (int look = 0; look < 20; ++look) {
+            REQUIRE(world.advance(0.05).ok());
+            most = std::max(most, world.energy().kinetic);
+        }
+        return most;
+    };
+    const Real early = swing(), weight_energy = weight * 0.1;
+    const Rest rest(world, 200, 20);  // energy as of a symplectic step swings by a thousandth of the kinetic, which is 2e-4 of this scale
+    const std::string scene = "tower of 3 soft blocks";
+    at_most(20, scene + ", 4000 steps", "rise of the energy / (weight times height)", rest.rise / weight_energy, 1e-6);
+    at_most(20, scene + ", 4000 steps later", "kinetic energy of the sway / that before", swing() / early, 0.75);
+}
+
 TEST_CASE("a heap solved to the default tolerance creeps no faster than that allows", "[scene][stress]") {
     World world = small_heap(Settings{}.tolerance, 2e4, 300);
     REQUIRE(world.advance(3).ok());

@@ -118,6 +118,16 @@ TEST_CASE("a pair that moves further than its list of candidates is good for sta
     CHECK(s.crossings() > 0);
 }
 
+TEST_CASE("what the nodes of a body drifted before takes nothing from a list that was searched for this step", "[unit]") {
+    SpikeOverPlate s(0.03);
+    s.w.body.drift[s.plate] = 10;  // m: a body that flew with one velocity while its nodes swung
+    s.w.find(h);
+    s.move_spike({0, 0, -10});
+    CHECK(s.crossings() == 0);
+    s.move_spike({0, 0, 2000});
+    CHECK(s.crossings() > 0);
+}
+
 TEST_CASE("a plate turned inside out still holds a point on the side where it is", "[unit]") {
     for (const bool continuous : {true, false}) {
         SpikeOverPlate s(shell);

@@ -40,6 +40,7 @@ Json expected(const Frame& frame) {
                             {"impulse", json_of(c.impulse)},
                             {"force", json_of(c.impulse * 1200)},
                             {"slip", json_of(c.slip)},
+                            {"distance", c.distance},
                             {"gap", c.gap},
                             {"state", static_cast<int>(c.motion)},
                             {"region", c.region},
