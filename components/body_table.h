@@ -51,7 +51,8 @@ struct BodyTable {
     Column<Real> calm;                                           // s, for how long no node has been as fast as sleep_speed
     Column<Real> max_speed;                                      // m/s, of this step's motion
     Column<Real> drift;                                          // m, greatest distance of a node from its drift origin
-    Column<Real> travel;  // m: since any earlier time no node has come further than the growth of travel plus twice the drift then
+    Column<Real> travel;       // m: since any earlier time no node has come further than the growth of travel plus twice the drift then
+    Column<Real> sound_until;  // m: no element turns inside out, or back, while travel is below this
 
     void for_each_column(auto&& visit) {
         visit("slot", slot);
@@ -81,6 +82,7 @@ struct BodyTable {
         visit("max_speed", max_speed);
         visit("drift", drift);
         visit("travel", travel);
+        visit("sound_until", sound_until);
     }
 };
 

@@ -37,7 +37,8 @@ Json trust_of(const RunResult& result) {
           {"body", r.worst_volume_body},
           {"element", r.worst_volume_element},
           {"near_inversion", r.near_inversion},
-          {"inverted", r.inverted}}},
+          {"inverted", r.inverted},
+          {"inversions", r.inversions}}},
         {"doubts", doubts_of(result)},
     };
 }
@@ -63,6 +64,8 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     if (r.inverted > 0)
         doubts.push_back(std::to_string(r.inverted) + " elements are inverted, the worst in " + r.worst_volume_body + ", element " +
                          std::to_string(r.worst_volume_element));
+    else if (r.inversions > 0)
+        doubts.push_back(grouped(r.inversions) + " times an element was inverted for some steps");
     else if (r.near_inversion > 0)
         doubts.push_back(std::to_string(r.near_inversion) + " elements are near inversion, the worst in " + r.worst_volume_body +
                          ", element " + std::to_string(r.worst_volume_element));

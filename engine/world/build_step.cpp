@@ -152,6 +152,15 @@ void list_join(WorldState& w, TaskGraph& g) {
             },
             reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out, e.node, b.blocks)),
         value(w.step.h), value(w.step.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
+    const auto possible = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
+    g.stage_with_result("dynamics/find_inversions", w.step.inversions, find_inversions,
+                        bundle(
+                            [&n, &b, &e] {
+                                return InversionInputs{e.node,  e.volume,   b.blocks,        b.max_speed, b.travel,
+                                                       b.drift, n.position, n.velocity_next, n.push_out};
+                            },
+                            reads(e.node, e.volume, b.blocks, b.max_speed, b.travel, b.drift, n.position, n.velocity_next, n.push_out)),
+                        value(w.step.h), make(w.inversion_parts), write(b.sound_until), possible);
     g.stage_with_result(
         "dynamics/measure_work", w.step.external, measure_work,
         bundle([&w, &n] { return w.loaded ? std::span<const Vec3>(n.load.span()) : std::span<const Vec3>(); }, reads(n.load)),
@@ -159,12 +168,10 @@ void list_join(WorldState& w, TaskGraph& g) {
         bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), make(w.work_parts),
         only_if([&w] { return w.loaded || w.attachments.node.size() > 0; }, reads(w.attachments)));
     g.stage_with_result("collision/find_crossings", w.step.crossings, find_crossings, collision_inputs(w), value(w.step.collision),
-                        value(w.step.h), read(n.velocity_next), read(n.push_out), make(w.pairs), make(w.crossings),
-                        only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict)));
-    const auto trusted =
-        only_if([&w] { return w.step.verdict.fault == StepFault::none && w.step.crossings == 0; }, reads(w.step.verdict, w.step.crossings));
-    const auto sleepy =
-        only_if([&w] { return w.step.taken() && w.step.sleep.speed > 0; }, reads(w.step.verdict, w.step.crossings, w.step.sleep));
+                        value(w.step.h), read(n.velocity_next), read(n.push_out), make(w.pairs), make(w.crossings), possible);
+    const auto trusted = only_if([&w] { return w.step.taken(); }, reads(w.step.verdict, w.step.crossings, w.step.inversions));
+    const auto sleepy = only_if([&w] { return w.step.taken() && w.step.sleep.speed > 0; },
+                                reads(w.step.verdict, w.step.crossings, w.step.inversions, w.step.sleep));
     const auto touches = bundle([&w] { return w.touches(); }, reads(c.first_body, c.second_body, c.state, c.gap, c.surface_velocity));
     g.stage("dynamics/wake_bodies", wake_bodies, touches, read(w.pressed), read(w.attachments.body), read(w.attachments.motion),
             write(b.asleep), write(b.calm), sleepy);

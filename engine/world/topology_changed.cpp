@@ -1,5 +1,6 @@
 // What is derived from all bodies together, after some came or went.
 #include <algorithm>
+#include <limits>
 
 #include "engine/world/world_state.h"
 #include "systems/dynamics/build_elements.h"
@@ -9,6 +10,7 @@ namespace skerry {
 void WorldState::search_afresh() {
     search.body_valid_until.clear();
     search.collider_valid_until.clear();
+    for (Real& travel : bodies.sound_until) travel = -std::numeric_limits<Real>::infinity();
 }
 
 void WorldState::topology_changed() {

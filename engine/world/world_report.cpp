@@ -58,6 +58,12 @@ std::uint64_t hash_of(WorldState& world) {
     return hash.value();
 }
 
+Index user_element(const WorldState& world, std::size_t body, Index element) {
+    const Index place = element - static_cast<Index>(element_lanes) * world.bodies.blocks[body].begin;
+    const std::vector<Index>& order = world.body_records[body].element_order;
+    return order.empty() ? place : order[static_cast<std::size_t>(place)];
+}
+
 Energy energy_of(const WorldState& world) {
     Energy energy;
     const NodeTable& nodes = world.nodes;
@@ -105,9 +111,14 @@ std::string StepReport::message() const {
 }
 
 std::string StepReport::warning() const {
-    if (limited == 0) return {};
-    return "step_size is longer than body '" + limited_by + "' stands: " + std::to_string(limited) + " steps were taken at no more than " +
-           short_text(limited_step) + " s";
+    std::string text;
+    if (limited > 0)
+        text = "step_size is longer than body '" + limited_by + "' stands: " + std::to_string(limited) +
+               " steps were taken at no more than " + short_text(limited_step) + " s";
+    if (inverted > 0)
+        text += (text.empty() ? "" : "; ") + std::to_string(inverted) + " elements turned inside out, the first of them element " +
+                std::to_string(inverted_element) + " of body '" + inverted_name + "'";
+    return text;
 }
 
 std::uint64_t World::state_hash() const {
@@ -165,6 +176,7 @@ WorldReport World::report() const {
     report.inline_steps = counters.inline_steps;
     report.shortened = counters.shortened;
     report.retried = counters.retried;
+    report.inversions = counters.inversions;
     report.crossing_tests = world.crossings.tested;
     report.crossings_found = world.crossings.hits;
     report.crossed = world.crossings.let_through;
@@ -185,9 +197,7 @@ WorldReport World::report() const {
         if (ratios.smallest >= report.worst_volume_ratio) continue;
         report.worst_volume_ratio = ratios.smallest;
         report.worst_volume_body = world.body_records[b].name;
-        const Index place = ratios.element - static_cast<Index>(element_lanes) * world.bodies.blocks[b].begin;
-        const std::vector<Index>& order = world.body_records[b].element_order;
-        report.worst_volume_element = order.empty() ? place : order[static_cast<std::size_t>(place)];
+        report.worst_volume_element = user_element(world, b, ratios.element);
     }
     const Balance balance = checked_balance(world);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };

@@ -31,6 +31,7 @@
 #include "systems/contact/separate_regions.h"
 #include "systems/dynamics/check_state.h"
 #include "systems/dynamics/compute_element_forces.h"
+#include "systems/dynamics/find_inversions.h"
 #include "systems/dynamics/measure_work.h"
 #include "systems/dynamics/move_colliders.h"
 #include "systems/dynamics/update_sleep.h"
@@ -63,7 +64,9 @@ struct StepState {
     SolverSettings solver;
     Real max_strain_step = 0;
     StepVerdict verdict;
-    Index crossings = 0;  // features that would go through each other: not zero, and the step is tried again
+    Inversions inversions;
+    bool let_invert = false;  // the last of the tries to avoid it
+    Index crossings = 0;      // features that would go through each other: not zero, and the step is tried again
     ContactMeasures measures;
     ExternalWork external;
     SleepSettings sleep;
@@ -71,12 +74,13 @@ struct StepState {
     Real awake_mass = 0;  // kg, at the start of the step
     Real damped = 0;      // J, taken out by damping in this step
 
-    bool taken() const { return verdict.fault == StepFault::none && crossings == 0; }
+    bool inverts() const { return inversions.first && !let_invert; }
+    bool taken() const { return verdict.fault == StepFault::none && crossings == 0 && !inverts(); }
 };
 
 /// Sums over all steps since the world was made.
 struct RunCounters {
-    std::uint64_t steps = 0, inline_steps = 0, shortened = 0, retried = 0, limited = 0;
+    std::uint64_t steps = 0, inline_steps = 0, shortened = 0, retried = 0, limited = 0, inversions = 0;
     std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
     std::uint64_t separating = 0, frictionless = 0, in_lanes = 0, frozen = 0, contact_steps = 0, swept = 0;
     std::uint64_t element_steps = 0, element_impulses = 0;
@@ -163,10 +167,11 @@ struct WorldState {
     Column<Vec3> velocity_before_drive;  // m/s, of attachments.node: put back when a step is not committed
     Column<Real> stiffness_sum;          // scratch of stable_step
     SleepMemory sleep_memory;
-    Column<std::uint8_t> pressed;     // by body at rest, in this step
-    WarmStartTable warm_start_next;   // scratch of store_warm_start
-    bool any_asleep = false;          // some body rests
-    Column<ExternalWork> work_parts;  // scratch of measure_work
+    Column<std::uint8_t> pressed;           // by body at rest, in this step
+    WarmStartTable warm_start_next;         // scratch of store_warm_start
+    bool any_asleep = false;                // some body rests
+    Column<ExternalWork> work_parts;        // scratch of measure_work
+    Column<InversionPart> inversion_parts;  // and of find_inversions
     std::uint64_t steps_since_watch = 0;
     Balance balance;
     Column<Real> body_mass;                     // kg, of all nodes of a body, held ones, too
@@ -273,6 +278,9 @@ void validate(const Motion& motion, const Vec3& pivot);
 
 // world_report.cpp
 Energy energy_of(const WorldState& world);
+
+/// An element, by row of the table, by its number in the mesh that the user gave.
+Index user_element(const WorldState& world, std::size_t body, Index element);
 std::uint64_t hash_of(WorldState& world);
 
 }  // namespace skerry

@@ -72,3 +72,44 @@ TEST_CASE("an attachment follows its keys, and a released body is free again", "
     REQUIRE(world.advance(0.25).ok());
     CHECK((world.center_of_mass(body) - before - Vec3(0, 0.25, 0)).norm() < 1e-12);
 }
+
+TEST_CASE("an element that one step would throw inside out is stopped by its own stiffness in shorter ones", "[scene]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.max_strain_step = 100;  // else the step would be refused for its speed
+    World world(settings);
+    const auto body = world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}},
+                                     {.material = world.add_material({.young_modulus = 1e5}), .contact_distance = {}, .name = "tet"});
+    const Real h = world.stable_step();
+    std::vector<Vec3> velocity(4, Vec3::Zero());
+    velocity[3] = {0, 0, -1.05 / h};  // 5 % beyond the face opposite
+    world.set_velocities(body, velocity);
+    const StepReport report = world.advance(h * (1 - 1e-12));
+    CHECK(report.ok());
+    CHECK(report.shortened == 1);
+    CHECK(report.inverted == 0);
+    CHECK(world.report().worst_volume_ratio > 0);
+}
+
+TEST_CASE("an element that is pressed inside out is reported with its body, and the step is taken", "[scene]") {
+    World world(Settings{.gravity = Vec3::Zero()});
+    const auto material = world.add_material({.young_modulus = 1e5});
+    world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}), {.material = material, .position = {5, 0, 0}, .contact_distance = {}});
+    const auto body = world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}}, {.material = material, .name = "tet"});
+    const std::array<Index, 3> ground{0, 1, 2};
+    const std::array<Index, 1> apex{3};
+    world.attach(body, ground, Motion{});
+    Motion down;
+    down.keys = {{0, {0, 0, 1}, Vec3::Zero()}, {1, {0, 0, -1}, Vec3::Zero()}};
+    world.attach(body, apex, down);
+    const StepReport report = world.advance(1);
+    CHECK(report.ok());
+    CHECK(report.inverted == 1);
+    CHECK(report.inverted_body == body);
+    CHECK(report.inverted_element == 0);
+    CHECK_THAT(report.warning(), Catch::Contains("1 elements turned inside out, the first of them element 0 of body 'tet'"));
+    CHECK(report.shortened >= 2);  // to a quarter of the stable step, then it is let happen
+    CHECK(world.report().inversions == 1);
+    CHECK(world.report().inverted == 1);
+    CHECK(world.advance(0.1).inverted == 0);  // it stays so: that is old news
+}

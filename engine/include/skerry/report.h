@@ -58,13 +58,14 @@ public:
     std::string warning() const;
 
     StepStatus status = StepStatus::ok;
-    BodyHandle body;         // to blame, when not ok
-    Index node = -1;         // local, when one node is to blame
-    Real value = 0;          // too_fast: displacement over smallest altitude; too_far: rounding of positions over mean edge;
-                             // too_stiff: stable step, s
-    Real step_size = 0;      // s, of the steps taken
-    int steps = 0;           // committed
-    int shortened = 0;       // tries given up because a body was too fast or surfaces crossed; each was repeated at half the length
+    BodyHandle body;     // to blame, when not ok
+    Index node = -1;     // local, when one node is to blame
+    Real value = 0;      // too_fast: displacement over smallest altitude; too_far: rounding of positions over mean edge;
+                         // too_stiff: stable step, s
+    Real step_size = 0;  // s, of the steps taken
+    int steps = 0;       // committed
+    int shortened =
+        0;  // tries given up because a body was too fast, surfaces crossed or an element turned inside out; each was repeated at half the length
     int retried = 0;         // tries given up because surfaces crossed; each was repeated with the crossings as contacts
     int limited = 0;         // steps that were shorter than step_size of the settings, which limited_by does not stand
     Real limited_step = 0;   // s, what it stands
@@ -77,8 +78,12 @@ public:
     Index worst_region = 0;      // contacts of the region that had it
     Real max_penetration = 0;    // m, overlap of surfaces, largest over the steps
     Real max_gap_violation = 0;  // m, pressed into the contact shell, largest over the steps
-    Index crossed = 0;           // features that went through each other, since no try could stop them
-    std::string body_name;       // when not ok
+    Index inverted = 0;          // elements that turned inside out, in shorter tries of their step, too
+    BodyHandle inverted_body{};  // of the first of them
+    std::string inverted_name;
+    Index inverted_element = -1;  // in the order of the body's mesh
+    Index crossed = 0;            // features that went through each other, since no try could stop them
+    std::string body_name;        // when not ok
 };
 
 /// Sums since the world was made. Asking walks all tables; the run itself keeps only counters.
@@ -110,7 +115,8 @@ struct WorldReport {
     std::uint64_t element_steps = 0;     // elements times steps
     std::uint64_t element_impulses = 0;  // of them, how many were evaluated
     std::uint64_t inline_steps = 0;      // too small to pay for threads
-    std::uint64_t shortened = 0;         // steps tried again at half the length, since a body was too fast or surfaces crossed
+    std::uint64_t shortened = 0;         // steps tried again at half the length
+    std::uint64_t inversions = 0;        // elements that turned inside out, each time that one did
     std::uint64_t retried = 0;           // steps tried again with what crossed in them as contacts
     std::uint64_t limited = 0;           // steps shorter than step_size of the settings, which a body does not stand
     // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could stop them.

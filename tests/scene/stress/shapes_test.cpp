@@ -70,7 +70,9 @@ TEST_CASE("a box collapsed to a point, a line or a plane recovers or stays finit
             LetGo box(model, [&](const Vec3& x) { return Vec3(c.scale.cwiseProduct(x)); });
             // The energy of the stable neo-Hookean law has a minimum of its own at F = 0: the stress of F = s I is mu s - (lambda (1 - s^3) +
             // mu) s^2, which draws together below about s = mu / (lambda + mu).
-            const bool must_recover = model == MaterialModel::corotational || c.scale.sum() == 2;
+            // From a point the corotational law has no direction to start from: which elements end up twisted against each other is a matter of
+            // rounding (of nine lengths of step two end so).
+            const bool must_recover = c.scale.sum() == 2 || (model == MaterialModel::corotational && c.scale.sum() > 0);
             box.judge_recovery(6, "box of 384 collapsed to " + std::string(c.name) + ", " + std::string(name_of(model)), must_recover);
         }
 }

@@ -1,0 +1,42 @@
+// Which elements the step would turn inside out (methods.md 4.2).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/element_table.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+struct InversionInputs {
+    std::span<const ElementNodes> element_node;  // ElementBlockTable
+    std::span<const ElementLane> element_volume;
+    std::span<const Range> body_blocks;  // BodyTable
+    std::span<const Real> body_max_speed, body_travel, body_drift;
+    std::span<const Vec3> position;  // m, at the start of the step
+    std::span<const Vec3> velocity_next, push_out;
+};
+
+/// Elements whose volume is positive at the start of the step and not at its end.
+struct Inversions {
+    Index count = 0;
+    Index body = no_index;     // row of BodyTable, of the first
+    Index element = no_index;  // of the table: lane of a block
+    bool first = false;        // some body of them had no inverted element before
+};
+
+/// Working memory, kept between steps.
+struct InversionPart {
+    Real width = 0;  // m, of the narrowest element
+    bool inverted = false;
+    Index count = 0, element = no_index;  // that the step turns over, and the first of them
+};
+
+/// Looks only at bodies that can have come far enough: an element is not turned over before its corners have moved by half of its width, the
+/// distance of the two nearest parallel planes around it. `body_sound_until` (m): no element turns over, or back, while travel
+/// stays below this; written when a body is looked at. Parallel over element blocks.
+Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
+                           std::span<Real> body_sound_until);
+
+}  // namespace skerry

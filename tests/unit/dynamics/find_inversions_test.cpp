@@ -1,0 +1,146 @@
+#include "systems/dynamics/find_inversions.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+
+using namespace skerry;
+
+namespace {
+
+constexpr Real h = 0.01;
+
+/// Bodies of loose tetrahedra, each with corners of its own; lanes that are left over have no volume.
+struct Loose {
+    std::vector<ElementNodes> node;
+    std::vector<ElementLane> volume;
+    std::vector<Range> blocks;
+    std::vector<Real> max_speed, travel, drift, sound_until;
+    std::vector<Vec3> position, velocity, push;
+    Column<InversionPart> parts;
+
+    Loose(std::mt19937_64& random, const std::vector<Index>& elements) {
+        std::uniform_real_distribution<Real> place(-1, 1);
+        for (const Index count : elements) {
+            const Index first = static_cast<Index>(node.size());
+            for (Index e = 0; e < count; ++e) {
+                const std::size_t l = static_cast<std::size_t>(e) % element_lanes;
+                if (l == 0) {
+                    node.emplace_back();
+                    volume.emplace_back();
+                    for (auto& corner : node.back())
+                        for (std::size_t lane = 0; lane < element_lanes; ++lane) corner[lane] = static_cast<Index>(position.size());
+                }
+                for (std::size_t a = 0; a < 4; ++a) {
+                    node.back()[a][l] = static_cast<Index>(position.size());
+                    position.emplace_back(place(random), place(random), place(random));
+                }
+                if (determinant(position, node.size() - 1, l) < 0) std::swap(position.back(), position[position.size() - 2]);
+                volume.back()[l] = 1;
+            }
+            blocks.push_back({first, static_cast<Index>(node.size())});
+            max_speed.push_back(0);
+            travel.push_back(0);
+            drift.push_back(0);
+            sound_until.push_back(-std::numeric_limits<Real>::infinity());
+        }
+        velocity.assign(position.size(), Vec3::Zero());
+        push = velocity;
+    }
+    Real determinant(const std::vector<Vec3>& x, std::size_t b, std::size_t l) const {
+        const auto at = [&](std::size_t a) { return x[static_cast<std::size_t>(node[b][a][l])]; };
+        return (at(1) - at(0)).dot((at(2) - at(0)).cross(at(3) - at(0)));
+    }
+    std::vector<Vec3> next() const {
+        std::vector<Vec3> x = position;
+        for (std::size_t n = 0; n < x.size(); ++n) x[n] += h * (velocity[n] + push[n]);
+        return x;
+    }
+    Inversions find(int workers = 1) {
+        const auto executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
+        return find_inversions(*executor, {node, volume, blocks, max_speed, travel, drift, position, velocity, push}, h, parts,
+                               sound_until);
+    }
+    /// The same by looking at every element.
+    Inversions by_hand() const {
+        Inversions found;
+        const std::vector<Vec3> after = next();
+        for (std::size_t body = 0; body < blocks.size(); ++body) {
+            Index count = 0, first = no_index;
+            bool inverted = false;
+            for (Index b = blocks[body].begin; b < blocks[body].end; ++b)
+                for (std::size_t l = 0; l < element_lanes; ++l) {
+                    const std::size_t block = static_cast<std::size_t>(b);
+                    if (volume[block][l] == 0) continue;
+                    const bool was = !(determinant(position, block, l) > 0);
+                    inverted |= was;
+                    if (was || determinant(after, block, l) > 0) continue;
+                    if (count++ == 0) first = static_cast<Index>(block * element_lanes + l);
+                }
+            if (count == 0) continue;
+            if (found.count == 0) found = {0, static_cast<Index>(body), first, false};
+            found.count += count;
+            found.first |= !inverted;
+        }
+        return found;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("what turns inside out is found, as by looking at every element in every step", "[unit]") {
+    for (const int workers : {1, 4}) {
+        std::mt19937_64 random(7);
+        std::normal_distribution<Real> kick(0, 1);
+        Loose loose(random, {1, 1100, 30});
+        std::size_t with = 0, skipped = 0;
+        std::vector<Vec3> start = loose.position;
+        for (int step = 0; step < 400; ++step) {
+            for (std::size_t body = 0; body < loose.blocks.size(); ++body) {
+                const Real speed = (step / 50) % 2 ? 0.002 : 0.2;  // m/s, of a node: slow times and quick ones
+                for (Index b = loose.blocks[body].begin; b < loose.blocks[body].end; ++b)
+                    for (std::size_t l = 0; l < element_lanes; ++l)
+                        for (std::size_t a = 0; a < 4; ++a) {
+                            const auto n = static_cast<std::size_t>(loose.node[static_cast<std::size_t>(b)][a][l]);
+                            loose.velocity[n] = speed * Vec3(kick(random), kick(random), kick(random));
+                            loose.push[n] = 0.1 * speed * Vec3(kick(random), kick(random), kick(random));
+                            loose.max_speed[body] = std::max(loose.max_speed[body], (loose.velocity[n] + loose.push[n]).norm());
+                        }
+            }
+            const std::vector<Real> before = loose.sound_until;
+            const Inversions found = loose.find(workers), expected = loose.by_hand();
+            REQUIRE(found.count == expected.count);
+            REQUIRE(found.body == expected.body);
+            REQUIRE(found.element == expected.element);
+            REQUIRE(found.first == expected.first);
+            with += found.count > 0;
+            for (std::size_t body = 0; body < before.size(); ++body) skipped += before[body] == loose.sound_until[body];
+            loose.position = loose.next();
+            for (std::size_t body = 0; body < loose.blocks.size(); ++body) {  // as measure_drift does, without its origins
+                loose.travel[body] += h * loose.max_speed[body];
+                loose.max_speed[body] = 0;
+            }
+        }
+        CHECK(with > 20);
+        CHECK(skipped > 100);
+    }
+}
+
+TEST_CASE("an element is safe until its corners have moved by half of its width", "[unit]") {
+    std::mt19937_64 random(1);
+    Loose loose(random, {1});
+    loose.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    REQUIRE(loose.find().count == 0);
+    CHECK(loose.sound_until[0] == Approx(std::sqrt(1.0 / 3) / 2));  // from the corner to the slanting face
+    loose.travel[0] = 5;
+    loose.drift[0] = 0.1;
+    REQUIRE(loose.find().count == 0);
+    CHECK(loose.sound_until[0] == Approx(5 - 0.2 + std::sqrt(1.0 / 3) / 2));
+    // A flat tetrahedron whose two crossing edges are nearest: no corner is as near to its face.
+    loose.position = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.1}, {0, 1, 0.1}};
+    if (loose.determinant(loose.position, 0, 0) < 0) std::swap(loose.position[0], loose.position[1]);
+    loose.sound_until[0] = -1;
+    REQUIRE(loose.find().count == 0);
+    CHECK(loose.sound_until[0] == Approx(5 - 0.2 + 0.1 / 2));
+}
