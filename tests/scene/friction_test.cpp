@@ -12,14 +12,6 @@ MaterialSettings block_material() {
     return {.young_modulus = 2e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.3, .damping = 300};
 }
 
-Settings accurate(const Vec3& gravity) {
-    Settings settings;
-    settings.gravity = gravity;
-    settings.tolerance = 1e-8;
-    settings.max_iterations = 20000;
-    return settings;
-}
-
 }  // namespace
 
 TEST_CASE("the floor carries the weight of a resting block", "[scene]") {

@@ -17,6 +17,15 @@ inline Vec3 tilted_gravity(Real degrees) {
     return standard_gravity * Vec3(std::sin(a), 0, -std::cos(a));
 }
 
+/// Contacts solved until the error of the step is all that is left.
+inline Settings accurate(const Vec3& gravity = {0, 0, -standard_gravity}, Real tolerance = 1e-8) {
+    Settings settings;
+    settings.gravity = gravity;
+    settings.tolerance = tolerance;
+    settings.max_iterations = 20000;
+    return settings;
+}
+
 /// Momentum of one body, kg m/s. A world knows masses only as sums, so a test weighs nodes by the tetrahedra around them.
 inline std::vector<Real> node_masses(const World& world, BodyHandle body, const Mesh& mesh, Real density) {
     std::vector<Real> mass(world.positions(body).size(), 0);

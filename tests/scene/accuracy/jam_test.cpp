@@ -13,14 +13,6 @@ namespace {
 
 constexpr Real g = standard_gravity;
 
-Settings accurate(const Vec3& gravity) {
-    Settings settings;
-    settings.gravity = gravity;
-    settings.tolerance = 1e-8;
-    settings.max_iterations = 20000;
-    return settings;
-}
-
 /// A wedge of half angle a, point down, between two walls; weight is turned on slowly.
 struct Wedge {
     static constexpr Real mu = 0.3, height = 0.2, width = 0.2;  // m; width in the middle of the height

@@ -14,13 +14,6 @@ namespace {
 constexpr Real g = standard_gravity;
 constexpr Real degree = std::numbers::pi / 180;
 
-Settings accurate() {
-    Settings settings;
-    settings.tolerance = 1e-8;
-    settings.max_iterations = 20000;
-    return settings;
-}
-
 /// A block of width b and height h on an incline. Returns what it has done a second after the tilt: leant over, slid away, or neither.
 enum class Fate { rests, slides, topples };
 
