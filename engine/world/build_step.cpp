@@ -46,6 +46,11 @@ void list_scripted_motion(WorldState& w, TaskGraph& g) {
             value(w.step.h), read(n.position), write(n.velocity));
 }
 
+/// What velocities are behind positions by at the kick, s: leapfrog has drifted by half a step, symplectic Euler is the same half a step on.
+Real velocity_lag(const WorldState& w) {
+    return w.settings.integrator == Integrator::literal ? 0 : w.step.h / 2;
+}
+
 void list_force_branch(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.nodes;
     ElementBlockTable& e = w.elements;
@@ -65,10 +70,12 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/damp_velocity", damp_velocity,
             bundle(
                 [&w, &n, &b, &k] {
-                    return DampingInputs{k.begin,    k.end,  k.body,        b.node_blocks, b.material, b.pinned_count, w.materials.damping,
-                                         n.position, n.mass, n.inverse_mass};
+                    return DampingInputs{
+                        k.begin,    k.end,  k.body,         b.node_blocks,  b.material, b.pinned_count, w.materials.damping,
+                        n.position, n.mass, n.inverse_mass, velocity_lag(w)};
                 },
-                reads(k.begin, k.end, k.body, b.node_blocks, b.material, b.pinned_count, w.materials, n.position, n.mass, n.inverse_mass)),
+                reads(k.begin, k.end, k.body, b.node_blocks, b.material, b.pinned_count, w.materials, n.position, n.mass, n.inverse_mass,
+                      w.step.h, w.settings.integrator)),
             read(n.velocity), value(w.step.h), write(k.sums), write(n.velocity_next), make(w.step.damped));
 }
 

@@ -19,9 +19,11 @@ NOTES = """
 ## Notes
 
 - **2**: one step serves all bodies here; fewer impulses for soft ones are the matter of [multirate](integration.md).
-- **6, 25**: the stable neo-Hookean law without the logarithmic term has a minimum of its energy at F = 0 beside the one at rest: a body that is
-  pressed together on all sides, below about mu / (lambda + mu) of its length, stays so. The corotational law has none, and recovers, from an
-  exact point in seven of nine lengths of step: there rounding decides how elements unfold, and some can stay twisted against each other.
+- **6**: no force has a direction where F = 0, and none points off an exact line: the stable neo-Hookean law, which is smooth, leaves a body there.
+  It is no minimum (the logarithmic term of the paper sees to that): pressed to a hundredth of its size it comes back. A body thrown into a heap,
+  or off a line by rounding, opens this way here and that way there and may end wound or twisted, each tetrahedron the right way round. Below
+  a Poisson ratio of -0.85 the law as published has a second minimum, at about half the length. The corotational law recovers
+  from an exact point with seven of nine lengths of step: rounding decides how elements unfold, and some can stay twisted against each other.
 - **9**: the push moves the nodes that are inside, at 0.5 m/s at most, and the body follows by its elasticity. The end of a bar that is moved at v
   sends a wave that brings the bar to v and comes back at 2 v: a body leaves at up to twice the push speed, where a rigid one would not exceed it.
 - **10, 12, 15, 16, 17, 22, 23**: contact problems on their own; `tests/unit/solver` looks at the same from nearer by.

@@ -31,6 +31,11 @@ std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
     return static_cast<std::size_t>(bodies.block_begin[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)]);
 }
 
+/// Where a node was, relative to the body's first node, when it had its velocity.
+Vec3 earlier(const Vec3& x, const Vec3& velocity, Real lag) {
+    return x - lag * velocity;
+}
+
 /// Sums over a block; positions and velocities relative to those of the body's first node.
 NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::span<const Vec3> velocity) {
     const std::size_t origin = first_node(bodies, static_cast<std::size_t>(bodies.block_body[block]));
@@ -39,12 +44,13 @@ NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::spa
         if (!(bodies.inverse_mass[n] > 0)) continue;
         const Real m = bodies.mass[n];
         const Vec3 x = bodies.position[n] - bodies.position[origin];
-        const Vec3 p = m * (velocity[n] - velocity[origin]);
+        const Vec3 v = velocity[n] - velocity[origin];
+        const Vec3 p = m * v;
         sums.mass += m;
         sums.momentum += p;
         sums.first_moment += m * x;
         sums.angular_momentum += x.cross(p);
-        sums.second_moment += (m * x) * x.transpose();
+        sums.second_moment += (m * earlier(x, v, bodies.lag)) * x.transpose();
     }
     return sums;
 }
@@ -63,23 +69,24 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
     }
     if (!(total.mass > 0)) return;
     total.angular_momentum -= total.first_moment.cross(total.momentum) / total.mass;
-    total.second_moment -= total.first_moment * total.first_moment.transpose() / total.mass;
+    total.second_moment -= earlier(total.first_moment, total.momentum, bodies.lag) * total.first_moment.transpose() / total.mass;
     total.momentum += total.mass * velocity[first_node(bodies, body)];
 }
 
-/// Angular velocity with the given angular momentum. Nodes on a line or in a point cannot turn about it: no rotation there.
+/// Angular velocity omega for which the velocities omega x y, y the earlier places, have the angular momentum of the body about the places of
+/// now: (tr(S) I - S) omega with S = sum m y x^T. Nodes on a line or in a point cannot turn about it: no rotation there.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;
     constexpr Real well_shaped =
         1e-6;  // of the cube of the mean moment: then the inverse loses at most ten digits, and most bodies lose none
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
-    const Real least = 1e-12 * eigen.eigenvalues()[2];  // below it the moment is rounding
+    const Eigen::JacobiSVD<Mat3> parts(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Real least = 1e-12 * parts.singularValues()[0];  // below it the moment is rounding
     Vec3 omega = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
-        if (eigen.eigenvalues()[i] > least)
-            omega += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(total.angular_momentum) / eigen.eigenvalues()[i]);
+        if (parts.singularValues()[i] > least)
+            omega += parts.matrixV().col(i) * (parts.matrixU().col(i).dot(total.angular_momentum) / parts.singularValues()[i]);
     return omega;
 }
 
@@ -92,15 +99,18 @@ Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, c
     if (rigid && !(total.mass > 0)) return 0;
     const Vec3 linear = rigid ? Vec3(total.momentum / total.mass) : Vec3::Zero();
     const Vec3 angular = rigid ? angular_velocity_of(total) : Vec3::Zero();
-    const Vec3 centre = rigid ? Vec3(bodies.position[first_node(bodies, body)] + total.first_moment / total.mass) : Vec3::Zero();
-    Real deformation = 0;  // J, kinetic
+    const std::size_t origin = first_node(bodies, body);
+    const Vec3 centre = rigid ? Vec3(total.first_moment / total.mass) : Vec3::Zero();
+    Real taken = 0;  // J
     for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]); n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
         if (!(bodies.inverse_mass[n] > 0)) continue;
-        const Vec3 excess = velocity[n] - (linear + angular.cross(bodies.position[n] - centre));
+        const Vec3 v = velocity[n] - linear;
+        const Vec3 excess = v - angular.cross(earlier(bodies.position[n] - bodies.position[origin] - centre, v, bodies.lag));
         velocity_next[n] -= fraction * excess;
-        deformation += bodies.mass[n] / 2 * excess.squaredNorm();
+        // Half of v^2 before less after. Where places move the excess is not quite at right angles to the rigid motion.
+        taken += bodies.mass[n] * fraction * excess.dot(v - fraction / 2 * excess);
     }
-    return deformation * fraction * (2 - fraction);  // 1 - (1 - fraction)^2
+    return taken;
 }
 
 }  // namespace

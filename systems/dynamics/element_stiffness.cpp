@@ -121,12 +121,16 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
     const LaneMat3<Real8> L = cholesky(Q);
     Matrix9 A{};
     if (material.model == MaterialModel::stable_neo_hookean) {
-        const Real la_model = stable_neo_hookean::model_lambda(material);
+        const auto [mu_model, la_model] = stable_neo_hookean::model_moduli(material);
         const LaneMat3<Real8> cof = cofactor(F);
-        const Real8 J = dot(F.c0, cof.c0);
-        add_identity(Real8{} + mu, L, A);
+        const Real8 J = dot(F.c0, cof.c0), inverse = 1.0 / (inner_product(F, F) + 1.0), shear = mu_model - mu_model * inverse;
+        // An element pressed together resists shear less than at rest, and at F = 0 not at all: a step that bounds nothing would be wrong as
+        // soon as it opens, so that it counts as stiff as at rest.
+        const Real at_rest = 0.75 * mu_model;
+        add_identity(shear > at_rest ? shear : Real8{} + at_rest, L, A);
+        add_dyad(2 * mu_model * (inverse * inverse), multiply(F, L), A);
         add_dyad(Real8{} + la_model, multiply(cof, L), A);
-        add_cofactor_slope(la_model * (J - 1.0) - mu, F, L, A);
+        add_cofactor_slope(la_model * (J - 1.0) - 0.75 * mu_model, F, L, A);
     } else {
         const bool turns = material.model == MaterialModel::corotational;
         if (turns) extract_rotation(F, volume, q);

@@ -37,6 +37,16 @@ inline Real8 square_root(const Real8& x) {
     return root;
 }
 
+/// log(1 + x). Lane by lane, so that a lane has the bits of its element alone: energies are reported, not stepped with.
+inline Real log_of_one_plus(Real x) {
+    return std::log1p(x);
+}
+inline Real8 log_of_one_plus(const Real8& x) {
+    Real8 log;
+    for (int l = 0; l < element_lanes; ++l) log[l] = std::log1p(x[l]);
+    return log;
+}
+
 /// Whether a comparison holds in all lanes.
 inline bool all(bool mask) {
     return mask;
@@ -75,26 +85,26 @@ LaneVec3<T> cross(const LaneVec3<T>& a, const LaneVec3<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// A 3x3 matrix of T by columns.
+/// A 3x3 matrix of T by columns. What the force kernel calls is inlined by order: gcc does not, and nine registers would go through memory.
 template <class T>
 struct LaneMat3 {
     LaneVec3<T> c0, c1, c2;
 };
 
 template <class T>
-LaneMat3<T> operator+(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+[[gnu::always_inline]] inline LaneMat3<T> operator+(const LaneMat3<T>& a, const LaneMat3<T>& b) {
     return {a.c0 + b.c0, a.c1 + b.c1, a.c2 + b.c2};
 }
 template <class T>
-LaneMat3<T> operator-(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+[[gnu::always_inline]] inline LaneMat3<T> operator-(const LaneMat3<T>& a, const LaneMat3<T>& b) {
     return {a.c0 - b.c0, a.c1 - b.c1, a.c2 - b.c2};
 }
 template <class S, class T>
-LaneMat3<T> operator*(const S& s, const LaneMat3<T>& a) {
+[[gnu::always_inline]] inline LaneMat3<T> operator*(const S& s, const LaneMat3<T>& a) {
     return {s * a.c0, s * a.c1, s * a.c2};
 }
 template <class T>
-LaneVec3<T> multiply(const LaneMat3<T>& a, const LaneVec3<T>& b) {
+[[gnu::always_inline]] inline LaneVec3<T> multiply(const LaneMat3<T>& a, const LaneVec3<T>& b) {
     return b.x * a.c0 + b.y * a.c1 + b.z * a.c2;
 }
 template <class T>
@@ -102,12 +112,12 @@ LaneMat3<T> multiply(const LaneMat3<T>& a, const LaneMat3<T>& b) {
     return {multiply(a, b.c0), multiply(a, b.c1), multiply(a, b.c2)};
 }
 template <class T>
-T inner_product(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+[[gnu::always_inline]] inline T inner_product(const LaneMat3<T>& a, const LaneMat3<T>& b) {
     return dot(a.c0, b.c0) + dot(a.c1, b.c1) + dot(a.c2, b.c2);
 }
 /// det(a) a^-T, defined for every a.
 template <class T>
-LaneMat3<T> cofactor(const LaneMat3<T>& a) {
+[[gnu::always_inline]] inline LaneMat3<T> cofactor(const LaneMat3<T>& a) {
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
 
 namespace skerry::stable_neo_hookean {
 
@@ -18,20 +19,21 @@ Mat3 cofactor_of(const Mat3& F) {
 }  // namespace
 
 Real energy_density(const MaterialConstants& material, const Mat3& F) {
-    const Real mu = material.shear_modulus;
-    const Real growth = F.determinant() - 1;
-    return 0.5 * mu * (F.squaredNorm() - 3) - mu * growth + 0.5 * model_lambda(material) * growth * growth;
+    const auto [mu, la] = model_moduli(material);
+    const Real growth = F.determinant() - 1, stretch = F.squaredNorm() - 3;
+    return 0.5 * mu * (stretch - std::log1p(stretch / 4)) - 0.75 * mu * growth + 0.5 * la * growth * growth;
 }
 
 Mat3 stress(const MaterialConstants& material, const Mat3& F) {
-    const Real mu = material.shear_modulus;
-    return mu * F + (model_lambda(material) * (F.determinant() - 1) - mu) * cofactor_of(F);
+    const auto [mu, la] = model_moduli(material);
+    return mu * (1 - 1 / (F.squaredNorm() + 1)) * F + (la * (F.determinant() - 1) - 0.75 * mu) * cofactor_of(F);
 }
 
 Real stiffness_bound(const MaterialConstants& material, const Mat3& F) {
-    const Real mu = material.shear_modulus, la = model_lambda(material);
+    const auto [mu, la] = model_moduli(material);
     // The largest root of e^3 - |F|^2 e - 2 J = 0 is at most 2/sqrt(3) |F|.
-    return mu + la * cofactor_of(F).squaredNorm() + 2 / std::sqrt(Real{3}) * std::abs(la * (F.determinant() - 1) - mu) * F.norm();
+    return 1.125 * mu + la * cofactor_of(F).squaredNorm() +
+           2 / std::sqrt(Real{3}) * std::abs(la * (F.determinant() - 1) - 0.75 * mu) * F.norm();
 }
 
 }  // namespace skerry::stable_neo_hookean

@@ -1,4 +1,5 @@
-// Stable neo-Hookean elasticity (Smith 2018) in the short form without the logarithm: finite for every F, inverted or flat.
+// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018): finite for every F, inverted or flat. Psi = mu/2 (Ic - 3) + la/2 (J - alpha)^2 -
+// mu/2 log(Ic + 1) with Ic = |F|^2 and alpha = 1 + 3 mu / (4 la), less its value at rest.
 #pragma once
 
 #include "components/material_table.h"
@@ -6,43 +7,50 @@
 
 namespace skerry::stable_neo_hookean {
 
-/// The model's lambda that gives the small-strain moduli: la = lame_lambda + shear_modulus, mu = shear_modulus (methods.md 5).
-inline Real model_lambda(const MaterialConstants& material) {
-    return material.lame_lambda + material.shear_modulus;
+/// The model's mu and lambda, Pa, that give the small-strain moduli (Smith 2018, section 3.4; methods.md 5). For every Poisson ratio above
+/// -1 la > mu / 8, so that alpha lies between 1 and 7.
+struct ModelModuli {
+    Real mu, la;
+};
+inline ModelModuli model_moduli(const MaterialConstants& material) {
+    return {4.0 / 3 * material.shear_modulus, material.lame_lambda + 5.0 / 6 * material.shear_modulus};
 }
 
-/// Elastic energy per rest volume, J/m^3: mu/2 (|F|^2 - 3) - mu (J - 1) + la/2 (J - 1)^2; 0 at rest.
+/// Elastic energy per rest volume, J/m^3: mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J - 1) + la/2 (J - 1)^2; 0 at rest.
 Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-/// First Piola-Kirchhoff stress, Pa: mu F + (la (J - 1) - mu) cof F.
+/// First Piola-Kirchhoff stress, Pa: mu (1 - 1 / (Ic + 1)) F + (la (J - 1) - 3/4 mu) cof F.
 Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-/// Bound on the largest eigenvalue of dP/dF, Pa: mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - mu| |F| (methods.md 4.2).
+/// Bound on the largest eigenvalue of dP/dF, Pa: 9/8 mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - 3/4 mu| |F| (methods.md 4.2). The first term
+/// is the most that mu (1 - 1 / (Ic + 1)) + 2 mu Ic / (Ic + 1)^2 comes to, at Ic = 3.
 Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
 /// The same by lanes.
 template <class T>
 T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
+    const auto [mu, la] = model_moduli(material);
     const T growth = dot(F.c0, cross(F.c1, F.c2)) - 1.0;
     const T stretch = inner_product(F, F) - 3.0;
-    return material.shear_modulus * (0.5 * stretch - growth) + (0.5 * model_lambda(material)) * (growth * growth);
+    return mu * (0.5 * (stretch - log_of_one_plus(0.25 * stretch)) - 0.75 * growth) + (0.5 * la) * (growth * growth);
 }
 
 template <class T>
 LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
-    const Real mu = material.shear_modulus;
+    const auto [mu, la] = model_moduli(material);
     const LaneMat3<T> cof = cofactor(F);
-    const T pressure = model_lambda(material) * (dot(F.c0, cof.c0) - 1.0) - mu;
-    return mu * F + pressure * cof;
+    const T shear = mu - mu / (inner_product(F, F) + 1.0);
+    const T pressure = la * (dot(F.c0, cof.c0) - 1.0) - 0.75 * mu;
+    return shear * F + pressure * cof;
 }
 
 template <class T>
 T stiffness_bound(const MaterialConstants& material, const LaneMat3<T>& F) {
     constexpr Real two_over_root_three = 1.1547005383792515;
+    const auto [mu, la] = model_moduli(material);
     const LaneMat3<T> cof = cofactor(F);
-    const T slope = model_lambda(material) * (dot(F.c0, cof.c0) - 1.0) - material.shear_modulus;
-    return material.shear_modulus + model_lambda(material) * inner_product(cof, cof) +
-           two_over_root_three * square_root(slope * slope * inner_product(F, F));
+    const T slope = la * (dot(F.c0, cof.c0) - 1.0) - 0.75 * mu;
+    return 1.125 * mu + la * inner_product(cof, cof) + two_over_root_three * square_root(slope * slope * inner_product(F, F));
 }
 
 }  // namespace skerry::stable_neo_hookean

@@ -42,8 +42,9 @@ World sliver_world(bool multirate, MaterialModel model = MaterialModel::stable_n
 }
 
 /// A stiff ball that falls onto a soft block on a floor: the block's steps could be sixteen times as long.
-World stiff_on_soft(bool multirate, Backend backend = Backend::automatic, int threads = 0) {
+World stiff_on_soft(bool multirate, Backend backend = Backend::automatic, int threads = 0, Real step_safety = 1) {
     Settings settings;
+    settings.step_safety = step_safety;
     settings.multirate = multirate;
     settings.backend = backend;
     settings.threads = threads;
@@ -174,8 +175,19 @@ TEST_CASE("a soft block under a stiff ball is looked at seldom and moves as it s
     const WorldReport report = multirate.report();
     CHECK(report.element_impulses < report.element_steps / 2);
     CHECK(report.max_penetration <= single.report().max_penetration + 1e-5);
-    for (const BodyHandle body : multirate.bodies()) CHECK((multirate.center_of_mass(body) - single.center_of_mass(body)).norm() < 1e-3);
     CHECK(total_energy(multirate) == Approx(total_energy(single)).epsilon(0.05));
+    // Where the ball has bounced to differs by what the two make of the impact; with half the step by a quarter.
+    const auto apart = [](const World& a, const World& b) {
+        Real most = 0;
+        for (const BodyHandle body : a.bodies()) most = std::max(most, (a.center_of_mass(body) - b.center_of_mass(body)).norm());
+        return most;
+    };
+    const Real coarse = apart(multirate, single);
+    CHECK(coarse < 1.5e-3);
+    World fine_multirate = stiff_on_soft(true, Backend::automatic, 0, 0.5), fine_single = stiff_on_soft(false, Backend::automatic, 0, 0.5);
+    REQUIRE(fine_multirate.advance(seconds).ok());
+    REQUIRE(fine_single.advance(seconds).ok());
+    CHECK(apart(fine_multirate, fine_single) < std::min(0.4 * coarse, 5e-4));
 }
 
 TEST_CASE("multirate steps have the same bits for 1, 2 and 4 workers", "[scene][determinism]") {

@@ -1,5 +1,6 @@
 #include "systems/material/material_law.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
@@ -151,6 +152,90 @@ TEST_CASE("at rest the bound is the stiffest small-strain modulus", "[unit]") {
     for (MaterialModel model : {MaterialModel::linear, MaterialModel::corotational}) {
         const MaterialConstants material = rubber(model);
         CHECK(stiffness_bound(material, Mat3::Identity()) == Approx(2 * material.shear_modulus + 3 * material.lame_lambda));
+    }
+}
+
+TEST_CASE("stable neo-Hookean: at rest no stress, and Hooke's law for small strains, for every Poisson ratio", "[unit]") {
+    std::mt19937_64 random(4);
+    for (Real nu : {-0.999, -0.9, -0.5, -0.1, 0.0, 0.25, 0.4, 0.49, 0.4999}) {
+        const MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1, nu, 1);
+        const Real mu = material.shear_modulus, la = material.lame_lambda;
+        INFO("nu " << nu);
+        CHECK(stress(material, Mat3::Identity()).norm() <= 1e-15 * mu);
+        CHECK(energy_density(material, Mat3::Identity()) == 0);
+        for (int trial = 0; trial < 20; ++trial) {
+            const Mat3 d = random_gradient(random, 1);
+            constexpr Real step = 1e-5;
+            const Mat3 slope = (stress(material, Mat3::Identity() + step * d) - stress(material, Mat3::Identity() - step * d)) / (2 * step);
+            const Mat3 expected = la * d.trace() * Mat3::Identity() + mu * (d + d.transpose());
+            CHECK((slope - expected).norm() <= 1e-8 * (mu + std::abs(la)));  // the differences: step^2 times the third derivative
+        }
+    }
+}
+
+TEST_CASE("stable neo-Hookean: energy and stress turn with the body, whatever the shape", "[unit]") {
+    std::mt19937_64 random(5);
+    const MaterialConstants material = rubber(MaterialModel::stable_neo_hookean);
+    for (int trial = 0; trial < 100; ++trial) {
+        const Mat3 F = random_gradient(random, trial % 3);
+        const Mat3 Q = Eigen::AngleAxis<Real>(0.1 * trial, test::random_vector(random).normalized()).toRotationMatrix();
+        const Real scale = 1e-14 * material.lame_lambda * std::pow(1 + F.norm(), 6);
+        CHECK(std::abs(energy_density(material, Q * F) - energy_density(material, F)) <= scale);
+        CHECK((stress(material, Q * F) - Q * stress(material, F)).norm() <= scale);
+        CHECK((stress(material, F * Q) - stress(material, F) * Q).norm() <= scale);  // isotropic, too
+    }
+}
+
+TEST_CASE("stable neo-Hookean: what is pressed together on all sides is pushed apart", "[unit]") {
+    // Without the logarithm F = 0 is a minimum. Below nu = -0.85, where a material resists shear much more than pressure, the law as published
+    // has a second minimum at a half of the length.
+    for (Real nu : {-0.84, -0.5, 0.0, 0.3, 0.4, 0.49, 0.4999}) {
+        const MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1, nu, 1);
+        Real energy = energy_density(material, Mat3::Zero());
+        for (Real s = 1e-3; s < 0.999; s += 1e-3) {
+            INFO("nu " << nu << " s " << s);
+            REQUIRE(stress(material, s * Mat3::Identity()).trace() < 0);
+            const Real next = energy_density(material, s * Mat3::Identity());
+            REQUIRE(next < energy);
+            energy = next;
+        }
+        CHECK(stress(material, Mat3::Zero()) == Mat3::Zero());
+        // Pressed to a line of any length: the two sides that are nearly nothing are pushed apart.
+        for (Real length : {0.01, 0.3, 1.0, 3.0, 100.0}) {
+            const Mat3 P = stress(material, Vec3(length, 1e-6, 1e-6).asDiagonal());
+            CHECK(P(1, 1) < 0);
+            CHECK(P(2, 2) < 0);
+        }
+        // Flat: pushed apart, from either side towards the right one.
+        for (Real thickness : {0.01, 0.0, -0.01, -0.5, -1.0}) CHECK(stress(material, Vec3(1, 1, thickness).asDiagonal())(2, 2) < 0);
+    }
+}
+
+TEST_CASE("stable neo-Hookean: no eigenvalue of the dense Hessian is above the bound", "[unit]") {
+    std::mt19937_64 random(6);
+    const std::array<Vec3, 10> stretches{Vec3(1, 1, 1), Vec3(3, 3, 3),    Vec3(5, 0.5, 0.5),    Vec3(0.5, 0.5, 0.5), Vec3(0.1, 0.1, 0.1),
+                                         Vec3(0, 0, 0), Vec3(1, 1, 0.05), Vec3(1.3, 0.9, -0.6), Vec3(-1, -1, -1),    Vec3(2, -0.1, 0.1)};
+    for (Real nu : {-0.9, -0.5, 0.0, 0.3, 0.49}) {
+        const MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1, nu, 1);
+        for (const Vec3& stretch : stretches)
+            for (int trial = 0; trial < 10; ++trial) {
+                const Mat3 F = Mat3(stretch.asDiagonal()) + 0.05 * trial * (random_gradient(random, 1) - Mat3::Identity());
+                Eigen::Matrix<Real, 9, 9> H;
+                constexpr Real step = 1e-5;
+                for (int i = 0; i < 9; ++i) {
+                    Mat3 up = F, down = F;
+                    up.data()[i] += step;
+                    down.data()[i] -= step;
+                    const Mat3 column = (stress(material, up) - stress(material, down)) / (2 * step);
+                    H.col(i) = Eigen::Map<const Eigen::Matrix<Real, 9, 1>>(column.data());
+                }
+                const Real bound = stiffness_bound(material, F);
+                INFO("nu " << nu << " stretch " << stretch.transpose() << " trial " << trial);
+                CHECK((H - H.transpose()).norm() <= 1e-7 * bound);  // a stress with an energy
+                const Real top = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, 9, 9>>(0.5 * (H + H.transpose())).eigenvalues()[8];
+                CHECK(top <= bound * (1 + 1e-7));
+                CHECK(bound > 0);  // a weight of the shares of mass: not nothing, however soft
+            }
     }
 }
 
