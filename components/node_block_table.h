@@ -24,7 +24,7 @@ struct NodeBlockTable {
     Column<Index> end;               // one past the last node
     Column<Index> body;              // row of BodyTable
     Column<Real> max_speed_squared;  // m^2/s^2, of velocity_next + push_out, by check_state; not a number if any node's is not finite
-    Column<Real> drift_squared;      // m^2, by measure_drift
+    Column<Real> drift_squared;      // m^2, by advance_positions
     Column<NodeBlockSums> sums;      // by damp_velocity
 
     void for_each_column(auto&& visit) {

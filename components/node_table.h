@@ -13,7 +13,7 @@ struct NodeTable {
     Column<Vec3> velocity;       // m/s
     Column<Vec3> velocity_next;  // m/s, written by predict_velocity, corrected by solve_regions
     Column<Vec3> push_out;       // m/s, split impulse: moves the position of this step only; zero unless a contact is pressed in
-    Column<Vec3> force;          // N, elastic and external, overwritten by gather_node_forces
+    Column<Vec3> force;          // N, elastic and external, on nodes without freedom; written by predict_velocity
     Column<Vec3> load;           // N, set by the user, kept until changed
     Column<Vec3> rest_position;  // m, as added, in the frame of the mesh
     Column<Vec3> drift_origin;   // m, where the node was when the drift of its body was last zero

@@ -41,6 +41,11 @@ struct ElementSchedule {
         if (!body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[block])]) return 0;
         return level.empty() ? 1 : due.duration[std::size_t{level[block]} + body_level[static_cast<std::size_t>(body[block])]];
     }
+    /// Whether nothing in begin .. end - 1 is due, where two looks can tell: blocks of a body are sorted by level.
+    bool none_due(std::size_t begin, std::size_t end) const {
+        if (level.empty() || level[begin] != level[end - 1] || body[begin] != body[end - 1]) return false;
+        return duration(begin) == 0;
+    }
 };
 
 }  // namespace skerry

@@ -66,7 +66,7 @@ nlohmann::json print_scene(const std::string& name, const std::map<int, std::vec
     const double steps = static_cast<double>(report.steps), elements = static_cast<double>(report.elements);
     const double contacts = report.mean_contacts * steps;
     const auto per_tet = [&](const Run& r) {
-        return 1e9 * stage_seconds(r.report, {"dynamics/compute_element_forces", "dynamics/gather_node_forces"}) / (steps * elements);
+        return 1e9 * stage_seconds(r.report, {"dynamics/compute_element_forces", "dynamics/predict_velocity"}) / (steps * elements);
     };
     const auto per_contact = [&](const Run& r) {
         return contacts > 0 ? 1e9 * stage_seconds(r.report, {"collision/", "contact/", "solver/"}) / contacts : 0.0;

@@ -7,7 +7,6 @@
 #include "systems/contact/match_warm_start.h"
 #include "systems/dynamics/advance_positions.h"
 #include "systems/dynamics/damp_velocity.h"
-#include "systems/dynamics/gather_node_forces.h"
 #include "systems/dynamics/measure_drift.h"
 #include "systems/dynamics/measure_work.h"
 #include "systems/dynamics/move_colliders.h"
@@ -60,13 +59,15 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             bundle([&w] { return w.element_inputs(); },
                    reads(e.node, e.inverse_rest, e.volume, e.material, w.materials, e.level, e.body, e.viscous_time, b.level, b.asleep)),
             read(n.position), read(n.velocity), read(e.rotation), write(e.rotation_next), write(e.force));
-    g.stage(
-        "dynamics/gather_node_forces", gather_node_forces, read(w.corners),
-        bundle([&w, &n, &b, &e, &k] { return DueCorners{k.begin, k.end, k.body, b.due, n.levels, e.level, w.resting_nodes().body_asleep}; },
-               reads(k.begin, k.end, k.body, b.due, n.levels, e.level, b.asleep)),
-        read(e.force), read(n.mass), value(w.step.gravity), read(n.load), write(n.force));
-    g.stage("dynamics/predict_velocity", predict_velocity, read(n.force), read(n.inverse_mass), read(n.velocity), value(w.step.h),
-            bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), write(n.velocity_next));
+    g.stage("dynamics/predict_velocity", predict_velocity,
+            bundle(
+                [&w, &n, &b, &e, &k] {
+                    return KickInputs{k.begin, k.end,          k.body,         w.corners.view(), e.force,        {b.due, n.levels, e.level},
+                                      n.mass,  n.inverse_mass, w.step.gravity, w.loads(),        b.pinned_count, w.resting_bodies()};
+                },
+                reads(k.begin, k.end, k.body, w.corners, e.force, b.due, n.levels, e.level, n.mass, n.inverse_mass, n.load, b.pinned_count,
+                      b.asleep)),
+            read(n.velocity), value(w.step.h), write(n.force), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", damp_velocity,
             bundle(
                 [&w, &n, &b, &k] {
@@ -150,30 +151,28 @@ void list_join(WorldState& w, TaskGraph& g) {
     BodyTable& b = w.bodies;
     ElementBlockTable& e = w.elements;
     NodeBlockTable& k = w.node_blocks;
-    g.stage_with_result(
-        "dynamics/check_state", w.step.verdict, check_state,
-        bundle(
-            [&n, &b, &k, &e] {
-                return CheckInputs{k.begin,    k.end,           k.body,     b.node_blocks, b.min_altitude,
-                                   n.velocity, n.velocity_next, n.push_out, e.node,        b.blocks};
-            },
-            reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out, e.node, b.blocks)),
-        value(w.step.h), value(w.step.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
-    const auto possible = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
-    g.stage_with_result("dynamics/find_inversions", w.step.inversions, find_inversions,
+    g.stage_with_result("dynamics/check_state", w.step.verdict, check_state,
                         bundle(
-                            [&n, &b, &e] {
-                                return InversionInputs{e.node,  e.volume,   b.blocks,        b.max_speed, b.travel,
-                                                       b.drift, n.position, n.velocity_next, n.push_out};
+                            [&w, &n, &b, &k, &e] {
+                                return CheckInputs{k.begin,    k.end,           k.body,     b.node_blocks, b.min_altitude,
+                                                   n.velocity, n.velocity_next, w.pushes(), e.node,        b.blocks};
                             },
-                            reads(e.node, e.volume, b.blocks, b.max_speed, b.travel, b.drift, n.position, n.velocity_next, n.push_out)),
-                        value(w.step.h), make(w.inversion_parts), write(b.sound_until), possible);
+                            reads(k.begin, k.end, k.body, b.node_blocks, b.min_altitude, n.velocity, n.velocity_next, n.push_out,
+                                  w.solver_memory, e.node, b.blocks)),
+                        value(w.step.h), value(w.step.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
+    const auto possible = only_if([&w] { return w.step.verdict.fault == StepFault::none; }, reads(w.step.verdict));
     g.stage_with_result(
-        "dynamics/measure_work", w.step.external, measure_work,
-        bundle([&w, &n] { return w.loaded ? std::span<const Vec3>(n.load.span()) : std::span<const Vec3>(); }, reads(n.load)),
-        read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h),
-        bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), make(w.work_parts),
-        only_if([&w] { return w.loaded || w.attachments.node.size() > 0; }, reads(w.attachments)));
+        "dynamics/find_inversions", w.step.inversions, find_inversions,
+        bundle(
+            [&w, &n, &b, &e] {
+                return InversionInputs{e.node, e.volume, b.blocks, b.max_speed, b.travel, b.drift, n.position, n.velocity_next, w.pushes()};
+            },
+            reads(e.node, e.volume, b.blocks, b.max_speed, b.travel, b.drift, n.position, n.velocity_next, n.push_out, w.solver_memory)),
+        value(w.step.h), make(w.inversion_parts), write(b.sound_until), possible);
+    g.stage_with_result("dynamics/measure_work", w.step.external, measure_work, bundle([&w] { return w.loads(); }, reads(n.load)),
+                        read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h),
+                        bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), make(w.work_parts),
+                        only_if([&w] { return w.loaded || w.attachments.node.size() > 0; }, reads(w.attachments)));
     g.stage_with_result("collision/find_crossings", w.step.crossings, find_crossings, collision_inputs(w), value(w.step.collision),
                         value(w.step.h), read(n.velocity_next), read(n.push_out), make(w.pairs), make(w.crossings), possible);
     const auto trusted = only_if([&w] { return w.step.taken(); }, reads(w.step.verdict, w.step.crossings, w.step.inversions));
@@ -182,17 +181,27 @@ void list_join(WorldState& w, TaskGraph& g) {
     const auto touches = bundle([&w] { return w.touches(); }, reads(c.first_body, c.second_body, c.state, c.gap, c.surface_velocity));
     g.stage("dynamics/wake_bodies", wake_bodies, touches, read(w.pressed), read(w.attachments.body), read(w.attachments.motion),
             write(b.asleep), write(b.calm), sleepy);
-    g.stage("dynamics/advance_positions", advance_positions, read(n.velocity_next), value(w.step.h), value(w.settings.integrator),
-            bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), write(n.push_out), write(n.position), write(n.velocity),
+    g.stage("dynamics/advance_positions", advance_positions,
+            bundle([&w, &n, &k] { return AdvanceInputs{k.begin, k.end, k.body, w.resting_bodies(), n.velocity_next, n.drift_origin}; },
+                   reads(k.begin, k.end, k.body, b.asleep, n.velocity_next, n.drift_origin)),
+            value(w.step.h), value(w.settings.integrator),
+            bundle(
+                [&w, &n, &k] {
+                    return AdvanceOutputs{w.pushes(), n.position, n.velocity, k.drift_squared};
+                },
+                reads(w.solver_memory), writes(n.push_out, n.position, n.velocity, k.drift_squared)),
             trusted);
     g.stage("dynamics/measure_drift", measure_drift,
-            bundle([&n, &b, &k] { return DriftInputs{k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position}; },
-                   reads(k.begin, k.end, b.node_blocks, b.nodes, b.mean_edge, n.position)),
             bundle(
-                [&w, &n, &b, &k] {
-                    return DriftOutputs{n.drift_origin, k.drift_squared, w.search.memory.rebase, b.drift, b.travel};
+                [&n, &b, &k] {
+                    return DriftInputs{k.drift_squared, b.node_blocks, b.nodes, b.mean_edge, n.position};
                 },
-                writes(n.drift_origin, k.drift_squared, w.search.memory.rebase, b.drift, b.travel)),
+                reads(k.drift_squared, b.node_blocks, b.nodes, b.mean_edge, n.position)),
+            bundle(
+                [&w, &n, &b] {
+                    return DriftOutputs{n.drift_origin, w.search.memory.rebase, b.drift, b.travel};
+                },
+                writes(n.drift_origin, w.search.memory.rebase, b.drift, b.travel)),
             trusted);
     g.stage_with_result("dynamics/rest_bodies", w.step.rest, rest_bodies, touches,
                         bundle(

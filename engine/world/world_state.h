@@ -187,6 +187,11 @@ struct WorldState {
     ElementInputs element_inputs() const;
     /// Nothing while no body rests: then the stages do not ask node by node.
     RestingNodes resting_nodes() const;
+    std::span<const std::uint8_t> resting_bodies() const { return resting_nodes().body_asleep; }
+    /// Nothing while no node has a load.
+    std::span<const Vec3> loads() const { return loaded ? nodes.load.span() : std::span<const Vec3>(); }
+    /// Nothing in a step whose contacts push nothing out.
+    std::span<Vec3> pushes() { return solver_memory.pushed() ? nodes.push_out.span() : std::span<Vec3>(); }
     TouchInputs touches() const;
     /// Ends the rest of one body, or of all.
     void wake(std::size_t body);

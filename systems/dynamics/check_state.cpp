@@ -6,6 +6,7 @@
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
+#include "systems/dynamics/largest_length.h"
 
 namespace skerry {
 
@@ -15,19 +16,19 @@ constexpr std::size_t node_blocks_per_job = 8;
 constexpr std::size_t element_blocks_per_job = 256;
 
 Vec3 motion(const CheckInputs& state, std::size_t node) {
-    return state.velocity_next[node] + state.push_out[node];
+    return state.push_out.empty() ? state.velocity_next[node] : Vec3(state.velocity_next[node] + state.push_out[node]);
 }
 
 /// Not a number when any node's velocity is not finite, or so large that its square is not.
 Real max_speed_squared_of_block(const CheckInputs& state, std::size_t block) {
-    Real highest = 0;
-    bool finite = true;
-    for (std::size_t n = static_cast<std::size_t>(state.block_begin[block]); n < static_cast<std::size_t>(state.block_end[block]); ++n) {
-        const Real speed_squared = motion(state, n).squaredNorm();
-        finite &= speed_squared <= std::numeric_limits<Real>::max();  // false for a number that is none, too
-        highest = speed_squared > highest ? speed_squared : highest;
-    }
-    return finite ? highest : std::numeric_limits<Real>::quiet_NaN();
+    const auto begin = static_cast<std::size_t>(state.block_begin[block]);
+    const std::size_t count = static_cast<std::size_t>(state.block_end[block]) - begin;
+    if (count == 0) return 0;
+    const Real* v = state.velocity_next[begin].data();
+    const Real* p = state.push_out.empty() ? nullptr : state.push_out[begin].data();
+    const Real highest = p == nullptr ? largest_squared_length(count, [&](std::size_t i) { return v[i]; })
+                                      : largest_squared_length(count, [&](std::size_t i) { return v[i] + p[i]; });
+    return highest <= std::numeric_limits<Real>::max() ? highest : std::numeric_limits<Real>::quiet_NaN();
 }
 
 Index first_not_finite(const CheckInputs& state, Range blocks) {

@@ -27,7 +27,7 @@ struct CheckInputs {
     std::span<const Real> body_min_altitude;  // m; 0 for a kinematic body: not judged by speed
     std::span<const Vec3> velocity;           // m/s, at the start of the step
     std::span<const Vec3> velocity_next;
-    std::span<const Vec3> push_out;
+    std::span<const Vec3> push_out;                   // m/s; empty: no contact pushes
     std::span<const ElementNodes> element_node = {};  // ElementBlockTable
     std::span<const Range> body_blocks = {};          // BodyTable; empty: bodies are judged as one element each
 };

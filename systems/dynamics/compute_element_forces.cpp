@@ -37,6 +37,7 @@ void compute_element_forces(Executor& executor, const ElementInputs& elements, s
                             std::span<ElementRotation> rotation_next, std::span<ElementForces> force) {
     SKERRY_CHECK(force.size() == elements.node.size() && rotation.size() == force.size() && rotation_next.size() == force.size());
     parallel_for(executor, elements.node.size(), blocks_per_job, [&](std::size_t begin, std::size_t end) {
+        if (elements.schedule.none_due(begin, end)) return;
         for (std::size_t b = begin; b < end; ++b) {
             const Real duration = elements.schedule.duration(b);
             if (duration == 0) continue;

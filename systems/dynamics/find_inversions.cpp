@@ -57,7 +57,9 @@ void find_turned(const InversionInputs& inputs, Real h, std::size_t begin, std::
         const auto& node = inputs.element_node[b];
         const LaneMat3<Real8> now = edges(node, inputs.position);
         const Real8 before = determinant(now);
-        const Real8 after = determinant(now + h * (edges(node, inputs.velocity_next) + edges(node, inputs.push_out)));
+        LaneMat3<Real8> motion = edges(node, inputs.velocity_next);
+        if (!inputs.push_out.empty()) motion = motion + edges(node, inputs.push_out);
+        const Real8 after = determinant(now + h * motion);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             if (!(inputs.element_volume[b][l] > 0) || !(before[l] > 0) || after[l] > 0) continue;
             if (part.count++ == 0) part.element = static_cast<Index>(b * element_lanes + l);

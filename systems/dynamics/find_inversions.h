@@ -14,8 +14,8 @@ struct InversionInputs {
     std::span<const ElementLane> element_volume;
     std::span<const Range> body_blocks;  // BodyTable
     std::span<const Real> body_max_speed, body_travel, body_drift;
-    std::span<const Vec3> position;  // m, at the start of the step
-    std::span<const Vec3> velocity_next, push_out;
+    std::span<const Vec3> position;                 // m, at the start of the step
+    std::span<const Vec3> velocity_next, push_out;  // push_out: empty: no contact pushes
 };
 
 /// Elements whose volume is positive at the start of the step and not at its end.

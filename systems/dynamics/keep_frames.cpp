@@ -12,8 +12,9 @@ void keep_frames(Executor& executor, const ElementInputs& elements, std::span<co
     SKERRY_CHECK(rotation.size() == elements.node.size() && rotation_next.size() == rotation.size());
     const auto turns = [](const MaterialConstants& material) { return material.model == MaterialModel::corotational; };
     if (std::none_of(elements.constants.begin(), elements.constants.end(), turns)) return;
-    constexpr std::size_t blocks_per_job = 512;
+    constexpr std::size_t blocks_per_job = 256;
     parallel_for(executor, rotation.size(), blocks_per_job, [&](std::size_t begin, std::size_t end) {
+        if (elements.schedule.none_due(begin, end)) return;
         for (std::size_t b = begin; b < end; ++b)
             if (elements.schedule.duration(b) != 0 && turns(elements.constants[static_cast<std::size_t>(elements.material[b])]))
                 rotation[b] = rotation_next[b];

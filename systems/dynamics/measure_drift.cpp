@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "jobs/parallel_for.h"
+#include "systems/dynamics/largest_length.h"
 
 namespace skerry {
 
 namespace {
 
-constexpr std::size_t node_blocks_per_job = 8;
 constexpr std::size_t bodies_per_job = 64;
 
 // Fraction of the mean edge. A pair loses up to four times this of its skin (a quarter of the edge) when it is searched, and what trembles by
@@ -18,20 +18,18 @@ constexpr Real longest_drift = 0.0375;
 
 }  // namespace
 
+Real block_drift_squared(std::span<const Vec3> position, std::span<const Vec3> origin) {
+    if (position.empty()) return 0;
+    const Real *x = position.data()->data(), *o = origin.data()->data();
+    return largest_squared_length(position.size(), [&](std::size_t i) { return x[i] - o[i]; });
+}
+
 void measure_drift(Executor& executor, const DriftInputs& bodies, const DriftOutputs& out) {
-    parallel_for(executor, bodies.block_begin.size(), node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-            Real squared = 0;
-            for (Index n = bodies.block_begin[b]; n < bodies.block_end[b]; ++n)
-                squared = std::max(squared, (bodies.position[n] - out.origin[n]).squaredNorm());
-            out.block_drift_squared[b] = squared;
-        }
-    });
     parallel_for(executor, out.drift.size(), bodies_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             Real squared = 0;
             for (Index k = bodies.body_node_blocks[b].begin; k < bodies.body_node_blocks[b].end; ++k)
-                squared = std::max(squared, out.block_drift_squared[k]);
+                squared = std::max(squared, bodies.block_drift_squared[k]);
             const Real drift = std::sqrt(squared);
             out.travel[b] += drift - out.drift[b];
             out.drift[b] = drift;

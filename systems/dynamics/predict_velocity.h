@@ -1,16 +1,39 @@
-// The kick of symplectic Euler.
+// The kick of symplectic Euler: sums forces at the nodes and adds what they do to velocities.
 #pragma once
 
 #include <span>
 
-#include "components/resting_nodes.h"
+#include "components/element_table.h"
+#include "components/node_block_table.h"
+#include "components/ragged.h"
+#include "components/step_levels.h"
 #include "jobs/executor.h"
 
 namespace skerry {
 
-/// velocity_next = velocity + h force inverse_mass. Nodes without freedom (inverse mass 0) keep their velocity, and
-/// those at rest are passed over. Parallel over nodes.
-void predict_velocity(Executor& executor, std::span<const Vec3> force, std::span<const Real> inverse_mass, std::span<const Vec3> velocity,
-                      Real h, const RestingNodes& resting, std::span<Vec3> velocity_next);
+/// Which element forces count in this step. With empty spans all do.
+struct DueCorners {
+    std::span<const LevelMask> body_due = {};     // BodyTable
+    std::span<const LevelMask> node_levels = {};  // NodeTable
+    std::span<const std::uint8_t> level = {};     // ElementBlockTable
+};
+
+struct KickInputs {
+    std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
+    RaggedView<Index> corners;                                  // by node: 4 * element + corner
+    std::span<const ElementForces> element_force;
+    DueCorners due;
+    std::span<const Real> mass, inverse_mass;
+    Vec3 gravity = Vec3::Zero();
+    std::span<const Vec3> load = {};                 // N; empty: none
+    std::span<const Index> body_pinned_count = {};   // BodyTable; empty: any node may be without freedom
+    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are passed over; empty: none
+};
+
+/// velocity_next = velocity + h F inverse_mass, with F = sum of the element forces of the corners around the node that are due, in a fixed order, + mass
+/// gravity + load. Nodes without freedom (inverse mass 0) keep their velocity; of them alone F is written to `force`: what holds them is its
+/// opposite. One pass, since F of all nodes, kept and read again, took as long as the kick itself. Parallel over node blocks.
+void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real h, std::span<Vec3> force,
+                      std::span<Vec3> velocity_next);
 
 }  // namespace skerry

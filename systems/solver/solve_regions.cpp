@@ -79,6 +79,10 @@ void solve_tasks(Executor& executor, const RegionStage& stage, RegionTable& regi
 SolverMemory::SolverMemory() : data_(std::make_unique<Data>()) {}
 SolverMemory::~SolverMemory() = default;
 
+bool SolverMemory::pushed() const {
+    return data_->pushed.load(std::memory_order_relaxed);
+}
+
 bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h, SolverMemory& memory,
                    RegionTable& regions, const RegionOutputs& out) {
     SKERRY_CHECK(h > 0 && settings.max_iterations >= 1);

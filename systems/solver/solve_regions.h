@@ -57,6 +57,8 @@ public:
     ~SolverMemory();
     struct Data;
     Data& data() { return *data_; }
+    /// Some region of the last solve wrote push_out.
+    bool pushed() const;
 
 private:
     std::unique_ptr<Data> data_;

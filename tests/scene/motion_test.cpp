@@ -113,3 +113,21 @@ TEST_CASE("an element that is pressed inside out is reported with its body, and 
     CHECK(world.report().inverted == 1);
     CHECK(world.advance(0.1).inverted == 0);  // it stays so: that is old news
 }
+
+TEST_CASE("a push out of a step that was refused is not made in a later one", "[scene]") {
+    World world(Settings{.gravity = Vec3::Zero()});
+    const auto material = world.add_material({.young_modulus = 1e5});
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    const auto body = world.add_body(mesh, {.material = material});
+    const auto other = world.add_body(mesh, {.material = material, .position = {0.01, 0.005, 0.095}});  // overlaps
+    std::vector<Vec3> velocity(mesh.nodes.size(), Vec3::Zero());
+    velocity[0] = {0, 0, -1e9};  // faster than any step stands
+    world.set_velocities(other, velocity);
+    REQUIRE_FALSE(world.advance(1e-3).ok());
+    world.remove(other);
+    const std::vector<Vec3> before(world.positions(body).begin(), world.positions(body).end());
+    REQUIRE(world.advance(1e-3).ok());
+    Real moved = 0;
+    for (std::size_t n = 0; n < before.size(); ++n) moved = std::max(moved, (world.positions(body)[n] - before[n]).norm());
+    CHECK(moved < 1e-14);
+}

@@ -8,9 +8,9 @@
 #include "components/node_table.h"
 #include "systems/dynamics/build_elements.h"
 #include "systems/dynamics/compute_element_forces.h"
-#include "systems/dynamics/gather_node_forces.h"
 #include "systems/material/material_law.h"
 #include "tests/support/jittered_box.h"
+#include "tests/support/node_forces.h"
 
 namespace skerry::test {
 
@@ -41,12 +41,10 @@ struct ElasticBody {
     void compute_elements(Executor& executor) {
         compute_element_forces(executor, inputs(), position, velocity, elements.rotation, elements.rotation_next, elements.force);
     }
-    void gather(Executor& executor, const Vec3& gravity = Vec3::Zero()) {
-        gather_node_forces(executor, corners.view(), {}, elements.force, mass, gravity, load, force);
-    }
+    void gather(const Vec3& gravity = Vec3::Zero()) { gather_node_forces(corners.view(), elements.force, mass, gravity, load, force); }
     void compute_forces(Executor& executor, const Vec3& gravity = Vec3::Zero()) {
         compute_elements(executor);
-        gather(executor, gravity);
+        gather(gravity);
         swap(elements.rotation, elements.rotation_next);
     }
 

@@ -99,7 +99,7 @@ TEST_CASE("a node sums its corners, its weight and its load", "[unit]") {
     body.load[7] = {1, 2, 3};
     const Vec3 gravity(0, 0, -10);
     body.compute_elements(*executor);
-    body.gather(*executor, gravity);
+    body.gather(gravity);
     for (std::size_t n = 0; n < body.position.size(); ++n) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t e = 0; e < 48; ++e)
@@ -107,19 +107,6 @@ TEST_CASE("a node sums its corners, its weight and its load", "[unit]") {
                 if (body.elements.node[e / 8][a][e % 8] == static_cast<Index>(n)) sum += body.elements.force[e / 8][e % 8][a];
         CHECK(body.force[n] == sum + body.mass[n] * gravity + body.load[n]);
     }
-}
-
-TEST_CASE("a node without elements carries its load only", "[unit]") {
-    const auto executor = make_executor(Backend::serial, 1);
-    Ragged<Index> corners;
-    corners.offset.assign(2, 0);
-    const std::vector<Real> mass{2};
-    const std::vector<Vec3> load{Vec3(1, 0, 0)};
-    std::vector<Vec3> force(1);
-    gather_node_forces(*executor, corners.view(), {}, {}, mass, Vec3(0, 0, -1), load, force);
-    CHECK(force[0] == Vec3(1, 0, -2));
-    gather_node_forces(*executor, RaggedView<Index>{}, {}, {}, {}, Vec3::Zero(), {}, {});
-    compute_element_forces(*executor, {}, {}, {}, {}, {}, {});
 }
 
 TEST_CASE("a position that is not a number reaches the nodes of its elements only", "[unit]") {

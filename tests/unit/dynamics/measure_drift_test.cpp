@@ -10,7 +10,6 @@ namespace {
 
 /// One body of some nodes in blocks of its own.
 struct Cloud {
-    std::vector<Index> begin{0, 256}, end{256, 300};
     std::vector<Range> node_blocks{{0, 2}}, nodes{{0, 300}};
     std::vector<Real> mean_edge{1}, squared = std::vector<Real>(2), drift{0}, travel{0};
     std::vector<std::uint8_t> rebase{0};
@@ -18,7 +17,12 @@ struct Cloud {
 
     void measure() {
         const auto executor = make_executor(Backend::serial, 1);
-        measure_drift(*executor, {begin, end, node_blocks, nodes, mean_edge, position}, {origin, squared, rebase, drift, travel});
+        const auto part = [](std::vector<Vec3>& column, std::size_t first, std::size_t count) {
+            return std::span(column).subspan(first, count);
+        };
+        squared = {block_drift_squared(part(position, 0, 256), part(origin, 0, 256)),
+                   block_drift_squared(part(position, 256, 44), part(origin, 256, 44))};
+        measure_drift(*executor, {squared, node_blocks, nodes, mean_edge, position}, {origin, rebase, drift, travel});
     }
 };
 

@@ -173,7 +173,7 @@ TEST_CASE("names cannot end the script that they stand in, and come back as they
     CHECK(run["bodies"][2]["name"] == "\"quotes\" & <b>, \xef\xbf\xbd no UTF-8");
     CHECK(run["report"]["state_hash"] == "0123456789abcdef");
     CHECK(run["rows"]["time"].size() == 6);
-    CHECK(run["report"]["stages"].size() == 10);
+    CHECK(run["report"]["stages"].size() == 9);
 }
 
 TEST_CASE("the same run gives the same page, and numbers that are not finite become null", "[unit][output]") {

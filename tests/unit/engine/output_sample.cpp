@@ -178,8 +178,7 @@ PageSummary OutputSample::summary() const {
             {name, 1e-3 * ms * steps, static_cast<std::uint64_t>(share * steps), static_cast<std::uint64_t>((1 - share) * steps)});
     };
     stage("dynamics/compute_element_forces", 0.81, 1);
-    stage("dynamics/gather_node_forces", 0.13, 1);
-    stage("dynamics/predict_velocity", 0.05, 1);
+    stage("dynamics/predict_velocity", 0.18, 1);
     stage("collision/find_candidates", 0.11, 0.06);
     stage("collision/find_contacts", 0.32, 0.9);
     stage("contact/match_warm_start", 0.04, 0.9);
