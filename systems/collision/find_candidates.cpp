@@ -17,9 +17,6 @@ namespace {
 
 constexpr std::size_t trees_per_block = 4;  // a refit takes microseconds
 
-// Steps whose closing a list allows for beside its skin: a fast pair is searched every other step, then, for a list that is a little longer.
-constexpr Real steps_ahead = 2;
-
 void set_body_fronts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool measure, Column<Real>& front) {
     front.resize(inputs.body.slot.size());
     for (std::size_t b = 0; b < front.size(); ++b)
@@ -94,7 +91,7 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
     pair.datum = pair_datum(inputs, pair.kind, pair.first, pair.second);
-    pair.margin = settings.pair_skin * pair.scale.edge + steps_ahead * closing(inputs, memory, pair, h);
+    pair.margin = settings.pair_skin * pair.scale.edge + closing(inputs, memory, pair, h);
     if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart)

@@ -44,7 +44,7 @@ public:
             const auto [a, b] = waiting_[--waiting_count_];
             if (self_ && a == b)
                 split_with_itself(a);
-            else if (distance_squared(boxes_[a], boxes_[b]) < radius_squared_)
+            else
                 split(a, b);
         }
     }
@@ -58,11 +58,15 @@ private:
         waiting_[waiting_count_++] = {a, b};
     }
 
+    void push_if_near(Index a, Index b) {
+        if (distance_squared(boxes_[a], boxes_[b]) < radius_squared_) push(a, b);
+    }
+
     void split_with_itself(Index a) {
         if (node(a).count > 0) return;  // the features of one triangle share its nodes
         push(a + 1, a + 1);
         push(node(a).right, node(a).right);
-        push(a + 1, node(a).right);
+        push_if_near(a + 1, node(a).right);
     }
 
     /// Opens the tree with more below it.
@@ -71,11 +75,11 @@ private:
         if (leaf_a && leaf_b) {
             compare_triangles(open(a), open(b));
         } else if (leaf_b || (!leaf_a && node(a).skip - a >= node(b).skip - b)) {
-            push(a + 1, b);
-            push(node(a).right, b);
+            push_if_near(a + 1, b);
+            push_if_near(node(a).right, b);
         } else {
-            push(a, b + 1);
-            push(a, node(b).right);
+            push_if_near(a, b + 1);
+            push_if_near(a, node(b).right);
         }
     }
 
