@@ -112,25 +112,44 @@ private:
         }
     }
 
-    void compare_edges(const Leaf& a, const Leaf& b) {
-        const std::uint8_t owned_a = triangle_.owned_edges[a.row], owned_b = triangle_.owned_edges[b.row];
-        if (owned_a == 0 || owned_b == 0) return;
-        const auto &na = triangle_.node[a.row], &nb = triangle_.node[b.row];
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (!(owned_a >> i & 1)) continue;
-            const std::array<Index, 2> ea{na[i], na[(i + 1) % 3]};
-            const Aabb box = edge_box(ea);
-            if (!(distance_squared(box, b.box) < edge_radius_squared_)) continue;
-            for (std::size_t j = 0; j < 3; ++j) {
-                if (!(owned_b >> j & 1)) continue;
-                const std::array<Index, 2> eb{nb[j], nb[(j + 1) % 3]};
-                if (!(distance_squared(box, edge_box(eb)) < edge_radius_squared_)) continue;
-                const Real squared =
-                    closest_points_of_segments(position(ea[0]), position(ea[1]), position(eb[0]), position(eb[1])).distance_squared;
-                if (!(squared < edge_radius_squared_) || (self_ && excluded_at_rest(ea, eb))) continue;
-                add_edges(triangle_.edge[a.row][i], triangle_.edge[b.row][j], squared);
-            }
+    struct NearEdges {
+        std::array<Index, 3> edge;  // place in the triangle
+        std::array<Aabb, 3> box;
+        std::size_t count = 0;
+    };
+
+    /// The edges that a triangle owns and that are near a box.
+    NearEdges edges_near(const Leaf& owner, const Aabb& other) const {
+        NearEdges near;
+        const std::uint8_t owned = triangle_.owned_edges[owner.row];
+        const auto& node = triangle_.node[owner.row];
+        for (Index i = 0; i < 3; ++i) {
+            if (!(owned >> i & 1)) continue;
+            const Aabb box = edge_box({node[static_cast<std::size_t>(i)], node[static_cast<std::size_t>((i + 1) % 3)]});
+            if (!(distance_squared(box, other) < edge_radius_squared_)) continue;
+            near.edge[near.count] = i;
+            near.box[near.count++] = box;
         }
+        return near;
+    }
+
+    void compare_edges(const Leaf& a, const Leaf& b) {
+        const NearEdges of_a = edges_near(a, b.box);
+        if (of_a.count == 0) return;
+        const NearEdges of_b = edges_near(b, a.box);
+        for (std::size_t i = 0; i < of_a.count; ++i)
+            for (std::size_t j = 0; j < of_b.count; ++j)
+                if (distance_squared(of_a.box[i], of_b.box[j]) < edge_radius_squared_)
+                    compare_edge(a.row, static_cast<std::size_t>(of_a.edge[i]), b.row, static_cast<std::size_t>(of_b.edge[j]));
+    }
+
+    void compare_edge(Index a, std::size_t i, Index b, std::size_t j) {
+        const auto &na = triangle_.node[a], &nb = triangle_.node[b];
+        const std::array<Index, 2> ea{na[i], na[(i + 1) % 3]}, eb{nb[j], nb[(j + 1) % 3]};
+        const Real squared =
+            closest_points_of_segments(position(ea[0]), position(ea[1]), position(eb[0]), position(eb[1])).distance_squared;
+        if (!(squared < edge_radius_squared_) || (self_ && excluded_at_rest(ea, eb))) return;
+        add_edges(triangle_.edge[a][i], triangle_.edge[b][j], squared);
     }
 
     void add_edges(Index a, Index b, Real squared) {
