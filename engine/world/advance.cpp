@@ -51,6 +51,7 @@ void blame(const WorldState& world, StepReport& report) {
     if (world.bodies.kind[b] == BodyKind::deformable) report.body = world.body_map.handle_of_slot(world.bodies.slot[b]);
     report.body_name = world.body_records[b].name;
     if (verdict.node != no_index) report.node = verdict.node - world.bodies.nodes[b].begin;
+    if (verdict.element != no_index) report.element = user_element(world, b, verdict.element);
 }
 
 void add_to_report(const WorldState& world, StepReport& report) {

@@ -88,7 +88,8 @@ std::string short_text(Real value) {
 
 std::string StepReport::message() const {
     const std::string who = body_name.empty() ? "a body" : "body '" + body_name + "'";
-    const std::string where = node < 0 ? "" : ", node " + std::to_string(node);
+    const std::string where =
+        (node < 0 ? "" : ", node " + std::to_string(node)) + (element < 0 ? "" : ", element " + std::to_string(element));
     switch (status) {
         case StepStatus::ok:
             return {};
@@ -96,7 +97,7 @@ std::string StepReport::message() const {
             return "the step was not taken: " + who + where +
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
         case StepStatus::too_fast:
-            return "the step was not taken: " + who + where + " would move by " + std::to_string(value) +
+            return "the step was not taken: " + who + where + " would move by " + short_text(value) +
                    " of its smallest element altitude in one step; in a sixty-fourth of the stable step, too; lower its velocities and "
                    "loads, or raise "
                    "max_strain_step";

@@ -52,9 +52,10 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 struct Fastest {
     Real speed_squared = 0;  // m^2/s^2
     Index node = no_index;
+    Index element = no_index;  // row: lane of a block
 
-    void look_at(Real other, Index other_node) {
-        if (other > speed_squared) *this = {other, other_node};
+    void look_at(const Fastest& other) {
+        if (other.speed_squared > speed_squared) *this = other;
     }
 };
 
@@ -65,7 +66,8 @@ Fastest fastest_corner(const CheckInputs& state, std::size_t block) {
         const Vec3 base = motion(state, static_cast<std::size_t>(state.element_node[block][0][l]));
         for (std::size_t a = 1; a < 4; ++a) {
             const Index node = state.element_node[block][a][l];
-            fastest.look_at((motion(state, static_cast<std::size_t>(node)) - base).squaredNorm(), node);
+            fastest.look_at({(motion(state, static_cast<std::size_t>(node)) - base).squaredNorm(), node,
+                             static_cast<Index>(block * element_lanes + l)});
         }
     }
     return fastest;
@@ -79,7 +81,7 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks) {
     for (std::size_t n = begin; n < end; ++n) sum += motion(state, n);
     const Vec3 mean = sum / static_cast<Real>(end - begin);
     Fastest fastest;
-    for (std::size_t n = begin; n < end; ++n) fastest.look_at((motion(state, n) - mean).squaredNorm(), static_cast<Index>(n));
+    for (std::size_t n = begin; n < end; ++n) fastest.look_at({(motion(state, n) - mean).squaredNorm(), static_cast<Index>(n), no_index});
     return fastest;
 }
 
@@ -105,10 +107,7 @@ Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t 
         if (!any_exceeds(executor, count, element_blocks_per_job,
                          [&](std::size_t row) { return fastest_corner(state, begin + row).speed_squared > limit_squared; }))
             return {};
-        for (std::size_t row = 0; row < count; ++row) {
-            const Fastest of_block = fastest_corner(state, begin + row);
-            fastest.look_at(of_block.speed_squared, of_block.node);
-        }
+        for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_corner(state, begin + row));
     }
     return fastest.speed_squared > limit_squared ? fastest : Fastest{};
 }
@@ -139,7 +138,8 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         } else if (altitude > 0 && blocks.size() > 0) {
             const Fastest fastest = too_fast_node(executor, state, body, body_max_speed[body], max_strain_step * altitude / h);
             if (fastest.node != no_index)
-                verdict = {StepFault::too_fast, static_cast<Index>(body), fastest.node, std::sqrt(fastest.speed_squared) * h / altitude};
+                verdict = {StepFault::too_fast, static_cast<Index>(body), fastest.node, std::sqrt(fastest.speed_squared) * h / altitude,
+                           fastest.element};
         }
     }
     return verdict;

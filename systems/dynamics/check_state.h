@@ -15,10 +15,11 @@ enum class StepFault { none, not_finite, too_fast, too_far, too_stiff };
 /// Why a step must not be committed.
 struct StepVerdict {
     StepFault fault = StepFault::none;
-    Index body = no_index;  // row of BodyTable
-    Index node = no_index;  // row of NodeTable, when one node is to blame
-    Real value = 0;         // not_finite: -; too_fast: displacement of this step over the smallest element altitude;
-                            // too_far: distance between neighbouring numbers there, over the mean edge
+    Index body = no_index;     // row of BodyTable
+    Index node = no_index;     // row of NodeTable, when one node is to blame
+    Real value = 0;            // not_finite: -; too_fast: displacement of this step over the smallest element altitude;
+                               // too_far: distance between neighbouring numbers there, over the mean edge
+    Index element = no_index;  // row: lane of a block, when one element is to blame
 };
 
 struct CheckInputs {

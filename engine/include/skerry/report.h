@@ -60,6 +60,7 @@ public:
     StepStatus status = StepStatus::ok;
     BodyHandle body;     // to blame, when not ok
     Index node = -1;     // local, when one node is to blame
+    Index element = -1;  // local, when one element is: the node is a corner of it
     Real value = 0;      // too_fast: displacement over smallest altitude; too_far: rounding of positions over mean edge;
                          // too_stiff: stable step, s
     Real step_size = 0;  // s, of the steps taken
