@@ -6,6 +6,7 @@ ours for small strains. Its contacts are springs by design: their time constant 
 import argparse
 import json
 import math
+import os
 import time
 
 import mujoco
@@ -117,6 +118,8 @@ def main():
     options = parser.parse_args()
     with open(options.scene) as file:
         scene = json.load(file)
+    options.result = os.path.abspath(options.result)
+    os.chdir(os.path.dirname(options.result))  # MuJoCo writes a log where it runs
     runs = [run(scene, options)]
     while len(runs) < options.repeat and runs[0]["finished"]:
         runs.append(run(scene, options))

@@ -99,7 +99,8 @@ LoadedRegion load_region(const RegionStage& stage, std::span<const Index> row, I
 bool start_region(const RegionStage& stage, LoadedRegion& region, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
-        if (settings.warm_start == WarmStart::on) take_warm_start(stage, region);
+        // Where nothing moves zero is the solution, and what sweeps leave of another start has no scale to be compared with.
+        if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region);
         return false;
     }
     if (region.separate && settings.skip_separating) {

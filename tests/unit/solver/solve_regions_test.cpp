@@ -269,6 +269,23 @@ TEST_CASE("a warm start of another world is not worse than none", "[unit][solver
     CHECK(misled.regions.status[0] == RegionStatus::converged);
 }
 
+TEST_CASE("a region in which nothing moves and nothing weighs has no impulse and no error, whatever it starts from", "[unit][solver]") {
+    for (const bool fixed : {true, false})
+        for (const bool skip : {true, false}) {
+            ContactScene scene;
+            scene.gravity = 0;
+            add_sheets(scene, 6, 0.5, 2);
+            for (Vec3& v : scene.velocity) v = Vec3::Zero();
+            for (Real& gap : scene.gap) gap = 0;
+            for (Vec3& r : scene.impulse) r = Vec3(1e-20, 0, 3e-20);
+            SolverSettings settings{.method = SolverMethod::pgs, .max_iterations = 50, .fixed_iterations = fixed};
+            settings.skip_separating = skip;
+            const SolvedScene solved = scene.solve(settings);
+            CHECK(solved.regions.error[0] == 0);
+            for (const Vec3& r : solved.impulse) CHECK(r == Vec3::Zero());
+        }
+}
+
 TEST_CASE("a region whose contacts all separate is left alone", "[unit][solver]") {
     ContactScene scene;
     const Index a = scene.add_node(1, Vec3(0.1, 0, 1)), b = scene.add_node(1, Vec3(0, 0.2, 0.5));
