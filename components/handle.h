@@ -51,6 +51,11 @@ public:
         const Index erased = row_[handle.slot];
         row_[handle.slot] = no_index;
         ++generation_[handle.slot];
+        row_erased(erased);
+    }
+
+    /// A row that no handle names has gone; rows above it move down by one.
+    void row_erased(Index erased) {
         for (Index& row : row_)
             if (row > erased) --row;
     }

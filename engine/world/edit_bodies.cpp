@@ -269,6 +269,8 @@ void erase_body(WorldState& world, Index row) {
         if (world.attachments.body[a] == row) {
             if (world.attachments.slot[a] != no_slot)
                 world.attachment_map.erase(world.attachment_map.handle_of_slot(world.attachments.slot[a]));
+            else
+                world.attachment_map.row_erased(static_cast<Index>(a));
             erase_attachment(world, static_cast<Index>(a));
         }
 

@@ -174,7 +174,10 @@ Index append_collider(WorldState& world, std::uint32_t slot, const Shape& shape,
 
 void erase_collider(WorldState& world, Index row) {
     const auto c = static_cast<std::size_t>(row);
-    if (world.colliders.body[c] != no_index) erase_body(world, world.colliders.body[c]);
+    if (const Index body = world.colliders.body[c]; body != no_index) {
+        erase_body(world, body);
+        world.body_map.row_erased(body);  // no handle names it, as World::remove(BodyHandle) would erase
+    }
     erase_scripted_row(world.colliders, c);
     world.collider_records.erase(world.collider_records.begin() + row);
     for (Index& collider : world.bodies.collider)

@@ -20,8 +20,10 @@ Mat3 cofactor_of(const Mat3& F) {
 
 Real energy_density(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
-    const Real growth = F.determinant() - 1, stretch = F.squaredNorm() - 3;
-    return 0.5 * mu * (stretch - std::log1p(stretch / 4)) - 0.75 * mu * growth + 0.5 * la * growth * growth;
+    const Mat3 e = F - Mat3::Identity();  // as by lanes
+    const Real trace = e.trace(), bulk = (trace * trace - e.cwiseProduct(e.transpose()).sum()) / 2 + e.determinant();
+    const Real growth = trace + bulk, quarter = (2 * trace + e.squaredNorm()) / 4;
+    return mu * (0.375 * e.squaredNorm() - 0.75 * bulk - 0.5 * (std::log1p(quarter) - quarter)) + 0.5 * la * growth * growth;
 }
 
 Mat3 stress(const MaterialConstants& material, const Mat3& F) {

@@ -30,9 +30,14 @@ Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 template <class T>
 T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
     const auto [mu, la] = model_moduli(material);
-    const T growth = dot(F.c0, cross(F.c1, F.c2)) - 1.0;
-    const T stretch = inner_product(F, F) - 3.0;
-    return mu * (0.5 * (stretch - log_of_one_plus(0.25 * stretch)) - 0.75 * growth) + (0.5 * la) * (growth * growth);
+    // By e = F - 1, and without the parts of first order, which cancel: else a body at rest would have the energy of their rounding.
+    const T xx = F.c0.x - 1.0, yy = F.c1.y - 1.0, zz = F.c2.z - 1.0;
+    const T trace = xx + yy + zz;
+    const LaneMat3<T> e{{xx, F.c0.y, F.c0.z}, {F.c1.x, yy, F.c1.z}, {F.c2.x, F.c2.y, zz}};
+    const T minors = (xx * yy - e.c0.y * e.c1.x) + (xx * zz - e.c0.z * e.c2.x) + (yy * zz - e.c1.z * e.c2.y);
+    const T bulk = minors + dot(e.c0, cross(e.c1, e.c2)), square = inner_product(e, e);
+    const T growth = trace + bulk, quarter = 0.25 * (2.0 * trace + square);  // J - 1, (Ic - 3) / 4
+    return mu * (0.375 * square - 0.75 * bulk - 0.5 * (log_of_one_plus(quarter) - quarter)) + (0.5 * la) * (growth * growth);
 }
 
 template <class T>

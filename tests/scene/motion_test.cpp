@@ -135,3 +135,26 @@ TEST_CASE("a push out of a step that was refused is not made in a later one", "[
     for (std::size_t n = 0; n < before.size(); ++n) moved = std::max(moved, (world.positions(body)[n] - before[n]).norm());
     CHECK(moved < 1e-14);
 }
+
+TEST_CASE("a mesh collider that goes leaves bodies and attachments that came after it where they were", "[scene]") {
+    World world(Settings{.gravity = Vec3::Zero()});
+    const auto material = world.add_material({.young_modulus = 1e5});
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    const auto collider = world.add_collider(
+        SurfaceMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}, {.position = {5, 0, 0}});
+    const auto body = world.add_body(mesh, {.material = material});
+    const std::array<Index, 3> some{0, 1, 2};
+    const std::array<Index, 1> other{5};
+    const auto held = world.attach(body, some, Motion{});
+    const auto led = world.attach(body, other, Motion{.velocity = {0, 0, 0.1}});
+    world.remove(collider);
+    REQUIRE(world.positions(body).size() == mesh.nodes.size());
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) CHECK(world.positions(body)[n] == mesh.nodes[n]);
+    world.remove(held);
+    REQUIRE(world.alive(led));
+    const Real before = world.positions(body)[5].z();
+    REQUIRE(world.advance(0.01).ok());
+    CHECK(world.positions(body)[5].z() - before == Approx(0.001));
+    world.remove(led);
+    CHECK(world.advance(0.01).ok());
+}

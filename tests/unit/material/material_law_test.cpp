@@ -263,3 +263,17 @@ TEST_CASE("constants are refused for values that mean nothing", "[unit]") {
     CHECK_THROWS_AS(material_constants(MaterialModel::linear, 1e5, 0.5, 1000), CheckFailed);
     CHECK_THROWS_AS(material_constants(MaterialModel::linear, 1e5, 0.3, 0), CheckFailed);
 }
+
+TEST_CASE("a neo-Hookean body at rest has the energy of its strains, not of the rounding of the formula", "[unit]") {
+    // A strain of 1e-12 has 1e-24 of the modulus; terms of first order that cancel only to rounding would leave 1e-16.
+    for (const Real nu : {-0.5, 0.0, 0.3, 0.49}) {
+        const MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, nu, 1000);
+        Mat3 e;
+        e << 1, 2, -3, 4, -5, 6, -7, 8, 9;
+        const Mat3 F = Mat3::Identity() + 1e-12 * e;
+        const Mat3 rounded = (F - Mat3::Identity()) / 1e-12, strain = (rounded + rounded.transpose()) / 2;
+        const Real expected =
+            1e-24 * (material.shear_modulus * strain.squaredNorm() + material.lame_lambda / 2 * strain.trace() * strain.trace());
+        CHECK(stable_neo_hookean::energy_density(material, F) == Approx(expected).epsilon(1e-3));
+    }
+}
