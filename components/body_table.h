@@ -52,7 +52,7 @@ struct BodyTable {
     Column<Real> max_speed;                                      // m/s, of this step's motion
     Column<Real> drift;                                          // m, greatest distance of a node from its drift origin
     Column<Real> travel;       // m: since any earlier time no node has come further than the growth of travel plus twice the drift then
-    Column<Real> sound_until;  // m: no element turns inside out, or back, while travel is below this
+    Column<Real> sound_until;  // m: the least of the body's element blocks
 
     void for_each_column(auto&& visit) {
         visit("slot", slot);

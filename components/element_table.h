@@ -28,6 +28,7 @@ struct ElementBlockTable {
     Column<Index> body;                     // row of BodyTable
     Column<Index> material;                 // row of MaterialTable
     Column<Real> viscous_time;              // s, stress of the strain rate over that of the strain; 0 but for fine elements among coarse
+    Column<Real> sound_until;               // m: no element of the block turns inside out, or back, while the body's travel is below this
     Column<std::uint8_t> level;             // within the body: impulses come every 2^level of the body's steps (step_levels.h)
 
     /// What the next step depends on: hash and snapshot walk this part.
@@ -45,6 +46,7 @@ struct ElementBlockTable {
     void for_each_column(auto&& visit) {
         for_each_state_column(visit);
         visit("rotation_next", rotation_next);
+        visit("sound_until", sound_until);
         visit("force", force);
     }
 };

@@ -168,7 +168,13 @@ void list_join(WorldState& w, TaskGraph& g) {
                 return InversionInputs{e.node, e.volume, b.blocks, b.max_speed, b.travel, b.drift, n.position, n.velocity_next, w.pushes()};
             },
             reads(e.node, e.volume, b.blocks, b.max_speed, b.travel, b.drift, n.position, n.velocity_next, n.push_out, w.solver_memory)),
-        value(w.step.h), make(w.inversion_parts), write(b.sound_until), possible);
+        value(w.step.h), make(w.inversion_parts),
+        bundle(
+            [&b, &e] {
+                return InversionBudgets{e.sound_until, b.sound_until};
+            },
+            writes(e.sound_until, b.sound_until)),
+        possible);
     g.stage_with_result("dynamics/measure_work", w.step.external, measure_work, bundle([&w] { return w.loads(); }, reads(n.load)),
                         read(n.force), read(w.attachments.node), read(n.velocity_next), value(w.step.h),
                         bundle([&w] { return w.resting_nodes(); }, reads(n.body, b.asleep)), make(w.work_parts),

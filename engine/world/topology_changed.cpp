@@ -10,7 +10,9 @@ namespace skerry {
 void WorldState::search_afresh() {
     search.body_valid_until.clear();
     search.collider_valid_until.clear();
-    for (Real& travel : bodies.sound_until) travel = -std::numeric_limits<Real>::infinity();
+    constexpr Real long_ago = -std::numeric_limits<Real>::infinity();
+    std::ranges::fill(bodies.sound_until, long_ago);
+    std::ranges::fill(elements.sound_until, long_ago);
 }
 
 void WorldState::topology_changed() {

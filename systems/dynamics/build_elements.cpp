@@ -1,6 +1,7 @@
 #include "systems/dynamics/build_elements.h"
 
 #include <Eigen/LU>
+#include <limits>
 
 #include "components/check.h"
 
@@ -50,6 +51,7 @@ Range append_elements(std::span<const Tetrahedron> tetrahedra, std::span<const V
         elements.body.push_back(body);
         elements.material.push_back(material);
         elements.viscous_time.push_back(0);
+        elements.sound_until.push_back(-std::numeric_limits<Real>::infinity());
         elements.level.push_back(0);
     }
     for (std::size_t b = static_cast<std::size_t>(first_block); b < elements.force.size(); ++b)

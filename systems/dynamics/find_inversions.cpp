@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Index blocks_per_part = 64;
+constexpr Index blocks_per_part = 256;
 
 Real8 determinant(const LaneMat3<Real8>& edges) {
     return dot(edges.c0, cross(edges.c1, edges.c2));
@@ -35,77 +35,87 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     return larger(faces, pairs);
 }
 
-InversionPart narrowest(const InversionInputs& inputs, std::size_t begin, std::size_t end) {
-    InversionPart part;
+/// m, of the narrowest element of a block; of inverted ones, too: they may turn back, and over again.
+Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
+    const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
     Real least = std::numeric_limits<Real>::infinity();  // m^2
-    for (std::size_t b = begin; b < end; ++b) {
-        const LaneMat3<Real8> e = edges(inputs.element_node[b], inputs.position);
-        const Real8 volume = determinant(e), span = largest_cross_squared(e);
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            if (!(inputs.element_volume[b][l] > 0)) continue;
-            // Of inverted ones, too: they may turn back, and over again.
-            least = std::min(least, span[l] > 0 ? volume[l] * volume[l] / span[l] : 0);
-            part.inverted |= !(volume[l] > 0);
-        }
-    }
-    part.width = std::sqrt(least);
-    return part;
+    for (std::size_t l = 0; l < element_lanes; ++l)
+        if (rest_volume[l] > 0) least = std::min(least, span[l] > 0 ? volume[l] * volume[l] / span[l] : 0);
+    return std::sqrt(least);
 }
 
-void find_turned(const InversionInputs& inputs, Real h, std::size_t begin, std::size_t end, InversionPart& part) {
-    for (std::size_t b = begin; b < end; ++b) {
-        const auto& node = inputs.element_node[b];
-        const LaneMat3<Real8> now = edges(node, inputs.position);
-        const Real8 before = determinant(now);
-        LaneMat3<Real8> motion = edges(node, inputs.velocity_next);
-        if (!inputs.push_out.empty()) motion = motion + edges(node, inputs.push_out);
-        const Real8 after = determinant(now + h * motion);
+/// One body in this step.
+struct Body {
+    const InversionInputs& inputs;
+    Real h;
+    Real reach;  // m, that a node can move in this step
+    Real front;  // m, travel with it
+    Real datum;  // m: a budget begins here (measure_drift.h)
+
+    InversionPart look(std::size_t begin, std::size_t end, std::span<Real> sound_until) const {
+        InversionPart part{std::numeric_limits<Real>::infinity()};
+        for (std::size_t b = begin; b < end; ++b) {
+            if (!(front < sound_until[b])) {
+                const LaneMat3<Real8> now = edges(inputs.element_node[b], inputs.position);
+                const Real safe = width(now, inputs.element_volume[b]) / 2;
+                sound_until[b] = datum + safe;
+                if (!(reach < safe)) find_turned(b, now, part);
+            }
+            part.sound_until = std::min(part.sound_until, sound_until[b]);
+        }
+        return part;
+    }
+
+    bool has_inverted(Range blocks) const {
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+            const Real8 volume = determinant(edges(inputs.element_node[b], inputs.position));
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                if (inputs.element_volume[b][l] > 0 && !(volume[l] > 0)) return true;
+        }
+        return false;
+    }
+
+private:
+    void find_turned(std::size_t b, const LaneMat3<Real8>& now, InversionPart& part) const {
+        LaneMat3<Real8> motion = edges(inputs.element_node[b], inputs.velocity_next);
+        if (!inputs.push_out.empty()) motion = motion + edges(inputs.element_node[b], inputs.push_out);
+        const Real8 before = determinant(now), after = determinant(now + h * motion);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             if (!(inputs.element_volume[b][l] > 0) || !(before[l] > 0) || after[l] > 0) continue;
             if (part.count++ == 0) part.element = static_cast<Index>(b * element_lanes + l);
         }
     }
-}
-
-template <class Visit>
-void for_each_part(Executor& executor, Range blocks, Column<InversionPart>& parts, Visit&& visit) {
-    parts.resize(static_cast<std::size_t>((blocks.size() + blocks_per_part - 1) / blocks_per_part));
-    parallel_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) {
-            const std::size_t first = static_cast<std::size_t>(blocks.begin) + p * blocks_per_part;
-            visit(first, std::min(first + blocks_per_part, static_cast<std::size_t>(blocks.end)), parts[p]);
-        }
-    });
-}
+};
 
 }  // namespace
 
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
-                           std::span<Real> body_sound_until) {
-    SKERRY_CHECK(body_sound_until.size() == inputs.body_blocks.size());
+                           const InversionBudgets& budgets) {
+    SKERRY_CHECK(budgets.body_sound_until.size() == inputs.body_blocks.size());
+    SKERRY_CHECK(budgets.block_sound_until.size() == inputs.element_node.size());
     Inversions found;
-    for (std::size_t body = 0; body < body_sound_until.size(); ++body) {
-        const Range blocks = inputs.body_blocks[body];
-        const Real front = inputs.body_travel[body] + h * inputs.body_max_speed[body];
-        if (blocks.size() == 0 || front < body_sound_until[body]) continue;
-        for_each_part(executor, blocks, parts,
-                      [&](std::size_t begin, std::size_t end, InversionPart& part) { part = narrowest(inputs, begin, end); });
-        Real width = std::numeric_limits<Real>::infinity();
-        bool inverted = false;
+    for (std::size_t b = 0; b < inputs.body_blocks.size(); ++b) {
+        const Range blocks = inputs.body_blocks[b];
+        const Real reach = h * inputs.body_max_speed[b], travel = inputs.body_travel[b];
+        if (blocks.size() == 0 || travel + reach < budgets.body_sound_until[b]) continue;
+        const Body body{inputs, h, reach, travel + reach, travel - 2 * inputs.body_drift[b]};
+        parts.resize(static_cast<std::size_t>((blocks.size() + blocks_per_part - 1) / blocks_per_part));
+        parallel_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const std::size_t first = static_cast<std::size_t>(blocks.begin) + p * blocks_per_part;
+                parts[p] =
+                    body.look(first, std::min(first + blocks_per_part, static_cast<std::size_t>(blocks.end)), budgets.block_sound_until);
+            }
+        });
+        const Index before = found.count;
+        budgets.body_sound_until[b] = std::numeric_limits<Real>::infinity();
         for (const InversionPart& part : parts) {
-            width = std::min(width, part.width);
-            inverted |= part.inverted;
-        }
-        body_sound_until[body] = inputs.body_travel[body] - 2 * inputs.body_drift[body] + width / 2;  // measure_drift.h
-        if (h * inputs.body_max_speed[body] < width / 2) continue;
-        for_each_part(executor, blocks, parts,
-                      [&](std::size_t begin, std::size_t end, InversionPart& part) { find_turned(inputs, h, begin, end, part); });
-        for (const InversionPart& part : parts) {
+            budgets.body_sound_until[b] = std::min(budgets.body_sound_until[b], part.sound_until);
             if (part.count == 0) continue;
-            if (found.count == 0) found = {0, static_cast<Index>(body), part.element, false};
+            if (found.count == 0) found = {0, static_cast<Index>(b), part.element, false};
             found.count += part.count;
-            found.first |= !inverted;
         }
+        if (found.count > before) found.first |= !body.has_inverted(blocks);
     }
     return found;
 }

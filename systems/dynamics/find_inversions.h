@@ -26,17 +26,21 @@ struct Inversions {
     bool first = false;        // some body of them had no inverted element before
 };
 
-/// Working memory, kept between steps.
+/// Working memory, kept between steps: what was found in some blocks.
 struct InversionPart {
-    Real width = 0;  // m, of the narrowest element
-    bool inverted = false;
+    Real sound_until = 0;                 // m, the least of them
     Index count = 0, element = no_index;  // that the step turns over, and the first of them
 };
 
-/// Looks only at bodies that can have come far enough: an element is not turned over before its corners have moved by half of its width, the
-/// distance of the two nearest parallel planes around it. `body_sound_until` (m): no element turns over, or back, while travel
-/// stays below this; written when a body is looked at. Parallel over element blocks.
+struct InversionBudgets {
+    std::span<Real> block_sound_until;  // ElementBlockTable
+    std::span<Real> body_sound_until;   // BodyTable
+};
+
+/// Looks only where the body can have come far enough: an element is not turned over before its corners have moved by half of its width, the
+/// distance of the two nearest parallel planes around it. So slivers are looked at often, the rest of their body is not. Budgets are
+/// written where elements are looked at. Parallel over element blocks.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
-                           std::span<Real> body_sound_until);
+                           const InversionBudgets& budgets);
 
 }  // namespace skerry
