@@ -135,7 +135,8 @@ private:
     };
 
     void add(const char* name, AccessList accesses, std::function<Outcome(Executor&)> run);
-    void run_stage(Index number, Executor& executor, Trace* trace);
+    /// Returns when it ended: `begin` if it was not allowed to run.
+    Trace::Time run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace);
     void run_all(Executor& executor, Trace* trace);
 
     std::vector<Stage> stages_;

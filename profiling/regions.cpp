@@ -44,9 +44,9 @@ struct Problem {
         });
     }
     void load(Team& team) {
-        scale = load_coloured({source.inputs, source.velocity_next, settings, source.h}, row, team, region, contact.span(), impulse.span(),
-                              velocity.span())
-                    .scale;
+        const LoadSums sums = load_coloured({source.inputs, source.velocity_next, settings, source.h}, row, team, region, contact.span(),
+                                            impulse.span(), velocity.span());
+        scale = error_scale(sums, source.inputs.gravity, source.h, settings.tolerance);
     }
     LumpedOperator::Memory memory() {
         LumpedOperator::Memory all{.contact = contact.span(),

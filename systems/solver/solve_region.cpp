@@ -5,6 +5,7 @@
 
 #include "systems/solver/methods/run_method.h"
 #include "systems/solver/methods/solve_frictionless.h"
+#include "systems/solver/operators/load_sums.h"
 #include "systems/solver/push_out_region.h"
 
 namespace skerry {
@@ -70,21 +71,19 @@ LoadedRegion load_region(const RegionStage& stage, std::span<const Index> row, I
     };
     LoadedRegion region{.row = row, .base = base, .memory = {}};
     const bool keep_free_velocity = workspace_slots(stage.settings.method) > 1;
-    Real energy = 0, inverse_diagonals = 0;
+    LoadSums sums;
     for (std::size_t k = 0; k < count; ++k) {
         LumpedContact& contact = data.contact[first + k];
         contact = load_contact(stage.inputs, row[k], stage.out.velocity_next, stage.settings, stage.h, local);
         const Vec4 u = contact_velocity(contact, velocity.data());
-        energy += contact.inverse_diagonal * u.squaredNorm();
-        inverse_diagonals += contact.inverse_diagonal;
-        region.separate &= contact.node_count == 0 || separates(contact, stage.settings.friction, u);
+        sums.add(contact, stage.settings.friction, u);
         region.frictionless &= contact.friction.stick == 0;
         region.one_friction &= contact.friction.stick == contact.friction.slide;
         data.impulse[first + k].setZero();
         if (keep_free_velocity) data.workspace[free_velocity_slot][first + k] = u;
     }
-    // methods.md 2.1; the floor keeps a region at rest from being asked for more than its weight makes sense of
-    region.scale = std::max(std::sqrt(energy), 1e-3 * stage.inputs.gravity * stage.h * std::sqrt(inverse_diagonals));
+    region.separate = sums.separate;
+    region.scale = error_scale(sums, stage.inputs.gravity, stage.h, stage.settings.tolerance);
     region.memory.contact = data.contact.span().subspan(first, count);
     region.memory.impulse = data.impulse.span().subspan(first, count);
     region.memory.velocity = velocity.first(node_count);
@@ -99,7 +98,8 @@ LoadedRegion load_region(const RegionStage& stage, std::span<const Index> row, I
 bool start_region(const RegionStage& stage, LoadedRegion& region, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
-        // Where nothing moves zero is the solution, and what sweeps leave of another start has no scale to be compared with.
+        // Where nothing moves zero is the solution, and what sweeps leave of another start has no scale to be compared with. What only
+        // separates starts from its impulses, too: what a sweep does must not depend on how regions are cut.
         if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region);
         return false;
     }

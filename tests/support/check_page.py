@@ -24,12 +24,12 @@ def chromium():
     sys.exit(77)
 
 
-def browse(page, fragment, picture=None, size=(1440, 900)):
-    """The page as the browser has it after two seconds of its own time, and its picture if a name is given."""
+def browse(page, fragment, picture=None, size=(1440, 900), seconds=2):
+    """The page as the browser has it after that many seconds of its own time, and its picture if a name is given."""
     with tempfile.TemporaryDirectory() as profile:
         command = [chromium(), "--headless", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                    "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}",
-                   "--virtual-time-budget=2000", "--dump-dom"]
+                   f"--virtual-time-budget={1000 * seconds}", "--dump-dom"]
         if picture:
             command.append(f"--screenshot={picture}")
         result = subprocess.run(command + [f"file://{page}{fragment}"], capture_output=True, text=True, timeout=200)
@@ -104,7 +104,10 @@ def main(folder):
     check(folder, "page.html", switched, {**ready, "bodies": "8", "color": "body"}, "frame_60.png")
     check(folder, "page.html", "#frame=119&colliders=0&contacts=off", {**ready, "frame": "119", "bodies": "7"}, "frame_119.png")
     check(folder, "page.html", "#frame=70", ready, "narrow.png", (520, 1100))
-    playing = marks(browse(page, "#play=1&frame=0&rate=1"))
+    for seconds in [2, 8, 32]:  # on a machine with other work the browser's own time passes between few pictures
+        playing = marks(browse(page, "#play=1&frame=0&rate=1", seconds=seconds))
+        if "error" in playing or int(playing["frame"]) > 0:
+            break
     assert "error" not in playing and int(playing["frame"]) > 0, f"playing did not move on: {playing}"
     check(folder, "empty.html", "", {"ready": "true", "frames": "0"}, "empty.png")
 

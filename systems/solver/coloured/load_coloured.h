@@ -15,13 +15,8 @@ struct LoadSource {
     Real h;  // s
 };
 
-struct LoadedSums {
-    Real scale = 0;        // sqrt(J), of e_nat
-    bool separate = true;  // no contact closes: zero impulses solve it
-};
-
 /// Writes contacts by place in the order, velocities by node, and zero impulses. `row`: of the region's contacts.
-LoadedSums load_coloured(const LoadSource& source, std::span<const Index> row, Team& team, ColouredRegion& region,
-                         std::span<LumpedContact> contact, std::span<Vec4> impulse, std::span<Vec4> velocity);
+LoadSums load_coloured(const LoadSource& source, std::span<const Index> row, Team& team, ColouredRegion& region,
+                       std::span<LumpedContact> contact, std::span<Vec4> impulse, std::span<Vec4> velocity);
 
 }  // namespace skerry

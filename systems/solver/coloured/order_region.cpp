@@ -64,6 +64,7 @@ bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& 
     colour_contacts(region.local, static_cast<Index>(region.node.size()), region.colouring, region.order);
     if (region.partial.size() < partial_count(region.order)) region.partial.resize(partial_count(region.order));
     if (region.loaded.size() < partial_count(region.order)) region.loaded.resize(partial_count(region.order));
+    if (region.dissipated.size() < partial_count(region.order)) region.dissipated.resize(partial_count(region.order));
     return true;
 }
 

@@ -5,15 +5,9 @@
 
 #include "jobs/team.h"
 #include "systems/solver/coloured/colour_contacts.h"
-#include "systems/solver/operators/lumped_operator.h"
+#include "systems/solver/operators/load_sums.h"
 
 namespace skerry {
-
-/// Sums over a block of contacts while a region is loaded.
-struct LoadSums {
-    Real energy, inverse_diagonals;  // J, kg
-    bool separate;                   // no contact closes
-};
 
 /// What a large region keeps from step to step.
 struct ColouredRegion {
@@ -24,6 +18,7 @@ struct ColouredRegion {
     ColouringMemory colouring;
     Column<SweepChange> partial;  // by block
     Column<LoadSums> loaded;      // by block
+    Column<Real> dissipated;      // J, by block
 };
 
 /// The nodes that an impulse of contact `row` can move, in the order of the stencil.

@@ -36,6 +36,7 @@ public:
     RegionOutcome solve() {
         loaded_ = load_coloured({stage_.inputs, stage_.out.velocity_next, stage_.settings, stage_.h}, row_, team_, kept_, contact_,
                                 memory_.impulse, memory_.velocity);
+        scale_ = error_scale(loaded_, stage_.inputs.gravity, stage_.h, stage_.settings.tolerance);
         RegionOutcome outcome;
         if (!start(outcome)) outcome = sweep();
         outcome.dissipated = write_back();
@@ -44,9 +45,7 @@ public:
     }
 
 private:
-    ColouredOperator make_operator() {
-        return {memory_, kept_.order, team_, kept_.partial.span(), stage_.settings.friction, loaded_.scale};
-    }
+    ColouredOperator make_operator() { return {memory_, kept_.order, team_, kept_.partial.span(), stage_.settings.friction, scale_}; }
     Index row_of(std::size_t place) const { return row_[kept_.order.contact[place]]; }
 
     void take_warm_start() {
@@ -94,10 +93,10 @@ private:
                 stage_.out.impulse[row_of(i)] = memory_.impulse[i].head<3>();
                 dissipated += dissipated_by(stage_, row_of(i));
             }
-            kept_.loaded[block].energy = dissipated;
+            kept_.dissipated[block] = dissipated;
         });
         Real dissipated = 0;
-        for (std::size_t block = 0; block < partial_count(kept_.order); ++block) dissipated += kept_.loaded[block].energy;
+        for (std::size_t block = 0; block < partial_count(kept_.order); ++block) dissipated += kept_.dissipated[block];
         return dissipated;
     }
 
@@ -118,7 +117,8 @@ private:
     std::span<LumpedContact> contact_;  // by place in the order
     LumpedOperator::Memory memory_;
     PushMemory push_{};
-    LoadedSums loaded_;
+    LoadSums loaded_;
+    Real scale_ = 0;  // sqrt(J), of e_nat
 };
 
 }  // namespace

@@ -39,7 +39,8 @@ struct LoadedScene {
         scratch.assign(region.node.size(), Vec4::Zero());
         const RegionInputs inputs = scene.inputs();
         const SolverSettings settings;
-        scale = load_coloured({inputs, velocity_next, settings, scene.h}, row, alone, region, contact, impulse, velocity).scale;
+        const LoadSums sums = load_coloured({inputs, velocity_next, settings, scene.h}, row, alone, region, contact, impulse, velocity);
+        scale = error_scale(sums, inputs.gravity, scene.h, settings.tolerance);
     }
     LumpedOperator::Memory memory() {
         LumpedOperator::Memory all{.contact = contact,
