@@ -37,6 +37,7 @@ struct BodyTable {
     Column<Range> edges;
     Column<Range> vertices;
     Column<Range> bvh_nodes;
+    Column<Range> bvh_leaves;
     Column<Index> element_count;
     Column<Index> pinned_count;     // nodes without freedom
     Column<Real> contact_distance;  // m, thickness of the contact shell; two bodies keep the mean of theirs
@@ -67,6 +68,7 @@ struct BodyTable {
         visit("edges", edges);
         visit("vertices", vertices);
         visit("bvh_nodes", bvh_nodes);
+        visit("bvh_leaves", bvh_leaves);
         visit("element_count", element_count);
         visit("pinned_count", pinned_count);
         visit("contact_distance", contact_distance);

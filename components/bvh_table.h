@@ -1,7 +1,11 @@
 // Bounding volume hierarchies of all bodies, body after body.
 #pragma once
 
+#include <array>
+#include <span>
+
 #include "components/column.h"
+#include "components/lanes.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -13,24 +17,47 @@ struct Aabb {
 };
 
 /// A node of a tree stored in depth-first order: the left child of row i is i + 1, and `skip` is one past its last descendant.
-/// A leaf (count > 0) holds the triangles first .. first + count - 1 of Bvhs::triangle.
 struct BvhNode {
     Index skip;
     Index right;  // row of the right child; no_index in a leaf
-    Index first;  // row of BvhTable::triangle
-    Index count;  // 0 in an inner node
+    Index leaf;   // row of BvhLeafTable; no_index in an inner node
+    Index count;  // triangles of a leaf, the first lanes of its row; 0 in an inner node
+};
+
+inline constexpr int leaf_lanes = 8;
+
+/// The triangles of a leaf, rows of TriangleTable; no_index in lanes without one.
+using LeafTriangles = std::array<Index, leaf_lanes>;
+
+/// Their boxes, m, side by side: one is compared with all of them at once. Lanes without a triangle are far from everything.
+struct LeafBoxes {
+    std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
 };
 
 struct BvhTable {
-    Column<Aabb> box;        // m, refit when a pair of its body is looked at again
-    Column<BvhNode> node;    // topology, built once from the rest shape
-    Column<Index> triangle;  // rows of TriangleTable in leaf order
+    Column<Aabb> box;      // m, refit when a pair of its body is looked at again
+    Column<BvhNode> node;  // topology, built once from the rest shape
 
     void for_each_column(auto&& visit) {
         visit("box", box);
         visit("node", node);
-        visit("triangle", triangle);
     }
+};
+
+struct BvhLeafTable {
+    Column<LeafTriangles> triangle;
+    Column<LeafBoxes> box;  // refit with those of the nodes
+
+    void for_each_column(auto&& visit) {
+        visit("triangle", triangle);
+        visit("box", box);
+    }
+};
+
+/// The boxes of all trees.
+struct BvhBoxes {
+    std::span<const Aabb> node;
+    std::span<const LeafBoxes> leaf;
 };
 
 }  // namespace skerry

@@ -84,10 +84,10 @@ auto collision_inputs(WorldState& w) {
     NodeTable& n = w.nodes;
     return bundle(
         [&w, &n] {
-            return CollisionInputs{w.bodies,   w.colliders,    w.surface,  n.inverse_mass, w.materials.surface,
-                                   w.bvh.node, w.bvh.triangle, n.position, n.velocity,     n.rest_position};
+            return CollisionInputs{w.bodies,   w.colliders,           w.surface,  n.inverse_mass, w.materials.surface,
+                                   w.bvh.node, w.bvh_leaves.triangle, n.position, n.velocity,     n.rest_position};
         },
-        reads(w.bodies, w.colliders, w.surface, n.inverse_mass, w.materials, w.bvh.node, w.bvh.triangle, n.position, n.velocity,
+        reads(w.bodies, w.colliders, w.surface, n.inverse_mass, w.materials, w.bvh.node, w.bvh_leaves.triangle, n.position, n.velocity,
               n.rest_position));
 }
 
@@ -96,7 +96,7 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     ContactTable& c = w.contacts;
     const auto inputs = collision_inputs(w);
     g.stage("collision/find_candidates", find_candidates, inputs, value(w.step.collision), value(w.step.h), write(w.bvh.box),
-            make(w.search), make(w.pairs));
+            write(w.bvh_leaves.box), make(w.search), make(w.pairs));
     g.stage("collision/find_contacts", find_contacts, inputs, value(w.step.collision), value(w.step.h), make(w.pairs), make(w.crossings),
             make(c));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.warm_start), value(w.step.h),

@@ -151,7 +151,7 @@ void shift(Range& range, Range gone) {
 
 /// Renumbers everything that points behind the rows that one body had.
 struct Renumber {
-    Range nodes, node_blocks, blocks, triangles, edges, vertices, vertex_triangles, bvh_nodes, bodies;
+    Range nodes, node_blocks, blocks, triangles, edges, vertices, vertex_triangles, bvh_nodes, bvh_leaves, bodies;
 
     Range elements() const { return {blocks.begin * element_lanes, blocks.end * element_lanes}; }
 
@@ -168,9 +168,11 @@ struct Renumber {
         for (BvhNode& node : world.bvh.node) {
             shift(node.skip, bvh_nodes);
             if (node.right != no_index) shift(node.right, bvh_nodes);
-            shift(node.first, triangles);
+            if (node.leaf != no_index) shift(node.leaf, bvh_leaves);
         }
-        for (Index& t : world.bvh.triangle) shift(t, triangles);
+        for (LeafTriangles& leaf : world.bvh_leaves.triangle)
+            for (Index& t : leaf)
+                if (t != no_index) shift(t, triangles);
         ranges(world.bodies);
         for (Index& body : world.colliders.body)
             if (body != no_index) shift(body, bodies);
@@ -208,6 +210,7 @@ private:
             shift(table.edges[b], edges);
             shift(table.vertices[b], vertices);
             shift(table.bvh_nodes[b], bvh_nodes);
+            shift(table.bvh_leaves[b], bvh_leaves);
         }
     }
 };
@@ -245,7 +248,9 @@ Index append_body(WorldState& world, const NewBody& body) {
     bodies.triangles[b] = surface.triangles;
     bodies.edges[b] = surface.edges;
     bodies.vertices[b] = surface.vertices;
-    bodies.bvh_nodes[b] = append_bvh(surface.triangles, world.surface.triangles.node, world.nodes.position, world.bvh);
+    const BvhRanges tree = append_bvh(surface.triangles, world.surface.triangles.node, world.nodes.position, world.bvh, world.bvh_leaves);
+    bodies.bvh_nodes[b] = tree.nodes;
+    bodies.bvh_leaves[b] = tree.leaves;
     bodies.element_count[b] = static_cast<Index>(body.tetrahedra.size());
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(world.elements, blocks);
@@ -277,7 +282,7 @@ void erase_body(WorldState& world, Index row) {
     const BodyTable& bodies = world.bodies;
     Renumber renumber{
         bodies.nodes[b],     bodies.node_blocks[b], bodies.blocks[b], bodies.triangles[b], bodies.edges[b], bodies.vertices[b], {},
-        bodies.bvh_nodes[b], {row, row + 1}};
+        bodies.bvh_nodes[b], bodies.bvh_leaves[b],  {row, row + 1}};
     if (renumber.vertices.size() > 0)
         renumber.vertex_triangles = {world.surface.vertices.triangle_begin[static_cast<std::size_t>(renumber.vertices.begin)],
                                      world.surface.vertices.triangle_end[static_cast<std::size_t>(renumber.vertices.end) - 1]};
@@ -289,9 +294,8 @@ void erase_body(WorldState& world, Index row) {
     erase_rows(world.surface.vertices, renumber.vertices);
     world.surface.vertex_triangle.erase(static_cast<std::size_t>(renumber.vertex_triangles.begin),
                                         static_cast<std::size_t>(renumber.vertex_triangles.size()));
-    world.bvh.box.erase(static_cast<std::size_t>(renumber.bvh_nodes.begin), static_cast<std::size_t>(renumber.bvh_nodes.size()));
-    world.bvh.node.erase(static_cast<std::size_t>(renumber.bvh_nodes.begin), static_cast<std::size_t>(renumber.bvh_nodes.size()));
-    world.bvh.triangle.erase(static_cast<std::size_t>(renumber.triangles.begin), static_cast<std::size_t>(renumber.triangles.size()));
+    erase_rows(world.bvh, renumber.bvh_nodes);
+    erase_rows(world.bvh_leaves, renumber.bvh_leaves);
     erase_rows(world.bodies, renumber.bodies);
     world.body_records.erase(world.body_records.begin() + row);
     renumber.apply(world);

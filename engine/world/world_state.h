@@ -133,6 +133,7 @@ struct WorldState {
     Ragged<Index> corners;  // by node: 4 element + corner
     SurfaceTables surface;
     BvhTable bvh;
+    BvhLeafTable bvh_leaves;
     BodyTable bodies;
     MaterialTable materials;
     ColliderTable colliders;

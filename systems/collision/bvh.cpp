@@ -1,9 +1,10 @@
 #include "systems/collision/bvh.h"
 
 #include <algorithm>
-#include <limits>
+#include <vector>
 
 #include "systems/collision/box.h"
+#include "systems/collision/leaf_boxes.h"
 
 namespace skerry {
 
@@ -12,27 +13,32 @@ namespace {
 struct Build {
     std::span<const std::array<Index, 3>> triangle_node;
     std::span<const Vec3> position;
+    std::vector<Index> order;  // triangles
     BvhTable& bvh;
+    BvhLeafTable& leaves;
 
     Vec3 centre(Index triangle) const {  // times three
         const auto& node = triangle_node[triangle];
         return position[node[0]] + position[node[1]] + position[node[2]];
     }
 
-    /// Splits the triangles first .. end - 1 of BvhTable::triangle at the median of the longest axis: depth is log2, whatever the shape.
+    /// Splits the triangles first .. end - 1 of `order` about the median of the longest axis, where it leaves full leaves: depth is log2,
+    /// whatever the shape.
     void append(Index first, Index end) {
         const Index row = static_cast<Index>(bvh.node.size());
-        bvh.node.push_back({row + 1, no_index, first, end - first});
+        bvh.node.push_back({row + 1, no_index, no_index, 0});
         bvh.box.push_back(empty_box());
-        if (end - first == 1) return;
-
+        if (end - first <= leaf_lanes) {
+            append_leaf(first, end, bvh.node[row]);
+            return;
+        }
         Aabb box = empty_box();
-        for (Index i = first; i < end; ++i) grow(box, centre(bvh.triangle[i]));
+        for (Index i = first; i < end; ++i) grow(box, centre(order[i]));
         const Vec3 size = box.upper - box.lower;
         const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
-        const Index middle = first + (end - first) / 2;
+        const Index half = (end - first) / 2, middle = first + std::max(leaf_lanes, half - half % leaf_lanes);
         // Ties by row: the tree depends on the mesh alone. Positions are finite here, the scene builder has checked.
-        std::nth_element(bvh.triangle.begin() + first, bvh.triangle.begin() + middle, bvh.triangle.begin() + end, [&](Index a, Index b) {
+        std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + end, [&](Index a, Index b) {
             const Real ca = centre(a)[axis], cb = centre(b)[axis];
             return ca != cb ? ca < cb : a < b;
         });
@@ -40,36 +46,58 @@ struct Build {
         bvh.node[row].right = static_cast<Index>(bvh.node.size());
         append(middle, end);
         bvh.node[row].skip = static_cast<Index>(bvh.node.size());
-        bvh.node[row].first = no_index;
-        bvh.node[row].count = 0;
+    }
+
+    void append_leaf(Index first, Index end, BvhNode& node) {
+        node.leaf = static_cast<Index>(leaves.triangle.size());
+        node.count = end - first;
+        LeafTriangles triangles;
+        triangles.fill(no_index);
+        std::copy(order.begin() + first, order.begin() + end, triangles.begin());
+        leaves.triangle.push_back(triangles);
+        leaves.box.push_back(empty_leaf());
     }
 };
 
-}  // namespace
-
-Range append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, BvhTable& bvh) {
-    Range range{static_cast<Index>(bvh.node.size()), static_cast<Index>(bvh.node.size())};
-    if (triangles.size() == 0) return range;
-    const Index first = static_cast<Index>(bvh.triangle.size());
-    for (Index t = triangles.begin; t < triangles.end; ++t) bvh.triangle.push_back(t);
-    Build{triangle_node, position, bvh}.append(first, first + triangles.size());
-    range.end = static_cast<Index>(bvh.node.size());
-    refit_bvh(range, bvh.node, bvh.triangle, triangle_node, position, bvh.box);
-    return range;
+/// Fits the boxes of the first `count` lanes; the others stay empty. Returns the box around them.
+Aabb fit_leaf(const LeafTriangles& triangle, Index count, std::span<const std::array<Index, 3>> triangle_node,
+              std::span<const Vec3> position, LeafBoxes& boxes) {
+    Aabb all = empty_box();
+    for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) {
+        Aabb fitted = empty_box();
+        for (Index n : triangle_node[triangle[l]]) grow(fitted, position[n]);
+        set_lane(boxes, l, fitted);
+        grow(all, fitted);
+    }
+    return all;
 }
 
-void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const Index> leaf_triangle,
-               std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, std::span<Aabb> box) {
+}  // namespace
+
+BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, BvhTable& bvh,
+                     BvhLeafTable& leaves) {
+    const auto first_node = static_cast<Index>(bvh.node.size()), first_leaf = static_cast<Index>(leaves.triangle.size());
+    if (triangles.size() == 0) return {{first_node, first_node}, {first_leaf, first_leaf}};
+    Build build{triangle_node, position, {}, bvh, leaves};
+    for (Index t = triangles.begin; t < triangles.end; ++t) build.order.push_back(t);
+    build.append(0, triangles.size());
+    const BvhRanges ranges{{first_node, static_cast<Index>(bvh.node.size())}, {first_leaf, static_cast<Index>(leaves.triangle.size())}};
+    refit_bvh(ranges.nodes, bvh.node, leaves.triangle, triangle_node, position, bvh.box, leaves.box);
+    return ranges;
+}
+
+void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafTriangles> leaf_triangle,
+               std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, std::span<Aabb> box,
+               std::span<LeafBoxes> leaf_box) {
     // Children follow their parent, so backwards is bottom-up.
     for (Index row = bvh_nodes.end - 1; row >= bvh_nodes.begin; --row) {
-        Aabb fitted = empty_box();
-        if (node[row].count > 0) {
-            for (Index n : triangle_node[leaf_triangle[node[row].first]]) grow(fitted, position[n]);
+        const BvhNode& own = node[row];
+        if (own.count > 0) {
+            box[row] = fit_leaf(leaf_triangle[own.leaf], own.count, triangle_node, position, leaf_box[own.leaf]);
         } else {
-            fitted = box[row + 1];
-            grow(fitted, box[node[row].right]);
+            box[row] = box[row + 1];
+            grow(box[row], box[own.right]);
         }
-        box[row] = fitted;
     }
 }
 

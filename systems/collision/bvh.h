@@ -9,12 +9,19 @@
 
 namespace skerry {
 
-/// Appends a tree over the triangles of one body, built from their present positions. A leaf holds one triangle: its box
-/// is then at hand where triangles are compared (4 to a leaf: the search of a pair took more than twice as long).
-Range append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, BvhTable& bvh);
+struct BvhRanges {
+    Range nodes;   // of BvhTable
+    Range leaves;  // of BvhLeafTable
+};
+
+/// Appends a tree over the triangles of one body, built from their present positions. A leaf holds up to eight triangles with their boxes side
+/// by side: a search compares one with all of them, and most of its time went into boxes.
+BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, BvhTable& bvh,
+                     BvhLeafTable& leaves);
 
 /// Fits the boxes of one tree around the present positions, bottom-up.
-void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const Index> leaf_triangle,
-               std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, std::span<Aabb> box);
+void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafTriangles> leaf_triangle,
+               std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, std::span<Aabb> box,
+               std::span<LeafBoxes> leaf_box);
 
 }  // namespace skerry

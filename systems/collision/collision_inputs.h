@@ -19,7 +19,7 @@ struct CollisionInputs {
     std::span<const Real> inverse_mass;                   // by node
     std::span<const SurfaceProperties> material_surface;  // by material
     std::span<const BvhNode> bvh_node;
-    std::span<const Index> bvh_triangle;
+    std::span<const LeafTriangles> leaf_triangle;
     std::span<const Vec3> position;            // by node, start of the step
     std::span<const Vec3> velocity;            // by node, start of the step
     std::span<const Vec3> rest_position = {};  // by node; empty: self-contact has no rest shape to compare with

@@ -65,14 +65,15 @@ void list_expired(const CollisionInputs& inputs, bool all, SearchMemory& memory,
         if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
 }
 
-void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> boxes, SearchMemory& memory) {
+void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, std::span<LeafBoxes> leaf_box,
+                 SearchMemory& memory) {
     parallel_for(executor, memory.refit.size(), trees_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index b = memory.refit[i];
             const Range tree = inputs.body.bvh_nodes[b], vertices = inputs.body.vertices[b];
             if (tree.size() == 0) continue;
-            refit_bvh(tree, inputs.bvh_node, inputs.bvh_triangle, inputs.surface.triangles.node, inputs.position, boxes);
-            memory.sphere[b] = sphere_around(boxes[tree.begin], vertices.begin, vertices.end,
+            refit_bvh(tree, inputs.bvh_node, inputs.leaf_triangle, inputs.surface.triangles.node, inputs.position, box, leaf_box);
+            memory.sphere[b] = sphere_around(box[tree.begin], vertices.begin, vertices.end,
                                              [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; });
         }
     });
@@ -86,7 +87,7 @@ Real closing(const CollisionInputs& inputs, const SearchMemory& memory, const Pa
                                       : of_body(pair.second));
 }
 
-void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> boxes, Index p,
+void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, const BvhBoxes& boxes, Index p,
                   const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
@@ -121,8 +122,8 @@ void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& sett
 
 }  // namespace
 
-bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<Aabb> boxes,
-                     SearchState& search, PairTable& pairs) {
+bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<Aabb> box,
+                     std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs) {
     SearchMemory& memory = search.memory;
     const std::size_t body_count = inputs.body.slot.size(), collider_count = inputs.collider.slot.size();
     const bool afresh =
@@ -140,7 +141,8 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     list_expired(inputs, afresh, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
-    refit_trees(executor, inputs, boxes, memory);
+    refit_trees(executor, inputs, box, leaf_box, memory);
+    const BvhBoxes boxes{box, leaf_box};
     if (memory.found.size() < memory.expired.size()) memory.found.resize(memory.expired.size());
     parallel_for(executor, memory.expired.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

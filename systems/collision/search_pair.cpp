@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "components/check.h"
-#include "systems/collision/box.h"
 #include "systems/collision/collider_distance.h"
 #include "systems/collision/contact_key.h"
+#include "systems/collision/leaf_boxes.h"
 #include "systems/geometry/closest_points.h"
 
 namespace skerry {
@@ -27,7 +27,7 @@ bool share_node(const std::array<Index, Size>& a, Index node) {
 
 class BodySearch {
 public:
-    BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found)
+    BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes, Column<FoundCandidate>& found)
         : inputs_(inputs),
           triangle_(inputs.surface.triangles),
           pair_(pair),
@@ -59,11 +59,14 @@ private:
     }
 
     void push_if_near(Index a, Index b) {
-        if (distance_squared(boxes_[a], boxes_[b]) < radius_squared_) push(a, b);
+        if (distance_squared(boxes_.node[a], boxes_.node[b]) < radius_squared_) push(a, b);
     }
 
     void split_with_itself(Index a) {
-        if (node(a).count > 0) return;  // the features of one triangle share its nodes
+        if (node(a).count > 0) {
+            compare_within(a);
+            return;
+        }
         push(a + 1, a + 1);
         push(node(a).right, node(a).right);
         push_if_near(a + 1, node(a).right);
@@ -73,7 +76,7 @@ private:
     void split(Index a, Index b) {
         const bool leaf_a = node(a).count > 0, leaf_b = node(b).count > 0;
         if (leaf_a && leaf_b) {
-            compare_triangles(open(a), open(b));
+            compare_leaves(a, b);
         } else if (leaf_b || (!leaf_a && node(a).skip - a >= node(b).skip - b)) {
             push_if_near(a + 1, b);
             push_if_near(node(a).right, b);
@@ -83,34 +86,68 @@ private:
         }
     }
 
-    struct Leaf {
+    const LeafBoxes& leaf_box(Index a) const { return boxes_.leaf[node(a).leaf]; }
+    const LeafTriangles& leaf_triangle(Index a) const { return inputs_.leaf_triangle[node(a).leaf]; }
+
+    /// The lanes of a leaf that are near a box.
+    unsigned lanes_near(Index leaf, const Aabb& box, Real radius_squared) const {
+        return lanes_below(distance_squared(leaf_box(leaf), box), radius_squared);
+    }
+
+    void compare_leaves(Index a, Index b) {
+        const unsigned of_a = lanes_near(a, boxes_.node[b], radius_squared_);
+        if (of_a == 0) return;
+        compare_points(a, of_a, b, false);
+        compare_points(b, lanes_near(b, boxes_.node[a], radius_squared_), a, true);
+        for_each_lane(of_a, [&](std::size_t i) {
+            const Aabb box = lane_of(leaf_box(a), i);
+            for_each_lane(lanes_near(b, box, edge_radius_squared_), [&](std::size_t j) {
+                compare_edges({leaf_triangle(a)[i], box}, {leaf_triangle(b)[j], lane_of(leaf_box(b), j)});
+            });
+        });
+    }
+
+    /// A leaf with itself: points against all triangles, and every pair of triangles once.
+    void compare_within(Index a) {
+        const unsigned all = (1U << node(a).count) - 1;
+        compare_points(a, all, a, false);
+        for_each_lane(all, [&](std::size_t i) {
+            const Aabb box = lane_of(leaf_box(a), i);
+            const unsigned later = lanes_near(a, box, edge_radius_squared_) & (~0U << (i + 1));
+            for_each_lane(later, [&](std::size_t j) {
+                compare_edges({leaf_triangle(a)[i], box}, {leaf_triangle(a)[j], lane_of(leaf_box(a), j)});
+            });
+        });
+    }
+
+    /// The points that the triangles in `lanes` own, with the triangles of the other leaf.
+    void compare_points(Index owner, unsigned lanes, Index other, bool of_second) {
+        for_each_lane(lanes, [&](std::size_t lane) {
+            const Index row = leaf_triangle(owner)[lane];
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (!(triangle_.owned_vertices[row] >> k & 1)) continue;
+                const Index n = triangle_.node[row][k];
+                const Aabb point{position(n), position(n)};
+                for_each_lane(lanes_near(other, point, radius_squared_),
+                              [&](std::size_t j) { compare_point(n, triangle_.vertex[row][k], leaf_triangle(other)[j], of_second); });
+            }
+        });
+    }
+
+    void compare_point(Index n, Index vertex, Index triangle, bool of_second) {
+        const auto& corner = triangle_.node[triangle];
+        const Real squared =
+            closest_point_on_triangle(position(n), position(corner[0]), position(corner[1]), position(corner[2])).distance_squared;
+        if (!(squared < radius_squared_) || (self_ && excluded_at_rest(n, corner))) return;
+        add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin, triangle - triangles(of_second).begin), vertex,
+             triangle},
+            squared, pair_.scale.zone);
+    }
+
+    struct Triangle {
         Index row;  // of TriangleTable
-        const Aabb& box;
+        Aabb box;
     };
-    Leaf open(Index leaf) const { return {inputs_.bvh_triangle[node(leaf).first], boxes_[leaf]}; }
-
-    void compare_triangles(const Leaf& a, const Leaf& b) {
-        compare_points(a, b, false);
-        compare_points(b, a, true);
-        if (distance_squared(a.box, b.box) < edge_radius_squared_) compare_edges(a, b);
-    }
-
-    void compare_points(const Leaf& owner, const Leaf& other, bool of_second) {
-        const std::uint8_t owned = triangle_.owned_vertices[owner.row];
-        const auto& corner = triangle_.node[other.row];
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (!(owned >> k & 1)) continue;
-            const Index n = triangle_.node[owner.row][k];
-            if (!(distance_squared(other.box, position(n)) < radius_squared_)) continue;
-            const Real squared =
-                closest_point_on_triangle(position(n), position(corner[0]), position(corner[1]), position(corner[2])).distance_squared;
-            if (!(squared < radius_squared_) || (self_ && excluded_at_rest(n, corner))) continue;
-            const Index vertex = triangle_.vertex[owner.row][k];
-            add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin, other.row - triangles(of_second).begin),
-                 vertex, other.row},
-                squared, pair_.scale.zone);
-        }
-    }
 
     struct NearEdges {
         std::array<Index, 3> edge;  // place in the triangle
@@ -119,7 +156,7 @@ private:
     };
 
     /// The edges that a triangle owns and that are near a box.
-    NearEdges edges_near(const Leaf& owner, const Aabb& other) const {
+    NearEdges edges_near(const Triangle& owner, const Aabb& other) const {
         NearEdges near;
         const std::uint8_t owned = triangle_.owned_edges[owner.row];
         const auto& node = triangle_.node[owner.row];
@@ -133,7 +170,7 @@ private:
         return near;
     }
 
-    void compare_edges(const Leaf& a, const Leaf& b) {
+    void compare_edges(const Triangle& a, const Triangle& b) {
         const NearEdges of_a = edges_near(a, b.box);
         if (of_a.count == 0) return;
         const NearEdges of_b = edges_near(b, a.box);
@@ -190,7 +227,7 @@ private:
     const CollisionInputs& inputs_;
     const TriangleTable& triangle_;
     const PairToSearch& pair_;
-    std::span<const Aabb> boxes_;
+    const BvhBoxes& boxes_;
     Column<FoundCandidate>& found_;
     const Real radius_;
     const Real radius_squared_;
@@ -200,10 +237,11 @@ private:
     std::size_t waiting_count_ = 0;
 };
 
-Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found) {
+Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes, Column<FoundCandidate>& found) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return infinite;
-    const Real apart = std::max(pair.apart, std::sqrt(distance_squared(boxes[first.begin], boxes[second.begin]))) - pair.scale.zone;
+    const Real apart =
+        std::max(pair.apart, std::sqrt(distance_squared(boxes.node[first.begin], boxes.node[second.begin]))) - pair.scale.zone;
     if (apart >= pair.margin) return pair.datum + apart;
     BodySearch(inputs, pair, boxes, found).run();
     std::sort(found.begin(), found.end(),
@@ -232,7 +270,7 @@ Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Co
 
 }  // namespace
 
-Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes, Column<FoundCandidate>& found) {
+Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes, Column<FoundCandidate>& found) {
     found.clear();
     if (pair.kind == PairKind::collider) return search_collider(inputs, pair, found);
     return search_bodies(inputs, pair, boxes, found);

@@ -1,8 +1,9 @@
 #include "systems/collision/surfaces_cross.h"
 
 #include <Eigen/Geometry>
+#include <limits>
 
-#include "systems/collision/box.h"
+#include "systems/collision/leaf_boxes.h"
 #include "systems/collision/rest_distance.h"
 
 namespace skerry {
@@ -22,21 +23,34 @@ bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, 
 
 class CrossingSearch {
 public:
-    CrossingSearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes)
+    CrossingSearch(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes)
         : inputs_(inputs), pair_(pair), boxes_(boxes) {}
 
     bool run(Index a, Index b) const {
         const bool same = pair_.kind == PairKind::self && a == b;
-        if (!same && distance_squared(boxes_[a], boxes_[b]) > 0) return false;
+        if (!same && distance_squared(boxes_.node[a], boxes_.node[b]) > 0) return false;
         const BvhNode &own = inputs_.bvh_node[a], &other = inputs_.bvh_node[b];
-        if (own.count > 0 && other.count > 0)
-            return !same && triangles_cross(inputs_.bvh_triangle[own.first], inputs_.bvh_triangle[other.first]);
+        if (own.count > 0 && other.count > 0) return leaves_cross(own, other, same);
         if (same) return run(a + 1, a + 1) || run(own.right, own.right) || run(a + 1, own.right);
         if (other.count > 0 || (own.count == 0 && own.skip - a >= other.skip - b)) return run(a + 1, b) || run(own.right, b);
         return run(a, b + 1) || run(a, other.right);
     }
 
 private:
+    bool leaves_cross(const BvhNode& own, const BvhNode& other, bool same) const {
+        constexpr Real overlap = std::numeric_limits<Real>::denorm_min();  // the squared distance is below this
+        const LeafBoxes &first = boxes_.leaf[own.leaf], &second = boxes_.leaf[other.leaf];
+        bool crossing = false;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(own.count) && !crossing; ++i) {
+            unsigned lanes = lanes_below(distance_squared(second, lane_of(first, i)), overlap);
+            if (same) lanes &= ~0U << (i + 1);  // each pair once
+            for_each_lane(lanes, [&](std::size_t j) {
+                crossing = crossing || triangles_cross(inputs_.leaf_triangle[own.leaf][i], inputs_.leaf_triangle[other.leaf][j]);
+            });
+        }
+        return crossing;
+    }
+
     bool triangles_cross(Index a, Index b) const { return edges_pass(a, b) || edges_pass(b, a); }
 
     bool edges_pass(Index owner, Index through) const {
@@ -53,12 +67,12 @@ private:
 
     const CollisionInputs& inputs_;
     const PairToSearch& pair_;
-    std::span<const Aabb> boxes_;
+    const BvhBoxes& boxes_;
 };
 
 }  // namespace
 
-bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> boxes) {
+bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes) {
     return CrossingSearch(inputs, pair, boxes).run(inputs.body.bvh_nodes[pair.first].begin, inputs.body.bvh_nodes[pair.second].begin);
 }
 

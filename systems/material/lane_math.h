@@ -10,20 +10,6 @@
 
 namespace skerry {
 
-/// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler instead of a loop over Lanes:
-/// it does not depend on the vectoriser's luck, and every lane gets the bits that the same source gives for one Real.
-typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
-
-inline Real8 load(const Lanes<Real, element_lanes>& from) {
-    Real8 to;
-    std::memcpy(&to, from.lane, sizeof to);
-    return to;
-}
-
-inline void store(const Real8& from, Lanes<Real, element_lanes>& to) {
-    std::memcpy(to.lane, &from, sizeof from);
-}
-
 inline Real square_root(Real x) {
     return std::sqrt(x);
 }

@@ -23,6 +23,7 @@ struct CollisionWorld {
     ColliderTable collider;
     SurfaceTables surface;
     BvhTable bvh;
+    BvhLeafTable bvh_leaves;
     Column<SurfaceProperties> material;
     SearchState search;
     PairTable pairs;
@@ -35,8 +36,8 @@ struct CollisionWorld {
     CollisionWorld() { settings.gravity = 9.81; }
 
     CollisionInputs inputs() const {
-        return {body,     collider,     surface,        nodes.inverse_mass, material,
-                bvh.node, bvh.triangle, nodes.position, nodes.velocity,     nodes.rest_position};
+        return {body,           collider,           surface, nodes.inverse_mass, material, bvh.node, bvh_leaves.triangle, nodes.position,
+                nodes.velocity, nodes.rest_position};
     }
 
     static RigidMotion at(const Vec3& position, const Mat3& rotation = Mat3::Identity()) {
@@ -77,7 +78,7 @@ struct CollisionWorld {
 
     /// Both stages, as in a step.
     void find(Real h) {
-        find_candidates(*executor, inputs(), settings, h, bvh.box, search, pairs);
+        find_candidates(*executor, inputs(), settings, h, bvh.box, bvh_leaves.box, search, pairs);
         find_contacts(*executor, inputs(), settings, h, pairs, crossings, contacts);
     }
 
@@ -120,7 +121,9 @@ private:
         body.triangles[row] = ranges.triangles;
         body.edges[row] = ranges.edges;
         body.vertices[row] = ranges.vertices;
-        body.bvh_nodes[row] = append_bvh(ranges.triangles, surface.triangles.node, nodes.position, bvh);
+        const BvhRanges tree = append_bvh(ranges.triangles, surface.triangles.node, nodes.position, bvh, bvh_leaves);
+        body.bvh_nodes[row] = tree.nodes;
+        body.bvh_leaves[row] = tree.leaves;
         body.contact_distance[row] = contact_distance;
         for (Index e = ranges.edges.begin; e < ranges.edges.end; ++e) {
             const auto& ends = surface.edges.node[e];

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "systems/collision/leaf_boxes.h"
 #include "tests/support/collision_world.h"
 
 using namespace skerry;
@@ -15,30 +16,35 @@ bool contains(const Aabb& box, const Vec3& p) {
 }
 
 void refit(test::CollisionWorld& world, Index body) {
-    refit_bvh(world.body.bvh_nodes[body], world.bvh.node, world.bvh.triangle, world.surface.triangles.node, world.nodes.position,
-              world.bvh.box);
+    refit_bvh(world.body.bvh_nodes[body], world.bvh.node, world.bvh_leaves.triangle, world.surface.triangles.node, world.nodes.position,
+              world.bvh.box, world.bvh_leaves.box);
 }
 
 }  // namespace
 
-TEST_CASE("a tree holds each triangle of its body in a leaf of its own", "[unit]") {
+TEST_CASE("a tree holds each triangle of its body in one lane of one leaf", "[unit]") {
     test::CollisionWorld world;
     world.add_solid(test::ball_mesh(1, 3), world.at(Vec3::Zero()), 0);
     const Index b = world.add_solid(test::ball_mesh(1, 4), world.at({3, 0, 0}), 0);
-    const Range nodes = world.body.bvh_nodes[b], triangles = world.body.triangles[b];
+    const Range nodes = world.body.bvh_nodes[b], leaves = world.body.bvh_leaves[b], triangles = world.body.triangles[b];
     std::set<Index> seen;
     for (Index row = nodes.begin; row < nodes.end; ++row) {
         const BvhNode& node = world.bvh.node[row];
-        CHECK(node.count <= 1);
+        CHECK(node.count <= leaf_lanes);
         CHECK(node.skip <= nodes.end);
         if (node.count == 0) {
             CHECK(world.bvh.node[row + 1].skip == node.right);
             CHECK(world.bvh.node[node.right].skip == node.skip);
-        } else {
-            CHECK(node.skip == row + 1);
+            CHECK(node.leaf == no_index);
+            continue;
         }
-        for (Index i = node.first; i < node.first + node.count; ++i) {
-            const Index t = world.bvh.triangle[i];
+        CHECK(node.skip == row + 1);
+        CHECK(node.leaf >= leaves.begin);
+        CHECK(node.leaf < leaves.end);
+        for (Index l = 0; l < leaf_lanes; ++l) {
+            const Index t = world.bvh_leaves.triangle[node.leaf][static_cast<std::size_t>(l)];
+            CHECK((t == no_index) == (l >= node.count));
+            if (t == no_index) continue;
             CHECK(t >= triangles.begin);
             CHECK(t < triangles.end);
             CHECK(seen.insert(t).second);
@@ -58,12 +64,16 @@ TEST_CASE("after a refit every box holds all triangles below it, and no more tha
     for (Index row = nodes.begin; row < nodes.end; ++row) {
         Aabb tight{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
         for (Index below = row; below < world.bvh.node[row].skip; ++below)
-            for (Index i = world.bvh.node[below].first; i < world.bvh.node[below].first + world.bvh.node[below].count; ++i)
-                for (Index n : world.surface.triangles.node[world.bvh.triangle[i]]) {
+            for (Index l = 0; l < world.bvh.node[below].count; ++l) {
+                const auto lane = static_cast<std::size_t>(l);
+                const Index leaf = world.bvh.node[below].leaf;
+                for (Index n : world.surface.triangles.node[world.bvh_leaves.triangle[leaf][lane]]) {
                     CHECK(contains(world.bvh.box[row], world.nodes.position[n]));
+                    CHECK(contains(lane_of(world.bvh_leaves.box[leaf], lane), world.nodes.position[n]));
                     tight.lower = tight.lower.cwiseMin(world.nodes.position[n]);
                     tight.upper = tight.upper.cwiseMax(world.nodes.position[n]);
                 }
+            }
         CHECK(tight.lower == world.bvh.box[row].lower);
         CHECK(tight.upper == world.bvh.box[row].upper);
     }
@@ -79,6 +89,8 @@ TEST_CASE("a point that is not a number stays out of the boxes", "[unit]") {
 
 TEST_CASE("a body without triangles has no tree", "[unit]") {
     BvhTable bvh;
-    CHECK(append_bvh({0, 0}, {}, {}, bvh).size() == 0);
+    BvhLeafTable leaves;
+    CHECK(append_bvh({0, 0}, {}, {}, bvh, leaves).nodes.size() == 0);
     CHECK(bvh.node.empty());
+    CHECK(leaves.triangle.empty());
 }

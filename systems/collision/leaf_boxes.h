@@ -1,0 +1,58 @@
+// Eight boxes against one. Boxes that stand numbers which are not finite, as in box.h.
+#pragma once
+
+#include <bit>
+
+#include "systems/collision/box.h"
+
+namespace skerry {
+
+static_assert(leaf_lanes == element_lanes, "a leaf fills the lanes of Real8");
+
+inline void set_lane(LeafBoxes& boxes, std::size_t lane, const Aabb& box) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        boxes.lower[i][lane] = box.lower[static_cast<Index>(i)];
+        boxes.upper[i][lane] = box.upper[static_cast<Index>(i)];
+    }
+}
+
+inline Aabb lane_of(const LeafBoxes& boxes, std::size_t lane) {
+    return {{boxes.lower[0][lane], boxes.lower[1][lane], boxes.lower[2][lane]},
+            {boxes.upper[0][lane], boxes.upper[1][lane], boxes.upper[2][lane]}};
+}
+
+inline LeafBoxes empty_leaf() {
+    LeafBoxes boxes;
+    for (std::size_t l = 0; l < leaf_lanes; ++l) set_lane(boxes, l, empty_box());
+    return boxes;
+}
+
+/// m^2, by lane, 0 where they overlap.
+inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
+    const Real8 none{};
+    Real8 sum{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Real8 above = load(boxes.lower[i]) - to.upper[static_cast<Index>(i)],
+                    below = to.lower[static_cast<Index>(i)] - load(boxes.upper[i]);
+        const Real8 nearer = above > below ? above : below, gap = nearer > none ? nearer : none;
+        sum += gap * gap;
+    }
+    return sum;
+}
+
+/// A bit for each lane that is below the limit.
+inline unsigned lanes_below(const Real8& value, Real limit) {
+    Lanes<Real, leaf_lanes> lane;
+    store(value, lane);
+    unsigned bits = 0;
+#pragma omp simd reduction(| : bits)
+    for (unsigned l = 0; l < leaf_lanes; ++l) bits |= static_cast<unsigned>(lane.lane[l] < limit) << l;
+    return bits;
+}
+
+/// Calls visit(lane) for each bit, in rising order.
+void for_each_lane(unsigned bits, auto&& visit) {
+    for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+}  // namespace skerry
