@@ -95,29 +95,24 @@ private:
     }
 
     void compare_leaves(Index a, Index b) {
-        const unsigned of_a = lanes_near(a, boxes_.node[b], radius_squared_);
+        const Aabb &box_a = boxes_.node[a], &box_b = boxes_.node[b];
+        const unsigned of_a = lanes_near(a, box_b, radius_squared_);
         if (of_a == 0) return;
+        const unsigned of_b = lanes_near(b, box_a, radius_squared_);
         compare_points(a, of_a, b, false);
-        compare_points(b, lanes_near(b, boxes_.node[a], radius_squared_), a, true);
-        for_each_lane(of_a, [&](std::size_t i) {
-            const Aabb box = lane_of(leaf_box(a), i);
-            for_each_lane(lanes_near(b, box, edge_radius_squared_), [&](std::size_t j) {
-                compare_edges({leaf_triangle(a)[i], box}, {leaf_triangle(b)[j], lane_of(leaf_box(b), j)});
-            });
-        });
+        compare_points(b, of_b, a, true);
+        list_edges(a, of_a, box_b, edges_[0]);
+        if (edges_[0].count == 0) return;
+        list_edges(b, of_b, box_a, edges_[1]);
+        for (std::size_t i = 0; i < edges_[0].count; ++i) compare_edge(edges_[0], i, edges_[1], 0);
     }
 
-    /// A leaf with itself: points against all triangles, and every pair of triangles once.
+    /// A leaf with itself: points against all triangles, and every pair of edges once.
     void compare_within(Index a) {
         const unsigned all = (1U << node(a).count) - 1;
         compare_points(a, all, a, false);
-        for_each_lane(all, [&](std::size_t i) {
-            const Aabb box = lane_of(leaf_box(a), i);
-            const unsigned later = lanes_near(a, box, edge_radius_squared_) & (~0U << (i + 1));
-            for_each_lane(later, [&](std::size_t j) {
-                compare_edges({leaf_triangle(a)[i], box}, {leaf_triangle(a)[j], lane_of(leaf_box(a), j)});
-            });
-        });
+        list_edges(a, all, boxes_.node[a], edges_[0]);
+        for (std::size_t i = 0; i < edges_[0].count; ++i) compare_edge(edges_[0], i, edges_[0], i + 1);
     }
 
     /// The points that the triangles in `lanes` own, with the triangles of the other leaf.
@@ -144,49 +139,49 @@ private:
             squared, pair_.scale.zone);
     }
 
-    struct Triangle {
-        Index row;  // of TriangleTable
-        Aabb box;
+    /// Edges of a leaf, their boxes side by side.
+    struct LeafEdges {
+        std::array<LeafBoxes, 3> box;  // eight at a time; lanes behind the last edge are empty
+        std::array<Index, 3 * leaf_lanes> edge;
+        std::array<std::array<Index, 2>, 3 * leaf_lanes> node;
+        std::size_t count;
     };
 
-    struct NearEdges {
-        std::array<Index, 3> edge;  // place in the triangle
-        std::array<Aabb, 3> box;
-        std::size_t count = 0;
-    };
+    /// The edges that the triangles in `lanes` own, of those that are near a box.
+    void list_edges(Index leaf, unsigned lanes, const Aabb& near, LeafEdges& out) const {
+        out.count = 0;
+        for_each_lane(lanes, [&](std::size_t lane) {
+            const Index row = leaf_triangle(leaf)[lane];
+            const auto& corner = triangle_.node[row];
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (!(triangle_.owned_edges[row] >> k & 1)) continue;
+                const std::array<Index, 2> ends{corner[k], corner[(k + 1) % 3]};
+                const Aabb box = edge_box(ends);
+                if (!(distance_squared(box, near) < edge_radius_squared_)) continue;
+                set_lane(out.box[out.count / leaf_lanes], out.count % leaf_lanes, box);
+                out.edge[out.count] = triangle_.edge[row][k];
+                out.node[out.count++] = ends;
+            }
+        });
+        for (std::size_t i = out.count; i % leaf_lanes != 0; ++i) set_lane(out.box[i / leaf_lanes], i % leaf_lanes, empty_box());
+    }
 
-    /// The edges that a triangle owns and that are near a box.
-    NearEdges edges_near(const Triangle& owner, const Aabb& other) const {
-        NearEdges near;
-        const std::uint8_t owned = triangle_.owned_edges[owner.row];
-        const auto& node = triangle_.node[owner.row];
-        for (Index i = 0; i < 3; ++i) {
-            if (!(owned >> i & 1)) continue;
-            const Aabb box = edge_box({node[static_cast<std::size_t>(i)], node[static_cast<std::size_t>((i + 1) % 3)]});
-            if (!(distance_squared(box, other) < edge_radius_squared_)) continue;
-            near.edge[near.count] = i;
-            near.box[near.count++] = box;
+    /// Edge i of one list with those of the other from `first` on.
+    void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, std::size_t first) {
+        const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
+        for (std::size_t group = first - first % leaf_lanes; group < b.count; group += leaf_lanes) {
+            unsigned lanes = lanes_below(distance_squared(b.box[group / leaf_lanes], box), edge_radius_squared_);
+            if (group < first) lanes &= ~0U << (first - group);
+            for_each_lane(lanes, [&](std::size_t lane) { compare_edges(a, i, b, group + lane); });
         }
-        return near;
     }
 
-    void compare_edges(const Triangle& a, const Triangle& b) {
-        const NearEdges of_a = edges_near(a, b.box);
-        if (of_a.count == 0) return;
-        const NearEdges of_b = edges_near(b, a.box);
-        for (std::size_t i = 0; i < of_a.count; ++i)
-            for (std::size_t j = 0; j < of_b.count; ++j)
-                if (distance_squared(of_a.box[i], of_b.box[j]) < edge_radius_squared_)
-                    compare_edge(a.row, static_cast<std::size_t>(of_a.edge[i]), b.row, static_cast<std::size_t>(of_b.edge[j]));
-    }
-
-    void compare_edge(Index a, std::size_t i, Index b, std::size_t j) {
-        const auto &na = triangle_.node[a], &nb = triangle_.node[b];
-        const std::array<Index, 2> ea{na[i], na[(i + 1) % 3]}, eb{nb[j], nb[(j + 1) % 3]};
+    void compare_edges(const LeafEdges& a, std::size_t i, const LeafEdges& b, std::size_t j) {
+        const auto &na = a.node[i], &nb = b.node[j];
         const Real squared =
-            closest_points_of_segments(position(ea[0]), position(ea[1]), position(eb[0]), position(eb[1])).distance_squared;
-        if (!(squared < edge_radius_squared_) || (self_ && excluded_at_rest(ea, eb))) return;
-        add_edges(triangle_.edge[a][i], triangle_.edge[b][j], squared);
+            closest_points_of_segments(position(na[0]), position(na[1]), position(nb[0]), position(nb[1])).distance_squared;
+        if (!(squared < edge_radius_squared_) || (self_ && excluded_at_rest(na, nb))) return;
+        add_edges(a.edge[i], b.edge[j], squared);
     }
 
     void add_edges(Index a, Index b, Real squared) {
@@ -233,6 +228,7 @@ private:
     const Real radius_squared_;
     const Real edge_radius_squared_;  // edges are looked at less deep
     const bool self_;
+    std::array<LeafEdges, 2> edges_;  // of the two leaves at hand
     std::array<std::array<Index, 2>, max_waiting> waiting_;
     std::size_t waiting_count_ = 0;
 };

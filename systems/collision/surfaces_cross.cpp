@@ -38,7 +38,7 @@ public:
 
 private:
     bool leaves_cross(const BvhNode& own, const BvhNode& other, bool same) const {
-        constexpr Real overlap = std::numeric_limits<Real>::denorm_min();  // the squared distance is below this
+        constexpr Real overlap = std::numeric_limits<Real>::min();  // squared distances are below this; denormal numbers may count as 0
         const LeafBoxes &first = boxes_.leaf[own.leaf], &second = boxes_.leaf[other.leaf];
         bool crossing = false;
         for (std::size_t i = 0; i < static_cast<std::size_t>(own.count) && !crossing; ++i) {
