@@ -6,6 +6,7 @@
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
+#include "systems/dynamics/element_block.h"
 #include "systems/dynamics/largest_length.h"
 
 namespace skerry {
@@ -73,6 +74,14 @@ Fastest fastest_corner(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
+/// Whether any corner of a block of elements is faster than that: all elements side by side, and nothing is said of which.
+bool any_corner_faster(const CheckInputs& state, std::size_t block, Real limit_squared) {
+    LaneMat3<Real8> parting = edges(state.element_node[block], state.velocity_next);
+    if (!state.push_out.empty()) parting = parting + edges(state.element_node[block], state.push_out);
+    const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1), third = dot(parting.c2, parting.c2);
+    return !all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared));
+}
+
 /// Relative to the mean velocity of the body: a coarser measure, for a body whose elements are not given.
 Fastest fastest_from_mean(const CheckInputs& state, Range blocks) {
     Vec3 sum = Vec3::Zero();
@@ -105,7 +114,7 @@ Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t 
         const Range elements = state.body_blocks[body];
         const std::size_t begin = static_cast<std::size_t>(elements.begin), count = static_cast<std::size_t>(elements.size());
         if (!any_exceeds(executor, count, element_blocks_per_job,
-                         [&](std::size_t row) { return fastest_corner(state, begin + row).speed_squared > limit_squared; }))
+                         [&](std::size_t row) { return any_corner_faster(state, begin + row, limit_squared); }))
             return {};
         for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_corner(state, begin + row));
     }
