@@ -6,7 +6,7 @@
 
 #include "engine/world/world_state.h"
 #include "systems/collision/build_surface.h"
-#include "systems/collision/bvh.h"
+#include "systems/collision/tree/bvh.h"
 #include "systems/dynamics/build_elements.h"
 #include "systems/dynamics/element_levels.h"
 #include "systems/dynamics/stable_step.h"

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/box.h"
-#include "systems/collision/bvh.h"
 #include "systems/collision/contact_reach.h"
-#include "systems/collision/find_pairs.h"
-#include "systems/collision/search_pair.h"
-#include "systems/collision/step_reach.h"
-#include "systems/collision/surfaces_cross.h"
+#include "systems/collision/search/find_pairs.h"
+#include "systems/collision/search/search_pair.h"
+#include "systems/collision/search/step_reach.h"
+#include "systems/collision/search/surfaces_cross.h"
+#include "systems/collision/tree/box.h"
+#include "systems/collision/tree/bvh.h"
 
 namespace skerry {
 

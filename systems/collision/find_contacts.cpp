@@ -7,13 +7,13 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/collider_distance.h"
 #include "systems/collision/contact_key.h"
 #include "systems/collision/contact_reach.h"
 #include "systems/collision/contact_rows.h"
-#include "systems/collision/edge_edge_contact.h"
-#include "systems/collision/point_triangle_contact.h"
-#include "systems/collision/rest_distance.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/narrow/edge_edge_contact.h"
+#include "systems/collision/narrow/point_triangle_contact.h"
+#include "systems/collision/narrow/rest_distance.h"
 
 namespace skerry {
 

@@ -7,7 +7,7 @@
 #include "systems/collision/contact_key.h"
 #include "systems/collision/contact_reach.h"
 #include "systems/collision/contact_rows.h"
-#include "systems/collision/rest_distance.h"
+#include "systems/collision/narrow/rest_distance.h"
 #include "systems/geometry/closest_points.h"
 #include "systems/geometry/time_of_contact.h"
 

@@ -10,9 +10,9 @@
 #include "components/pair_table.h"
 #include "jobs/executor.h"
 #include "systems/collision/build_surface.h"
-#include "systems/collision/bvh.h"
 #include "systems/collision/find_candidates.h"
 #include "systems/collision/find_contacts.h"
+#include "systems/collision/tree/bvh.h"
 #include "tests/support/meshes.h"
 
 namespace skerry::test {

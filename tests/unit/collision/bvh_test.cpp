@@ -1,10 +1,10 @@
-#include "systems/collision/bvh.h"
+#include "systems/collision/tree/bvh.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 #include <set>
 
-#include "systems/collision/leaf_boxes.h"
+#include "systems/collision/tree/leaf_boxes.h"
 #include "tests/support/collision_world.h"
 
 using namespace skerry;

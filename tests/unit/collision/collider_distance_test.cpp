@@ -1,4 +1,4 @@
-#include "systems/collision/collider_distance.h"
+#include "systems/collision/narrow/collider_distance.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

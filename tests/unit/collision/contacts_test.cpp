@@ -6,7 +6,7 @@
 #include <set>
 
 #include "systems/collision/contact_key.h"
-#include "systems/collision/edge_edge_contact.h"
+#include "systems/collision/narrow/edge_edge_contact.h"
 #include "tests/support/collision_world.h"
 
 using namespace skerry;

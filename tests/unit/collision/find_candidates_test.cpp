@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "systems/collision/collider_distance.h"
 #include "systems/collision/contact_key.h"
+#include "systems/collision/narrow/collider_distance.h"
 #include "systems/geometry/closest_points.h"
 #include "tests/support/collision_world.h"
 

@@ -1,4 +1,4 @@
-#include "systems/collision/leaf_boxes.h"
+#include "systems/collision/tree/leaf_boxes.h"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,15 +1,15 @@
-#include "systems/collision/find_pairs.h"
+#include "systems/collision/search/find_pairs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/box.h"
-#include "systems/collision/collider_distance.h"
 #include "systems/collision/contact_key.h"
 #include "systems/collision/contact_reach.h"
-#include "systems/collision/step_reach.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/search/step_reach.h"
+#include "systems/collision/tree/box.h"
 
 namespace skerry {
 

@@ -1,4 +1,4 @@
-#include "systems/collision/search_pair.h"
+#include "systems/collision/search/search_pair.h"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "components/check.h"
-#include "systems/collision/collider_distance.h"
 #include "systems/collision/contact_key.h"
-#include "systems/collision/leaf_boxes.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/tree/leaf_boxes.h"
 #include "systems/geometry/closest_points.h"
 
 namespace skerry {

@@ -3,7 +3,7 @@
 
 #include <bit>
 
-#include "systems/collision/box.h"
+#include "systems/collision/tree/box.h"
 
 namespace skerry {
 

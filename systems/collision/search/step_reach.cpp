@@ -1,4 +1,4 @@
-#include "systems/collision/step_reach.h"
+#include "systems/collision/search/step_reach.h"
 
 #include <algorithm>
 #include <cmath>

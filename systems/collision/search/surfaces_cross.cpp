@@ -1,10 +1,10 @@
-#include "systems/collision/surfaces_cross.h"
+#include "systems/collision/search/surfaces_cross.h"
 
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "systems/collision/leaf_boxes.h"
-#include "systems/collision/rest_distance.h"
+#include "systems/collision/narrow/rest_distance.h"
+#include "systems/collision/tree/leaf_boxes.h"
 
 namespace skerry {
 

@@ -1,4 +1,4 @@
-#include "systems/collision/point_triangle_contact.h"
+#include "systems/collision/narrow/point_triangle_contact.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 #include "components/surface_table.h"
 #include "systems/collision/contact_reach.h"
-#include "systems/collision/point_triangle_contact.h"
+#include "systems/collision/narrow/point_triangle_contact.h"
 #include "systems/geometry/closest_points.h"
 
 namespace skerry {

@@ -1,4 +1,4 @@
-#include "systems/collision/edge_edge_contact.h"
+#include "systems/collision/narrow/edge_edge_contact.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

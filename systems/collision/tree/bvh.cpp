@@ -1,10 +1,10 @@
-#include "systems/collision/bvh.h"
+#include "systems/collision/tree/bvh.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "systems/collision/box.h"
-#include "systems/collision/leaf_boxes.h"
+#include "systems/collision/tree/box.h"
+#include "systems/collision/tree/leaf_boxes.h"
 
 namespace skerry {
 

@@ -1,7 +1,7 @@
 // Whether two surfaces go through each other.
 #pragma once
 
-#include "systems/collision/search_pair.h"
+#include "systems/collision/search/search_pair.h"
 
 namespace skerry {
 
