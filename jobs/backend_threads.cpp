@@ -7,6 +7,7 @@
 
 #include "components/check.h"
 #include "jobs/backends.h"
+#include "jobs/pause.h"
 
 namespace skerry {
 
@@ -16,14 +17,6 @@ using Clock = std::chrono::steady_clock;
 
 // A step has a dozen stages in 100 us: a worker that slept between two of them would wake too late for the second.
 constexpr std::chrono::microseconds spin_time{50};
-
-void pause_briefly() {
-#if defined(__x86_64__)
-    __builtin_ia32_pause();
-#else
-    std::this_thread::yield();
-#endif
-}
 
 /// Waits without sleeping, not longer than spin_time, until ready() is true.
 bool spin_until(bool may_spin, auto&& ready) {

@@ -5,20 +5,9 @@
 
 #include "components/check.h"
 #include "jobs/backends.h"
+#include "jobs/pause.h"
 
 namespace skerry {
-
-namespace {
-
-void pause_briefly() {
-#if defined(__x86_64__)
-    __builtin_ia32_pause();
-#else
-    std::this_thread::yield();
-#endif
-}
-
-}  // namespace
 
 /// Others are at work on what is waited for, unless the system has put them aside: then it gets this core to go on with them.
 template <class Ready>

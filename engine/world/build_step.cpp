@@ -118,22 +118,9 @@ void list_solve(WorldState& w, TaskGraph& g) {
     g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next), make(w.kept_velocities),
             only_if([&w] { return w.problem_watch.wants(w.counters.steps + 1); }, reads(w.problem_watch)));
     g.stage("solver/solve_regions", solve_regions,
-            bundle(
-                [&w, &n, &c] {
-                    return RegionInputs{c.stencil,
-                                        c.normal,
-                                        c.gap,
-                                        c.surface_velocity,
-                                        c.static_friction,
-                                        c.dynamic_friction,
-                                        c.restitution,
-                                        n.inverse_mass,
-                                        n.velocity,
-                                        w.step.collision.gravity,
-                                        c.key};
-                },
-                reads(c.key, c.stencil, c.normal, c.gap, c.surface_velocity, c.static_friction, c.dynamic_friction, c.restitution,
-                      n.inverse_mass, n.velocity)),
+            bundle([&w, &n] { return w.region_inputs(n.velocity); },
+                   reads(c.key, c.stencil, c.normal, c.gap, c.surface_velocity, c.static_friction, c.dynamic_friction, c.restitution,
+                         n.inverse_mass, n.velocity)),
             value(w.step.solver), value(w.step.h), make(w.solver_memory), make(w.regions),
             bundle(
                 [&n, &c] {

@@ -27,17 +27,8 @@ void show_contact_problem(const WorldState& world, Real time) {
     if (!world.problem_watch.wants(world.counters.steps) || world.contacts.size() == 0) return;
     const ContactTable& c = world.contacts;
     const KeptVelocities& kept = world.kept_velocities;
-    const RegionInputs contacts{c.stencil,
-                                c.normal,
-                                c.gap,
-                                c.surface_velocity,
-                                c.static_friction,
-                                c.dynamic_friction,
-                                c.restitution,
-                                world.nodes.inverse_mass,
-                                kept.velocity,
-                                world.step.collision.gravity};
-    StepProblem problem = step_problem({contacts, kept.velocity_next, c.impulse, c.region}, world.step.solver, world.step.h);
+    StepProblem problem =
+        step_problem({world.region_inputs(kept.velocity), kept.velocity_next, c.impulse, c.region}, world.step.solver, world.step.h);
     if (problem.problem.q.empty()) return;
     problem.step = world.counters.steps;
     problem.time = time;

@@ -82,6 +82,21 @@ ElementInputs WorldState::element_inputs() const {
              any_asleep ? std::span<const std::uint8_t>(bodies.asleep.span()) : std::span<const std::uint8_t>()}};
 }
 
+RegionInputs WorldState::region_inputs(std::span<const Vec3> velocity) const {
+    const ContactTable& c = contacts;
+    return {c.stencil,
+            c.normal,
+            c.gap,
+            c.surface_velocity,
+            c.static_friction,
+            c.dynamic_friction,
+            c.restitution,
+            nodes.inverse_mass,
+            velocity,
+            step.collision.gravity,
+            c.key};
+}
+
 TouchInputs WorldState::touches() const {
     return {contacts.first_body, contacts.second_body, contacts.state, contacts.gap, contacts.surface_velocity};
 }

@@ -194,6 +194,8 @@ struct WorldState {
     /// Nothing in a step whose contacts push nothing out.
     std::span<Vec3> pushes() { return solver_memory.pushed() ? nodes.push_out.span() : std::span<Vec3>(); }
     TouchInputs touches() const;
+    /// Contacts as the solver sees them; `velocity`: of the nodes at the start of the step.
+    RegionInputs region_inputs(std::span<const Vec3> velocity) const;
     /// Ends the rest of one body, or of all.
     void wake(std::size_t body);
     void wake_all();

@@ -1,9 +1,7 @@
 // Bodies and colliders as the collision stages see them, without an engine around.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <memory>
-#include <random>
 #include <vector>
 
 #include "components/node_table.h"
@@ -14,6 +12,7 @@
 #include "systems/collision/find_contacts.h"
 #include "systems/collision/tree/bvh.h"
 #include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 namespace skerry::test {
 
@@ -131,28 +130,6 @@ private:
         }
         return static_cast<Index>(row);
     }
-};
-
-/// Uniform in [-1, 1], the same numbers on every machine.
-class Random {
-public:
-    explicit Random(std::uint64_t seed) : bits_(seed) {}
-    Real number() { return static_cast<Real>(bits_() >> 11) * 0x1p-52 - 1; }
-    Vec3 vector() {
-        const Real x = number(), y = number(), z = number();
-        return {x, y, z};
-    }
-    Mat3 rotation() {
-        // Gram-Schmidt on random vectors.
-        const Vec3 a = vector().normalized();
-        const Vec3 b = a.cross(vector()).normalized();
-        Mat3 m;
-        m << a, b, a.cross(b);
-        return m;
-    }
-
-private:
-    std::mt19937_64 bits_;
 };
 
 }  // namespace skerry::test

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "engine/output/escape_markup.h"
 #include "engine/output/page/pack.h"
 #include "engine/output/page/page_assets.h"
 #include "engine/output/write_file.h"
@@ -124,24 +125,7 @@ std::string escape_html(const std::string& text) {
     // Through JSON for its treatment of bytes that are no UTF-8; its quotes come off again.
     std::string clean = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
     clean = Json::parse(clean).get<std::string>();
-    std::string escaped;
-    for (const char c : clean) switch (c) {
-            case '&':
-                escaped += "&amp;";
-                break;
-            case '<':
-                escaped += "&lt;";
-                break;
-            case '>':
-                escaped += "&gt;";
-                break;
-            case '"':
-                escaped += "&quot;";
-                break;
-            default:
-                escaped += c;
-        }
-    return escaped;
+    return escape_markup(clean);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "components/check.h"
+#include "engine/output/escape_markup.h"
 #include "engine/output/shape_picture.h"
 #include "engine/output/vtk/vtk_file.h"
 #include "engine/output/write_file.h"
@@ -49,24 +50,6 @@ Index number_of(const std::map<Handle, Index>& numbers, Handle handle) {
 
 std::string count_attribute(std::string_view name, std::size_t count) {
     return "NumberOf" + std::string(name) + "=\"" + std::to_string(count) + "\" ";
-}
-
-std::string escape_attribute(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) switch (c) {
-            case '&':
-                escaped += "&amp;";
-                break;
-            case '<':
-                escaped += "&lt;";
-                break;
-            case '"':
-                escaped += "&quot;";
-                break;
-            default:
-                escaped += c;
-        }
-    return escaped;
 }
 
 }  // namespace
@@ -260,7 +243,7 @@ void VtkSeries::write_index() const {
         out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
         for (const auto& [time, part, file] : entries_)
             out << "<DataSet timestep=\"" << number_text(time) << "\" group=\"\" part=\"" << part << "\" name=\"" << part_names[part]
-                << "\" file=\"" << escape_attribute(file) << "\"/>\n";
+                << "\" file=\"" << escape_markup(file) << "\"/>\n";
         out << "</Collection>\n</VTKFile>\n";
     });
 }

@@ -135,32 +135,26 @@ TEST_CASE("every malformed global file is refused by name of what is wrong", "[u
         change(file);
         return refusal(file);
     };
-    const auto says = [](const std::string& text, std::initializer_list<const char*> words) {
-        for (const char* word : words) {
-            INFO(text);
-            CHECK(text.find(word) != std::string::npos);
-        }
-    };
     for (const char* name : {"M", "H", "vectors", "spacedim", "M/p", "H/x", "vectors/f", "vectors/w", "vectors/mu"})
-        says(spoil([&](auto& f) { f.leave_out(name); }), {"fclib_global", std::filesystem::path(name).filename().c_str(), "nothing"});
-    says(spoil([](auto& f) { f.integers["spacedim"] = {2}; }), {"spacedim", "2"});
-    says(spoil([](auto& f) { f.integers["M/n"] = {8}; }), {"M", "n", "8", "9"});
-    says(spoil([](auto& f) { f.integers["H/m"] = {8}; }), {"H", "m", "8", "9 (rows of M)"});
-    says(spoil([](auto& f) { f.integers["H/n"] = {8}; }), {"H", "n", "8", "multiple of 3"});
-    says(spoil([](auto& f) { f.integers["H/n"] = {12}; }), {"H", "p", "10 values", "13"});
-    says(spoil([](auto& f) { f.integers["H/i"][0] = 9; }), {"H", "i", "index 9", "0 to 8"});
-    says(spoil([](auto& f) { f.reals["vectors/f"].pop_back(); }), {"vectors", "f", "8 values", "9"});
-    says(spoil([](auto& f) { f.reals["vectors/w"].push_back(0); }), {"vectors", "w", "10 values", "9"});
-    says(spoil([](auto& f) { f.reals["vectors/mu"].pop_back(); }), {"mu", "2 values", "3"});
-    says(spoil([](auto& f) {
-             f.integers.merge(std::map<std::string, std::vector<int>>{{"G/m", {9}}, {"G/n", {1}}});
-         }),
-         {"G", "equality constraints"});
-    says(spoil([](auto& f) { f.reals["M/x"][0] = -2; }), {"M", "-2", "diagonal of freedom 0", "positive definite"});
-    says(spoil([](auto& f) { f.reals["M/x"][4] = 2; }), {"M", "not symmetric", "freedom 3", "freedom 4"});
+        check_says(spoil([&](auto& f) { f.leave_out(name); }), {"fclib_global", std::filesystem::path(name).filename().c_str(), "nothing"});
+    check_says(spoil([](auto& f) { f.integers["spacedim"] = {2}; }), {"spacedim", "2"});
+    check_says(spoil([](auto& f) { f.integers["M/n"] = {8}; }), {"M", "n", "8", "9"});
+    check_says(spoil([](auto& f) { f.integers["H/m"] = {8}; }), {"H", "m", "8", "9 (rows of M)"});
+    check_says(spoil([](auto& f) { f.integers["H/n"] = {8}; }), {"H", "n", "8", "multiple of 3"});
+    check_says(spoil([](auto& f) { f.integers["H/n"] = {12}; }), {"H", "p", "10 values", "13"});
+    check_says(spoil([](auto& f) { f.integers["H/i"][0] = 9; }), {"H", "i", "index 9", "0 to 8"});
+    check_says(spoil([](auto& f) { f.reals["vectors/f"].pop_back(); }), {"vectors", "f", "8 values", "9"});
+    check_says(spoil([](auto& f) { f.reals["vectors/w"].push_back(0); }), {"vectors", "w", "10 values", "9"});
+    check_says(spoil([](auto& f) { f.reals["vectors/mu"].pop_back(); }), {"mu", "2 values", "3"});
+    check_says(spoil([](auto& f) {
+                   f.integers.merge(std::map<std::string, std::vector<int>>{{"G/m", {9}}, {"G/n", {1}}});
+               }),
+               {"G", "equality constraints"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][0] = -2; }), {"M", "-2", "diagonal of freedom 0", "positive definite"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][4] = 2; }), {"M", "not symmetric", "freedom 3", "freedom 4"});
     // [4 4; 4 4] and its neighbour: singular, then indefinite
-    says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 4; }), {"M", "not positive definite", "freedom 3"});
-    says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 40; }), {"M", "not positive definite", "freedom 3"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 4; }), {"M", "not positive definite", "freedom 3"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 40; }), {"M", "not positive definite", "freedom 3"});
 }
 
 TEST_CASE("an empty set of equality constraints is none", "[unit][problem]") {

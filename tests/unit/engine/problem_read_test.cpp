@@ -43,48 +43,43 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
         change(file);
         return refusal(file);
     };
-    const auto says = [](const std::string& text, std::initializer_list<const char*> words) {
-        for (const char* word : words) {
-            INFO(text);
-            CHECK(text.find(word) != std::string::npos);
-        }
-    };
-    says(spoil([](auto& f) { f.integers["spacedim"] = {2}; }), {"fclib_local", "spacedim", "2", "expected 3"});
-    says(spoil([](auto& f) { f.integers["spacedim"] = {3, 3}; }), {"spacedim", "2 values", "one integer"});
+    check_says(spoil([](auto& f) { f.integers["spacedim"] = {2}; }), {"fclib_local", "spacedim", "2", "expected 3"});
+    check_says(spoil([](auto& f) { f.integers["spacedim"] = {3, 3}; }), {"spacedim", "2 values", "one integer"});
     for (const char* name : {"W", "vectors", "spacedim", "W/m", "W/n", "W/nz", "W/nzmax", "W/p", "W/i", "W/x", "vectors/q", "vectors/mu"})
-        says(spoil([&](auto& f) { f.leave_out(name); }), {fs::path(name).filename().c_str(), "nothing"});
-    says(spoil([](auto& f) { f.root = "something"; }), {"fclib_local", "nothing", "a group", "no contact problem"});
-    says(spoil([](auto& f) { f.empty_groups = {"V"}; }), {"V", "equality constraints"});
-    says(spoil([](auto& f) { f.integers["W/m"] = f.integers["W/n"] = {7}; }), {"W", "m", "7", "multiple of 3"});
-    says(spoil([](auto& f) { f.integers["W/m"] = {0}; }), {"W", "m", "0"});
-    says(spoil([](auto& f) { f.integers["W/m"] = {-3}; }), {"W", "m", "-3", "a size"});
-    says(spoil([](auto& f) { f.integers["W/n"] = {9}; }), {"n", "9", "6"});
-    says(spoil([](auto& f) { f.integers["W/nz"] = {-3}; }), {"nz", "-3"});
-    says(spoil([](auto& f) { f.integers["W/p"].pop_back(); }), {"W", "p", "6 values", "7"});
-    says(spoil([](auto& f) { f.integers["W/i"].pop_back(); }), {"i", "19 values", "20"});
-    says(spoil([](auto& f) { f.reals["W/x"].pop_back(); }), {"x", "19 values", "20"});
-    says(spoil([](auto& f) { std::swap(f.integers["W/p"][1], f.integers["W/p"][2]); }), {"p", "ascend"});
-    says(spoil([](auto& f) { f.integers["W/p"].back() = 21; }), {"p", "nzmax"});
-    says(spoil([](auto& f) { f.integers["W/i"][3] = 6; }), {"i", "index 6", "0 to 5"});
-    says(spoil([](auto& f) { f.integers["W/i"][3] = -1; }), {"i", "index -1"});
-    says(spoil([](auto& f) { f.integers["W/nz"] = {30}; }), {"W", "p", "7 values", "30"});
-    says(spoil([](auto& f) {
-             f.reals["W/p"] = std::vector<double>(7, 0.0);
-             f.integers.erase("W/p");
-         }),
-         {"p", "another type", "integers"});
-    says(spoil([](auto& f) { f.reals["vectors/q"].pop_back(); }), {"vectors", "q", "5 values", "6"});
-    says(spoil([](auto& f) { f.reals["vectors/mu"].push_back(1); }), {"mu", "3 values", "2"});
-    says(spoil([](auto& f) { f.reals["vectors/mu"][1] = -0.1; }), {"mu", "-0.1", ">= 0"});
-    says(spoil([](auto& f) { f.reals["vectors/q"][2] = std::numeric_limits<double>::quiet_NaN(); }), {"q", "nan", "entry 2", "finite"});
-    says(spoil([](auto& f) { f.reals["W/x"][4] = std::numeric_limits<double>::infinity(); }), {"x", "inf", "entry 4", "finite"});
-    says(spoil([](auto& f) { f.reals["vectors/mu"][0] = std::numeric_limits<double>::quiet_NaN(); }), {"mu", "nan"});
+        check_says(spoil([&](auto& f) { f.leave_out(name); }), {fs::path(name).filename().c_str(), "nothing"});
+    check_says(spoil([](auto& f) { f.root = "something"; }), {"fclib_local", "nothing", "a group", "no contact problem"});
+    check_says(spoil([](auto& f) { f.empty_groups = {"V"}; }), {"V", "equality constraints"});
+    check_says(spoil([](auto& f) { f.integers["W/m"] = f.integers["W/n"] = {7}; }), {"W", "m", "7", "multiple of 3"});
+    check_says(spoil([](auto& f) { f.integers["W/m"] = {0}; }), {"W", "m", "0"});
+    check_says(spoil([](auto& f) { f.integers["W/m"] = {-3}; }), {"W", "m", "-3", "a size"});
+    check_says(spoil([](auto& f) { f.integers["W/n"] = {9}; }), {"n", "9", "6"});
+    check_says(spoil([](auto& f) { f.integers["W/nz"] = {-3}; }), {"nz", "-3"});
+    check_says(spoil([](auto& f) { f.integers["W/p"].pop_back(); }), {"W", "p", "6 values", "7"});
+    check_says(spoil([](auto& f) { f.integers["W/i"].pop_back(); }), {"i", "19 values", "20"});
+    check_says(spoil([](auto& f) { f.reals["W/x"].pop_back(); }), {"x", "19 values", "20"});
+    check_says(spoil([](auto& f) { std::swap(f.integers["W/p"][1], f.integers["W/p"][2]); }), {"p", "ascend"});
+    check_says(spoil([](auto& f) { f.integers["W/p"].back() = 21; }), {"p", "nzmax"});
+    check_says(spoil([](auto& f) { f.integers["W/i"][3] = 6; }), {"i", "index 6", "0 to 5"});
+    check_says(spoil([](auto& f) { f.integers["W/i"][3] = -1; }), {"i", "index -1"});
+    check_says(spoil([](auto& f) { f.integers["W/nz"] = {30}; }), {"W", "p", "7 values", "30"});
+    check_says(spoil([](auto& f) {
+                   f.reals["W/p"] = std::vector<double>(7, 0.0);
+                   f.integers.erase("W/p");
+               }),
+               {"p", "another type", "integers"});
+    check_says(spoil([](auto& f) { f.reals["vectors/q"].pop_back(); }), {"vectors", "q", "5 values", "6"});
+    check_says(spoil([](auto& f) { f.reals["vectors/mu"].push_back(1); }), {"mu", "3 values", "2"});
+    check_says(spoil([](auto& f) { f.reals["vectors/mu"][1] = -0.1; }), {"mu", "-0.1", ">= 0"});
+    check_says(spoil([](auto& f) { f.reals["vectors/q"][2] = std::numeric_limits<double>::quiet_NaN(); }),
+               {"q", "nan", "entry 2", "finite"});
+    check_says(spoil([](auto& f) { f.reals["W/x"][4] = std::numeric_limits<double>::infinity(); }), {"x", "inf", "entry 4", "finite"});
+    check_says(spoil([](auto& f) { f.reals["vectors/mu"][0] = std::numeric_limits<double>::quiet_NaN(); }), {"mu", "nan"});
     // every number is finite, their sum is not
-    says(spoil([](auto& f) {
-             f.integers["W/i"][1] = 0;
-             f.reals["W/x"][0] = f.reals["W/x"][1] = 1.7e308;
-         }),
-         {"W", "not finite"});
+    check_says(spoil([](auto& f) {
+                   f.integers["W/i"][1] = 0;
+                   f.reals["W/x"][0] = f.reals["W/x"][1] = 1.7e308;
+               }),
+               {"W", "not finite"});
 }
 
 namespace {

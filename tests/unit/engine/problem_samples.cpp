@@ -215,6 +215,13 @@ Real independent_error(const ContactProblem& problem, const std::vector<Vec3>& r
     return std::sqrt(lack) / std::sqrt(std::max({q2, r2, u2}));
 }
 
+void check_says(const std::string& text, std::initializer_list<const char*> words) {
+    for (const char* word : words) {
+        INFO(text);
+        CHECK(text.find(word) != std::string::npos);
+    }
+}
+
 Real difference(const ContactProblem& a, const ContactProblem& b) {
     REQUIRE(a.contacts() == b.contacts());
     Real largest = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ ContactProblem read_back(const FclibFile& file);
 /// What the reader says to the file, or "read".
 std::string refusal_of(const std::filesystem::path& path);
 std::string refusal(const FclibFile& file);
+/// Every word is in the text.
+void check_says(const std::string& text, std::initializer_list<const char*> words);
 
 /// One entry of W.
 Real entry(const ContactProblem& problem, int row, int column);

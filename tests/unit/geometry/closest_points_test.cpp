@@ -6,22 +6,12 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/random.h"
+
 using namespace skerry;
+using test::Random;
 
 namespace {
-
-class Random {
-public:
-    explicit Random(std::uint64_t seed) : bits_(seed) {}
-    Real number() { return static_cast<Real>(bits_() >> 11) * 0x1p-52 - 1; }
-    Vec3 vector() {
-        const Real x = number(), y = number(), z = number();
-        return {x, y, z};
-    }
-
-private:
-    std::mt19937_64 bits_;
-};
 
 constexpr int samples = 60;
 

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "systems/geometry/closest_points.h"
+#include "tests/support/random.h"
 
 using namespace skerry;
+using test::Random;
 
 namespace {
 
@@ -19,19 +21,9 @@ constexpr std::uint64_t seed = 41;
 using Wide = long double;
 using WideVector = Eigen::Matrix<Wide, 3, 1>;
 
-class Random {
-public:
-    explicit Random(std::uint64_t value) : bits_(value) {}
-    Real number() { return static_cast<Real>(bits_() >> 11) * 0x1p-52 - 1; }
-    Vec3 vector() {
-        const Real x = number(), y = number(), z = number();
-        return {x, y, z};
-    }
-    FourPoints points(Real scale) { return {scale * vector(), scale * vector(), scale * vector(), scale * vector()}; }
-
-private:
-    std::mt19937_64 bits_;
-};
+FourPoints random_points(Random& random, Real scale) {
+    return {scale * random.vector(), scale * random.vector(), scale * random.vector(), scale * random.vector()};
+}
 
 /// The slow answer: where the four points are in one plane (roots of a cubic, between its extrema, by bisection), and of these the first
 /// time at which the features really meet. In extended precision.
@@ -129,9 +121,9 @@ TEST_CASE("the time of contact is never later than the exact one, and then they 
     for (FeaturePair kind : {FeaturePair::point_triangle, FeaturePair::edge_edge}) {
         int met = 0, reported = 0;
         for (int trial = 0; trial < 20000; ++trial) {
-            const FourPoints x = random.points(1);
+            const FourPoints x = random_points(random, 1);
             // Half of them aim at the other feature, with some common motion; the rest move anyhow.
-            FourPoints d = random.points(1);
+            FourPoints d = random_points(random, 1);
             if (trial % 2) {
                 const Real a = std::abs(random.number()), b = std::abs(random.number());
                 const Vec3 aim = kind == FeaturePair::point_triangle ? Vec3(x[1] + a * (1 - b) * (x[2] - x[1]) + b * (x[3] - x[1]) - x[0])
@@ -154,7 +146,7 @@ TEST_CASE("features that stay further apart than the slack are never reported", 
     int far = 0;
     for (FeaturePair kind : {FeaturePair::point_triangle, FeaturePair::edge_edge})
         for (int trial = 0; trial < 2000; ++trial) {
-            const FourPoints x = random.points(1), d = random.points(1);
+            const FourPoints x = random_points(random, 1), d = random_points(random, 1);
             Real nearest = std::numeric_limits<Real>::infinity();
             for (int i = 0; i <= 200; ++i) nearest = std::min(nearest, distance_at(kind, x, d, i / 200.0));
             // Between two looks a distance changes by no more than half of the approach of one interval.

@@ -1,0 +1,17 @@
+// Waiting without sleeping.
+#pragma once
+
+#include <thread>
+
+namespace skerry {
+
+/// Lets the other thread of the core have it for some cycles.
+inline void pause_briefly() {
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#else
+    std::this_thread::yield();
+#endif
+}
+
+}  // namespace skerry
