@@ -80,8 +80,9 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
         return at(p, b + s * (c - b), TriangleRegion::edge12, 0, 1 - s, s);
     }
     const Real scale = 1 / (va + vb + vc);
-    const Real v = vb * scale, w = vc * scale;
-    return at(p, a + v * ab + w * ac, TriangleRegion::face, 1 - v - w, v, w);
+    // Beside an edge rounding takes a weight below zero, and its sign says whose node it is.
+    const Real v = std::max(Real(0), vb * scale), w = std::max(Real(0), vc * scale);
+    return at(p, a + v * ab + w * ac, TriangleRegion::face, std::max(Real(0), 1 - v - w), v, w);
 }
 
 SegmentSegment closest_points_of_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {

@@ -37,6 +37,18 @@ void allow_freezing(const RegionStage& stage, LoadedRegion& region) {
     std::fill(region.memory.resting.begin(), region.memory.resting.end(), LumpedOperator::velocity_unknown);
 }
 
+/// What is left to do after impulses were put back into their cones: nothing, as a rule.
+SolveResult without_freezing(LoadedRegion& region, const SolverSettings& settings, SolveLimits limits, LumpedOperator& op,
+                             SolveResult result) {
+    result.error = op.error();
+    if (!result.converged || result.error <= limits.tolerance) return result;
+    region.memory.resting = {};
+    LumpedOperator awake(region.memory, settings.friction, region.scale);
+    limits.max_iterations = std::max(Index{1}, limits.max_iterations - result.iterations);
+    const SolveResult rest = run_method(settings.method, awake, limits);
+    return {result.iterations + rest.iterations, rest.error, rest.converged};
+}
+
 /// Writes impulses and velocities, and returns what the region dissipated.
 Real write_back(const RegionStage& stage, std::span<const Index> row, const LumpedOperator::Memory& memory) {
     for (std::size_t k = 0; k < row.size(); ++k) stage.out.impulse[row[k]] = memory.impulse[k].head<3>();
@@ -129,6 +141,7 @@ RegionOutcome sweep_region(const RegionStage& stage, LoadedRegion& region) {
         LumpedOperator op(region.memory, settings.friction, region.scale);
         result = run_method(settings.method, op, limits);
         outcome.frozen = op.frozen();
+        if (op.frozen() > 0 && op.make_feasible()) result = without_freezing(region, settings, limits, op, result);
     }
     outcome.iterations = result.iterations;
     outcome.error = result.error;

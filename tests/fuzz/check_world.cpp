@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 #include <stdexcept>
 
 namespace skerry::test {
@@ -33,6 +35,14 @@ void check_bodies(const World& world) {
     expect(energy.kinetic >= 0, "kinetic energy below zero");
 }
 
+/// All digits: a weight of rounding may be what is wrong.
+std::string describe(const std::array<Real, 4>& weight) {
+    std::ostringstream text;
+    text.precision(17);
+    for (const Real w : weight) text << ' ' << w;
+    return text.str();
+}
+
 void check_contacts(const World& world) {
     Real largest = 0;
     for (const Contact& c : world.contacts()) largest = std::max(largest, c.impulse.norm());
@@ -54,7 +64,7 @@ void check_contacts(const World& world) {
             const BodyHandle body = c.weight[a] > 0 ? c.first : c.second;
             if (!world.alive(body)) continue;  // a collider's
             expect(c.node[a] >= 0 && c.node[a] < static_cast<Index>(world.positions(body).size()),
-                   who + "node " + std::to_string(c.node[a]));
+                   who + "node " + std::to_string(c.node[a]) + " of " + world.name(body) + ", weights " + describe(c.weight));
         }
     }
 }

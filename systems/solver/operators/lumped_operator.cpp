@@ -77,6 +77,20 @@ Real LumpedOperator::step_unless_frozen(Index i, Real relaxation) {
     return size;
 }
 
+bool LumpedOperator::make_feasible() {
+    bool changed = false;
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i) {
+        const LumpedContact& contact = memory_.contact[i];
+        const Vec4 inside = project_friction(memory_.impulse[i], contact.normal, contact.friction, friction_);
+        const Vec4 change = inside - memory_.impulse[i];
+        if (change.squaredNorm() == 0) continue;
+        apply_impulse(contact, change, memory_.velocity.data());
+        memory_.impulse[i] = inside;
+        changed = true;
+    }
+    return changed;
+}
+
 Real LumpedOperator::error() {
     std::fill(memory_.resting.begin(), memory_.resting.end(), velocity_unknown);
     Real sum = 0;

@@ -125,6 +125,8 @@ public:
     Real error();
     /// Contact steps left out so far.
     Index frozen() const { return frozen_; }
+    /// Puts every impulse into its cone: the acceleration carries those of frozen contacts on without one. Returns whether any was outside.
+    bool make_feasible();
     /// A sweep's change is about the natural map of its start: worth a look once it is as small.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return memory_.contact[i].diagonal * a.dot(b); }

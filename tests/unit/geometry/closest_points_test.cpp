@@ -84,6 +84,25 @@ TEST_CASE("each Voronoi region of a triangle is named, with zero weights outside
     }
 }
 
+TEST_CASE("beside an edge of a triangle no weight is below zero", "[unit]") {
+    Random random(7);
+    int rounded = 0;
+    for (int trial = 0; trial < 20000; ++trial) {
+        const Vec3 a = random.vector(), b = random.vector(), c = random.vector(), normal = (b - a).cross(c - a);
+        const Real s = 0.5 * (1 + random.number()), inside = 1e-16 * (1 + random.number());
+        const Vec3 p = a + s * (b - a) + inside * (c - a) + random.number() * normal;
+        const std::array<Vec3, 3> corner{a, b, c};
+        const std::size_t turn = static_cast<std::size_t>(trial % 3);
+        const PointTriangle found = closest_point_on_triangle(p, corner[turn], corner[(turn + 1) % 3], corner[(turn + 2) % 3]);
+        for (const Real weight : found.weight) {
+            REQUIRE(weight >= 0);
+            REQUIRE(weight <= 1);
+        }
+        rounded += found.region == TriangleRegion::face && *std::min_element(found.weight.begin(), found.weight.end()) == 0;
+    }
+    CHECK(rounded > 100);
+}
+
 TEST_CASE("a point in the plane of a triangle, on its edge or on its vertex is at distance 0", "[unit]") {
     const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
     for (const Vec3& p : {Vec3(0.3, 0.3, 0), Vec3(0.5, 0, 0), Vec3(0.5, 0.5, 0), a, b, c})

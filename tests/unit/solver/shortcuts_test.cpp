@@ -117,6 +117,30 @@ TEST_CASE("contacts freeze in a long solve, and the result stands without it", "
     CHECK(largest_difference(frozen, thawed) < allowed);
 }
 
+TEST_CASE("contacts that froze do not pull, and stay within their cones", "[unit][solver]") {
+    int frozen = 0;
+    for (unsigned seed = 1; seed <= 12; ++seed)
+        for (const Real tolerance : {1e-2, 1e-3, 1e-5}) {
+            CAPTURE(seed, tolerance);
+            ContactScene scene;
+            add_sheets(scene, 14, 0.5, seed);
+            SolverSettings settings = tight();
+            settings.freeze_contacts = true;
+            settings.tolerance = tolerance;
+            const SolvedScene solved = scene.solve(settings);
+            frozen += solved.regions.frozen[0];
+            CHECK(solved.regions.error[0] <= tolerance);
+            Real largest = 0;
+            for (const Vec3& r : solved.impulse) largest = std::max(largest, r.norm());
+            for (std::size_t k = 0; k < solved.impulse.size(); ++k) {
+                const Real normal = solved.impulse[k].dot(scene.normal[k]);
+                CHECK(normal >= -1e-14 * largest);
+                CHECK((solved.impulse[k] - normal * scene.normal[k]).norm() <= 0.5 * normal + 1e-14 * largest);
+            }
+        }
+    CHECK(frozen > 100);
+}
+
 TEST_CASE("all shortcuts off change nothing beyond the tolerance", "[unit][solver]") {
     ContactScene scene;
     for (int k = 0; k < 12; ++k) add_sheets(scene, 3 + k % 5, k % 3 == 0 ? 0 : 0.5, static_cast<unsigned>(k));
