@@ -1,9 +1,17 @@
+skerry_precompile(skerry_precompiled)
+if(SKERRY_PRECOMPILE)
+    set_target_properties(skerry_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endif()
+
 # skerry_folder(name source...): the sources of one folder as an object library that the library skerry is put together from.
 function(skerry_folder name)
     if(ARGN)
         add_library(skerry_${name} OBJECT ${ARGN})
         target_link_libraries(skerry_${name} PUBLIC skerry_flags Eigen3::Eigen Threads::Threads)
         set_target_properties(skerry_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+        if(NOT name STREQUAL "jobs")  # which has flags of its own, those of OpenMP
+            skerry_use_precompiled(skerry_${name} skerry_precompiled)
+        endif()
         target_sources(skerry PRIVATE $<TARGET_OBJECTS:skerry_${name}>)
     else()
         add_library(skerry_${name} INTERFACE)

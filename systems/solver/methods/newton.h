@@ -2,7 +2,6 @@
 // small regions, as an independent check, and where sweeps go on for longer than a factorisation takes.
 #pragma once
 
-#include <Eigen/LU>
 #include <limits>
 
 #include "systems/solver/methods/pgs.h"
@@ -87,8 +86,7 @@ private:
         memory_.jacobian.resize(3 * count, 3 * count);
         memory_.rest.resize(3 * count);
         fill_equations();
-        const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> factors(memory_.jacobian);
-        memory_.rest = factors.solve(memory_.rest);
+        memory_.solve_equations();
         for (Eigen::Index a = 0; a < count; ++a)
             memory_.change.template segment<3>(3 * memory_.active[static_cast<std::size_t>(a)]) = memory_.rest.template segment<3>(3 * a);
         return memory_.change.allFinite();
