@@ -32,7 +32,8 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         lumped.node.push_back(step.contacts.stencil[row].node);
         lumped.weight.push_back(step.contacts.stencil[row].weight);
         lumped.normal.push_back(step.contacts.normal[row]);
-        lumped.offset.push_back(contact.bias * step.contacts.normal[row] - step.contacts.surface_velocity[row]);
+        lumped.offset.push_back(contact.bias * step.contacts.normal[row] - step.contacts.surface_velocity[row] -
+                                half_turn(step.contacts, static_cast<Index>(row), step.free_velocity));
         lumped.friction.push_back(contact.friction.slide);
         impulse.push_back(step.impulse[row]);
         result.contact.push_back(static_cast<Index>(row));

@@ -82,7 +82,7 @@ struct LumpedContacts {
     std::vector<std::array<Index, 4>> node;
     std::vector<std::array<Real, 4>> weight;
     std::vector<Vec3> normal;    // unit
-    std::vector<Vec3> offset;    // m/s: what gaps leave and colliders bring
+    std::vector<Vec3> offset;    // m/s: what gaps leave and colliders bring, less half of what a step turns the slip by
     std::vector<Real> friction;  // mu
     // by node
     std::vector<Real> inverse_mass;  // 1/kg, 0: moved by no impulse

@@ -28,6 +28,22 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     return impact ? std::min(closing, restitution * approach) : closing;
 }
 
+Vec3 half_turn(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next) {
+    if (inputs.dynamic_friction[row] == 0) return Vec3::Zero();
+    const Stencil& stencil = inputs.stencil[row];
+    Vec3 before = -inputs.surface_velocity[row], now = before;
+    for (std::size_t a = 0; a < 4; ++a) {
+        if (stencil.weight[a] == 0) continue;
+        before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
+        now += stencil.weight[a] * velocity_next[stencil.node[a]];
+    }
+    const Vec3& normal = inputs.normal[row];
+    const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal, turn = slip - slip_before;
+    // What is about to stop or to turn back keeps the law as it is: it has no direction halfway.
+    if (!(4 * turn.squaredNorm() <= slip_before.squaredNorm()) || turn.isZero(0)) return Vec3::Zero();
+    return 0.5 * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);
+}
+
 void LumpedOperator::refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
     for (std::size_t n = 0; n < memory_.node.size(); ++n) velocity[n] = padded(memory_.free_velocity[memory_.node[n]]);
     for (std::size_t i = 0; i < memory_.contact.size(); ++i) apply_impulse(memory_.contact[i], impulse[i], velocity.data());

@@ -83,6 +83,11 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
 /// push_out_region.
 Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings, Real h);
 
+/// m/s, half of what forces turn the slip by in this step, at right angles to it. The law of friction looks at the velocity after the impulse;
+/// without this the direction of sliding would be that at the end of the step's kick, an error of first order, instead of that in its middle.
+/// Zero where nothing slides, without friction, or where it goes straight on.
+Vec3 half_turn(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
+
 /// One region. The memory belongs to the caller.
 class LumpedOperator {
 public:
@@ -195,6 +200,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
     contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};
+    offset -= half_turn(inputs, row, velocity_next);
     contact.offset = padded(offset);
     return contact;
 }
