@@ -39,9 +39,10 @@ Vec3 half_turn(const RegionInputs& inputs, Index row, std::span<const Vec3> velo
     }
     const Vec3& normal = inputs.normal[row];
     const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal, turn = slip - slip_before;
-    // What is about to stop or to turn back keeps the law as it is: it has no direction halfway.
-    if (!(4 * turn.squaredNorm() <= slip_before.squaredNorm()) || turn.isZero(0)) return Vec3::Zero();
-    return 0.5 * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);
+    // What is about to stop or to turn back keeps the law as it is: it has no direction halfway. In between it fades, or a step would jump.
+    const Real fading = 2 - 4 * turn.norm() / slip_before.norm();
+    if (!(fading > 0) || turn.isZero(0)) return Vec3::Zero();
+    return 0.5 * std::min(Real(1), fading) * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);
 }
 
 void LumpedOperator::refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
