@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "systems/solver/operators/lumped_operator.h"
 
@@ -32,6 +33,16 @@ TEST_CASE("friction looks in the direction halfway through the kick", "[unit][so
     CHECK(std::abs(along.cross(Vec3(now.x(), now.y(), 0).normalized()).z()) > 0.07);
     const Vec3 floor(5, -3, 0);
     CHECK((half_turn_of(before + floor, now + floor, floor) - half_turn_of(before, now)).norm() < 1e-14);
+}
+
+TEST_CASE("between a quarter and half of the speed the turn fades, without a jump", "[unit][solver]") {
+    const auto turned_by = [](Real turn) { return half_turn_of({1, 0, 0}, {1, turn, 0}).norm(); };
+    const auto in_full = [](Real turn) { return 0.5 * turn / std::sqrt(1 + turn * turn); };  // at right angles to the slip
+    CHECK(turned_by(0.2) == Approx(in_full(0.2)));
+    CHECK(turned_by(0.25) == Approx(in_full(0.25)));
+    CHECK(turned_by(0.375) == Approx(in_full(0.375) / 2));
+    CHECK(turned_by(0.4999) < 1e-3);
+    CHECK(turned_by(0.5001) == 0);
 }
 
 TEST_CASE("what goes straight on, rests, stops or turns back keeps the law as it is", "[unit][solver]") {
