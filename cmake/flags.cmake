@@ -3,10 +3,23 @@ add_library(skerry_flags INTERFACE)
 target_compile_features(skerry_flags INTERFACE cxx_std_20)
 # No contraction: the same source gives the same bits in a kernel and in its scalar twin.
 target_compile_options(skerry_flags INTERFACE
-    $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -fno-math-errno -fno-trapping-math -fopenmp-simd -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion>)
+    $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off -fno-math-errno -fno-trapping-math -fopenmp-simd>
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # gcc 12 warns of its own AVX-512 headers, of Eigen's moves and of std::string's concatenation (GCC bug 105651); later versions do not.
-    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict>)
+    # gcc 12 warns of its own AVX-512 headers, of Eigen's moves and of std::string's concatenation (GCC bug 105651);
+    # later versions do not.
+    target_compile_options(skerry_flags INTERFACE
+        $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict>)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Real8 is wider than a register of older machines: how it would be passed does not matter, what passes it is
+    # inlined.
+    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Real8 is wider than a register of older machines: how it would be passed does not matter, what passes it is
+    # inlined.
+    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
 endif()
 if(SKERRY_ARCH)
     include(CheckCXXCompilerFlag)
@@ -23,8 +36,12 @@ target_compile_definitions(skerry_flags INTERFACE EIGEN_NO_AUTOMATIC_RESIZING)
 if(SKERRY_NO_CHECKS)
     target_compile_definitions(skerry_flags INTERFACE SKERRY_NO_CHECKS)
 endif()
+if(SKERRY_CHECK_ACCESS)
+    target_compile_definitions(skerry_flags INTERFACE SKERRY_CHECK_ACCESS)
+endif()
 if(SKERRY_SANITIZE)
-    target_compile_options(skerry_flags INTERFACE -fsanitize=${SKERRY_SANITIZE} -fno-sanitize=vptr -fno-omit-frame-pointer)
+    target_compile_options(skerry_flags INTERFACE
+        -fsanitize=${SKERRY_SANITIZE} -fno-sanitize=vptr -fno-omit-frame-pointer)
     target_link_options(skerry_flags INTERFACE -fsanitize=${SKERRY_SANITIZE})
     if(SKERRY_SANITIZE MATCHES "undefined")
         target_compile_options(skerry_flags INTERFACE -fno-sanitize-recover=all)

@@ -3,7 +3,8 @@ if(SKERRY_PRECOMPILE)
     set_target_properties(skerry_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
 
-# skerry_folder(name source...): the sources of one folder as an object library that the library skerry is put together from.
+# skerry_folder(name source...): the sources of one folder as an object library that the library skerry is put together
+# from.
 function(skerry_folder name)
     if(ARGN)
         add_library(skerry_${name} OBJECT ${ARGN})

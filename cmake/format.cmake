@@ -1,5 +1,7 @@
-# Targets format, format_check and lint, when the tools are there. Layout differs between versions of clang-format: 14 is the one that counts.
-# This file is also the script that the targets run: it looks for the files then, so that a new one does not configure the build anew.
+# Targets format, format_check and lint, when the tools are there. Layout differs between versions of clang-format: 14
+# is the one that counts.
+# This file is also the script that the targets run: it looks for the files then, so that a new one does not configure
+# the build anew.
 set(code_folders components jobs systems engine examples profiling tests)
 if(CMAKE_SCRIPT_MODE_FILE)
     set(files)
@@ -19,15 +21,14 @@ if(CMAKE_SCRIPT_MODE_FILE)
 endif()
 
 find_program(SKERRY_CLANG_FORMAT NAMES clang-format-14 clang-format)
-find_program(SKERRY_RUN_CLANG_TIDY NAMES run-clang-tidy-14 run-clang-tidy)
-mark_as_advanced(SKERRY_CLANG_FORMAT SKERRY_RUN_CLANG_TIDY)
+find_program(SKERRY_CLANG_TIDY NAMES clang-tidy-14 clang-tidy)
+mark_as_advanced(SKERRY_CLANG_FORMAT SKERRY_CLANG_TIDY)
 if(SKERRY_CLANG_FORMAT)
     set(run ${CMAKE_COMMAND} -D CLANG_FORMAT=${SKERRY_CLANG_FORMAT} -D SOURCE_DIR=${PROJECT_SOURCE_DIR})
     add_custom_target(format COMMAND ${run} -D CHECK=OFF -P ${CMAKE_CURRENT_LIST_FILE} VERBATIM)
     add_custom_target(format_check COMMAND ${run} -D CHECK=ON -P ${CMAKE_CURRENT_LIST_FILE} VERBATIM)
 endif()
-if(SKERRY_RUN_CLANG_TIDY)
-    # Sources of this project alone, not those that the build writes.
-    list(JOIN code_folders "|" folders)
-    add_custom_target(lint COMMAND ${SKERRY_RUN_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR} "^${PROJECT_SOURCE_DIR}/(${folders})/" VERBATIM)
+if(SKERRY_CLANG_TIDY)
+    add_custom_target(lint VERBATIM
+        COMMAND python3 ${PROJECT_SOURCE_DIR}/scripts/lib/lint.py ${SKERRY_CLANG_TIDY} ${PROJECT_BINARY_DIR})
 endif()

@@ -1,17 +1,19 @@
-# Installs the library, its public headers, the program and the scenes, so that find_package(skerry) works from elsewhere.
+# Installs the library, its public headers, the program and the scenes, so that find_package(skerry) works from
+# elsewhere.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(skerry_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/skerry)
-set(skerry_public_components types.h options.h handle.h column.h)  # what public headers include of components/
+# What public headers include of components/.
+set(skerry_public_components types.h options.h handle.h column.h access_check.h)
 
 install(TARGETS skerry EXPORT skerryTargets)
 target_include_directories(skerry INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 install(DIRECTORY engine/include/skerry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.h)
 list(TRANSFORM skerry_public_components PREPEND components/ OUTPUT_VARIABLE skerry_component_headers)
 install(FILES ${skerry_component_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/skerry/components)
-# "components/x.h" would be found by the wrong name in a project that has a components folder of its own: installed headers say
-# "skerry/components/x.h".
+# "components/x.h" would be found by the wrong name in a project that has a components folder of its own: installed
+# headers say "skerry/components/x.h".
 install(CODE "
     set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/skerry\")
     file(GLOB headers \"\${folder}/*.h\" \"\${folder}/components/*.h\")

@@ -17,3 +17,11 @@ endif()
 if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 endif()
+
+# Columns ask who touches them wherever assertions are on: builds without NDEBUG, those of the sanitizers among them.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" skerry_build_type)
+set(skerry_check_access OFF)
+if(skerry_build_type AND NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${skerry_build_type}}" MATCHES "-DNDEBUG")
+    set(skerry_check_access ON)
+endif()
+option(SKERRY_CHECK_ACCESS "A stage that touches a column it has not declared fails" ${skerry_check_access})

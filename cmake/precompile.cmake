@@ -1,8 +1,8 @@
-# With SKERRY_PRECOMPILE the headers that nearly all sources read are read once for the library and once for the tests. The presets of the
-# sanitizers do so; the preset dev does not, and there a source finds only what it includes itself.
-# Not <filesystem>: its std::quoted would be taken for a function of that name here.
+# With SKERRY_PRECOMPILE the headers that nearly all sources read are read once for the library and once for the tests.
+# The presets of the sanitizers do so; the preset dev does not, and there a source finds only what it includes itself.
 set(skerry_common_headers
-    <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <optional> <span> <string> <vector> <Eigen/Geometry>)
+    <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <optional> <span> <string> <vector>
+    <Eigen/Geometry>)
 
 # skerry_precompile(name header...): a target whose precompiled headers others use, when they have the same flags.
 function(skerry_precompile name)

@@ -6,6 +6,7 @@
 #include "components/body_table.h"
 #include "components/collider_table.h"
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -22,18 +23,18 @@ struct AttachmentTable {
     Column<Keyframe> keyframe;  // of all attachments, by script range
 
     void for_each_row_column(auto&& visit) {
-        visit("slot", slot);
-        visit("body", body);
-        visit("nodes", nodes);
-        visit("motion", motion);
-        visit("initial", initial);
-        visit("script", script);
+        visit("slot", slot, ColumnRole::state);
+        visit("body", body, ColumnRole::link);
+        visit("nodes", nodes, ColumnRole::link);
+        visit("motion", motion, ColumnRole::scratch);
+        visit("initial", initial, ColumnRole::state);
+        visit("script", script, ColumnRole::link);
     }
     void for_each_column(auto&& visit) {
         for_each_row_column(visit);
-        visit("node", node);
-        visit("anchor", anchor);
-        visit("keyframe", keyframe);
+        visit("node", node, ColumnRole::link);
+        visit("anchor", anchor, ColumnRole::state);
+        visit("keyframe", keyframe, ColumnRole::state);
     }
 };
 

@@ -5,6 +5,7 @@
 
 #include "components/bvh_table.h"
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/step_levels.h"
 #include "components/types.h"
 
@@ -45,46 +46,53 @@ struct BodyTable {
     Column<Real> min_altitude;      // m, of the elements at rest
     Column<Real> rest_step;         // s, stable step of the rest shape
     Column<Real> stable_step;       // s, as last watched
-    Column<std::uint8_t> level;     // of the whole body in the present cycle of steps: its own steps are 2^level steps long
+    // of the whole body in the present cycle of steps: its own steps are 2^level steps long
+    Column<std::uint8_t> level;
     Column<std::array<Index, element_level_count>> level_count;  // elements of each level, within the body
-    Column<LevelMask> due;                                       // levels of elements, within the body, that get an impulse in this step
-    Column<std::uint8_t> asleep;                                 // at rest: left out of the step until something touches it
-    Column<Real> calm;                                           // s, for how long no node has been as fast as sleep_speed
-    Column<Real> max_speed;                                      // m/s, of this step's motion
-    Column<Real> drift;                                          // m, greatest distance of a node from its drift origin
-    Column<Real> travel;       // m: since any earlier time no node has come further than the growth of travel plus twice the drift then
-    Column<Real> sound_until;  // m: the least of the body's element blocks
+    // levels of elements, within the body, that get an impulse in this step
+    Column<LevelMask> active;
+    // at rest: left out of the step until something touches it
+    Column<std::uint8_t> asleep;
+    // s, for how long no node has been as fast as sleep_speed
+    Column<Real> still_time;
+    Column<Real> max_speed;     // m/s, of this step's motion
+    Column<Real> displacement;  // m, greatest distance of a node from its displacement origin
+    // m: since any earlier time no node has come further than the growth of travel plus twice the displacement then
+    Column<Real> travel;
+    Column<Real> uninverted_until;  // m: the least of the body's element blocks
 
+    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines; displacement, travel and
+    /// uninverted_until by ContactCache::forget_distances.
     void for_each_column(auto&& visit) {
-        visit("slot", slot);
-        visit("kind", kind);
-        visit("self_contact", self_contact);
-        visit("material", material);
-        visit("collider", collider);
-        visit("nodes", nodes);
-        visit("node_blocks", node_blocks);
-        visit("blocks", blocks);
-        visit("triangles", triangles);
-        visit("edges", edges);
-        visit("vertices", vertices);
-        visit("bvh_nodes", bvh_nodes);
-        visit("bvh_leaves", bvh_leaves);
-        visit("element_count", element_count);
-        visit("pinned_count", pinned_count);
-        visit("contact_distance", contact_distance);
-        visit("mean_edge", mean_edge);
-        visit("min_altitude", min_altitude);
-        visit("rest_step", rest_step);
-        visit("stable_step", stable_step);
-        visit("level", level);
-        visit("level_count", level_count);
-        visit("due", due);
-        visit("asleep", asleep);
-        visit("calm", calm);
-        visit("max_speed", max_speed);
-        visit("drift", drift);
-        visit("travel", travel);
-        visit("sound_until", sound_until);
+        visit("slot", slot, ColumnRole::state);
+        visit("kind", kind, ColumnRole::state);
+        visit("self_contact", self_contact, ColumnRole::state);
+        visit("material", material, ColumnRole::link);
+        visit("collider", collider, ColumnRole::link);
+        visit("nodes", nodes, ColumnRole::link);
+        visit("node_blocks", node_blocks, ColumnRole::link);
+        visit("blocks", blocks, ColumnRole::link);
+        visit("triangles", triangles, ColumnRole::derived);
+        visit("edges", edges, ColumnRole::derived);
+        visit("vertices", vertices, ColumnRole::derived);
+        visit("bvh_nodes", bvh_nodes, ColumnRole::derived);
+        visit("bvh_leaves", bvh_leaves, ColumnRole::derived);
+        visit("element_count", element_count, ColumnRole::state);
+        visit("pinned_count", pinned_count, ColumnRole::state);
+        visit("contact_distance", contact_distance, ColumnRole::state);
+        visit("mean_edge", mean_edge, ColumnRole::state);
+        visit("min_altitude", min_altitude, ColumnRole::state);
+        visit("rest_step", rest_step, ColumnRole::state);
+        visit("stable_step", stable_step, ColumnRole::state);
+        visit("level", level, ColumnRole::link);
+        visit("level_count", level_count, ColumnRole::state);
+        visit("active", active, ColumnRole::scratch);
+        visit("asleep", asleep, ColumnRole::state);
+        visit("still_time", still_time, ColumnRole::state);
+        visit("max_speed", max_speed, ColumnRole::state);
+        visit("displacement", displacement, ColumnRole::derived);
+        visit("travel", travel, ColumnRole::derived);
+        visit("uninverted_until", uninverted_until, ColumnRole::derived);
     }
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/lanes.h"
 #include "components/types.h"
 
@@ -16,7 +17,8 @@ struct Aabb {
     Vec3 upper;  // m
 };
 
-/// A node of a tree stored in depth-first order: the left child of row i is i + 1, and `skip` is one past its last descendant.
+/// A node of a tree stored in depth-first order: the left child of row i is i + 1, and `skip` is one past its last
+/// descendant.
 struct BvhNode {
     Index skip;
     Index right;  // row of the right child; no_index in a leaf
@@ -29,18 +31,20 @@ inline constexpr int leaf_lanes = 8;
 /// The triangles of a leaf, rows of TriangleTable; no_index in lanes without one.
 using LeafTriangles = std::array<Index, leaf_lanes>;
 
-/// Their boxes, m, side by side: one is compared with all of them at once. Lanes without a triangle are far from everything.
+/// Their boxes, m, side by side: one is compared with all of them at once. Lanes without a triangle are far from
+/// everything.
 struct LeafBoxes {
     std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
 };
 
+/// Derived: Model::rebuild_outlines makes both tables.
 struct BvhTable {
     Column<Aabb> box;      // m, refit when a pair of its body is looked at again
     Column<BvhNode> node;  // topology, built once from the rest shape
 
     void for_each_column(auto&& visit) {
-        visit("box", box);
-        visit("node", node);
+        visit("box", box, ColumnRole::scratch);
+        visit("node", node, ColumnRole::derived);
     }
 };
 
@@ -49,8 +53,8 @@ struct BvhLeafTable {
     Column<LeafBoxes> box;  // refit with those of the nodes
 
     void for_each_column(auto&& visit) {
-        visit("triangle", triangle);
-        visit("box", box);
+        visit("triangle", triangle, ColumnRole::derived);
+        visit("box", box, ColumnRole::scratch);
     }
 };
 

@@ -1,4 +1,5 @@
-// SKERRY_CHECK: a cheap test of something the caller promised. Alive unless SKERRY_NO_CHECKS is set (the release preset sets it).
+// SKERRY_CHECK: a cheap test of something the caller promised. Alive unless SKERRY_NO_CHECKS is set (the release preset
+// sets it).
 #pragma once
 
 #include <stdexcept>

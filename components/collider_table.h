@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/material_table.h"
 #include "components/types.h"
 
@@ -14,9 +15,10 @@ enum class ColliderShape : std::uint8_t { plane, sphere, box, capsule, cylinder,
 /// A shape in its own frame, centred at the origin; axes along z.
 struct ColliderGeometry {
     ColliderShape shape;
-    Vec3 size;  // m. plane: unused (normal +z). sphere: (radius, -, -). box: half extents. capsule: (radius, half length of the
-                // segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height, wall): floor at z = 0, open
-                // above, material of thickness `wall` below and around. mesh: unused, see BodyTable::collider
+    // m. plane: unused (normal +z). sphere: (radius, -, -). box: half extents. capsule: (radius, half length of the
+    // segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height, wall): floor at z = 0, open
+    // above, material of thickness `wall` below and around. mesh: unused, see BodyTable::collider
+    Vec3 size;
 };
 
 /// Where a rigid shape is and how it moves during this step.
@@ -54,19 +56,20 @@ struct ColliderTable {
     Column<Real> travel;                // m, how far any of its points near a body can have moved, as BodyTable::travel
 
     /// All columns that have one row per collider; `keyframe` is ragged and is visited on its own by for_each_column.
+    /// Derived: travel by ContactCache::forget_distances.
     void for_each_row_column(auto&& visit) {
-        visit("slot", slot);
-        visit("geometry", geometry);
-        visit("motion", motion);
-        visit("initial", initial);
-        visit("script", script);
-        visit("surface", surface);
-        visit("body", body);
-        visit("travel", travel);
+        visit("slot", slot, ColumnRole::state);
+        visit("geometry", geometry, ColumnRole::state);
+        visit("motion", motion, ColumnRole::scratch);
+        visit("initial", initial, ColumnRole::state);
+        visit("script", script, ColumnRole::link);
+        visit("surface", surface, ColumnRole::state);
+        visit("body", body, ColumnRole::link);
+        visit("travel", travel, ColumnRole::derived);
     }
     void for_each_column(auto&& visit) {
         for_each_row_column(visit);
-        visit("keyframe", keyframe);
+        visit("keyframe", keyframe, ColumnRole::state);
     }
 };
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "components/access_check.h"
+
 namespace skerry {
 
 /// Allocates on cache-line boundaries, so that a column starts a vector register and shares no line with another.
@@ -30,43 +32,59 @@ struct AlignedAllocator {
     }
 };
 
-/// A field of a table: rows of plain data. Grows like a vector and never shrinks its memory, so that a steady state allocates
-/// nothing. Rows made by resize are value-initialised.
+/// A field of a table: rows of plain data. Grows like a vector and never shrinks its memory, so that a steady state
+/// allocates nothing. Rows made by resize are value-initialised.
 template <class T>
 class Column {
 public:
     using value_type = T;
 
-    std::size_t size() const { return rows_.size(); }
-    bool empty() const { return rows_.empty(); }
-    T* data() { return rows_.data(); }
-    const T* data() const { return rows_.data(); }
-    T& operator[](std::size_t row) { return rows_[row]; }
-    const T& operator[](std::size_t row) const { return rows_[row]; }
-    auto begin() { return rows_.begin(); }
-    auto end() { return rows_.end(); }
-    auto begin() const { return rows_.begin(); }
-    auto end() const { return rows_.end(); }
-    T& back() { return rows_.back(); }
-    const T& back() const { return rows_.back(); }
+    std::size_t size() const { return seen().size(); }
+    bool empty() const { return seen().empty(); }
+    T* data() { return changed().data(); }
+    const T* data() const { return seen().data(); }
+    T& operator[](std::size_t row) { return changed()[row]; }
+    const T& operator[](std::size_t row) const { return seen()[row]; }
+    auto begin() { return changed().begin(); }
+    auto end() { return changed().end(); }
+    auto begin() const { return seen().begin(); }
+    auto end() const { return seen().end(); }
+    T& back() { return changed().back(); }
+    const T& back() const { return seen().back(); }
 
-    void resize(std::size_t count) { rows_.resize(count); }
-    void resize(std::size_t count, const T& value) { rows_.resize(count, value); }
-    void assign(std::size_t count, const T& value) { rows_.assign(count, value); }
-    void reserve(std::size_t count) { rows_.reserve(count); }
-    void clear() { rows_.clear(); }
-    void push_back(const T& value) { rows_.push_back(value); }
+    void resize(std::size_t count) { changed().resize(count); }
+    void resize(std::size_t count, const T& value) { changed().resize(count, value); }
+    void assign(std::size_t count, const T& value) { changed().assign(count, value); }
+    void reserve(std::size_t count) { changed().reserve(count); }
+    void clear() { changed().clear(); }
+    void push_back(const T& value) { changed().push_back(value); }
     /// Removes `count` rows from `first` on; later rows move down in order.
     void erase(std::size_t first, std::size_t count) {
-        rows_.erase(rows_.begin() + static_cast<std::ptrdiff_t>(first), rows_.begin() + static_cast<std::ptrdiff_t>(first + count));
+        Rows& rows = changed();
+        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(first),
+                   rows.begin() + static_cast<std::ptrdiff_t>(first + count));
     }
-    void swap(Column& other) noexcept { rows_.swap(other.rows_); }
+    void swap(Column& other) noexcept { changed().swap(other.changed()); }
 
-    std::span<T> span() { return {rows_.data(), rows_.size()}; }
-    std::span<const T> span() const { return {rows_.data(), rows_.size()}; }
+    std::span<T> span() { return {changed().data(), rows_.size()}; }
+    std::span<const T> span() const { return {seen().data(), rows_.size()}; }
 
 private:
-    std::vector<T, AlignedAllocator<T>> rows_;
+    using Rows = std::vector<T, AlignedAllocator<T>>;
+
+    // The only ways to the rows: here the access is checked, where it is. Always inlined: nothing remains of them where
+    // it is not, also in a build that does not optimise.
+    [[gnu::always_inline]] const Rows& seen() const {
+        if constexpr (access_is_checked) check_access(this, sizeof *this, false);
+        return rows_;
+    }
+    [[gnu::always_inline]] Rows& changed() {
+        if constexpr (access_is_checked) check_access(this, sizeof *this, true);
+        return rows_;
+    }
+
+    Rows rows_;
+    [[no_unique_address]] CopyCheck copies_;
 };
 
 template <class T>

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -12,10 +13,10 @@ namespace skerry {
 enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider };
 enum class ContactState : std::uint8_t { open, stick, slide };
 
-/// Names the features that touch, across steps. `pair` holds what touches: bits 63..62 the kind of pair (0 two bodies, 1 body and
-/// collider), then the two handle slots (31 bits each). `feature` holds which parts: bit 63 set for edge-edge, bit 62 says which of
-/// the two bodies the point or first edge belongs to, then the two local feature numbers (31 bits each). Both are unique in a world and
-/// survive the removal of other bodies.
+/// Names the features that touch, across steps. `pair` holds what touches: bits 63..62 the kind of pair (0 two bodies,
+/// 1 body and collider), then the two handle slots (31 bits each). `feature` holds which parts: bit 63 set for
+/// edge-edge, bit 62 says which of the two bodies the point or first edge belongs to, then the two local feature
+/// numbers (31 bits each). Both are unique in a world and survive the removal of other bodies.
 struct ContactKey {
     std::uint64_t pair;
     std::uint64_t feature;
@@ -69,28 +70,28 @@ struct ContactTable {
     Column<ContactState> state;
 
     void for_each_column(auto&& visit) {
-        visit("key", key);
-        visit("kind", kind);
-        visit("stencil", stencil);
-        visit("point", point);
-        visit("normal", normal);
-        visit("gap", gap);
-        visit("distance", distance);
-        visit("surface_velocity", surface_velocity);
-        visit("static_friction", static_friction);
-        visit("dynamic_friction", dynamic_friction);
-        visit("restitution", restitution);
-        visit("first_body", first_body);
-        visit("second_body", second_body);
-        visit("collider", collider);
-        visit("impulse", impulse);
-        visit("region", region);
-        visit("slip", slip);
-        visit("state", state);
+        visit("key", key, ColumnRole::scratch);
+        visit("kind", kind, ColumnRole::scratch);
+        visit("stencil", stencil, ColumnRole::scratch);
+        visit("point", point, ColumnRole::scratch);
+        visit("normal", normal, ColumnRole::scratch);
+        visit("gap", gap, ColumnRole::scratch);
+        visit("distance", distance, ColumnRole::scratch);
+        visit("surface_velocity", surface_velocity, ColumnRole::scratch);
+        visit("static_friction", static_friction, ColumnRole::scratch);
+        visit("dynamic_friction", dynamic_friction, ColumnRole::scratch);
+        visit("restitution", restitution, ColumnRole::scratch);
+        visit("first_body", first_body, ColumnRole::scratch);
+        visit("second_body", second_body, ColumnRole::scratch);
+        visit("collider", collider, ColumnRole::scratch);
+        visit("impulse", impulse, ColumnRole::scratch);
+        visit("region", region, ColumnRole::scratch);
+        visit("slip", slip, ColumnRole::scratch);
+        visit("state", state, ColumnRole::scratch);
     }
     std::size_t size() const { return key.size(); }
     void resize(std::size_t count) {
-        for_each_column([count](const char*, auto& column) { column.resize(count); });
+        for_each_column([count](const char*, auto& column, ColumnRole) { column.resize(count); });
     }
 };
 
@@ -102,10 +103,10 @@ struct WarmStartTable {
     Column<Real> step;  // s, one row: the step the impulses belong to; empty before the first
 
     void for_each_column(auto&& visit) {
-        visit("key", key);
-        visit("impulse", impulse);
-        visit("normal", normal);
-        visit("step", step);
+        visit("key", key, ColumnRole::state);
+        visit("impulse", impulse, ColumnRole::state);
+        visit("normal", normal, ColumnRole::state);
+        visit("step", step, ColumnRole::state);
     }
 };
 

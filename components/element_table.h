@@ -5,19 +5,22 @@
 #include <cstdint>
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/lanes.h"
 #include "components/types.h"
 
 namespace skerry {
 
 using ElementLane = Lanes<Real, element_lanes>;
-using ElementNodes = std::array<Lanes<Index, element_lanes>, 4>;       // corner a of lane l: nodes[a][l]
-using ElementRest = std::array<ElementLane, 9>;                        // B = Dm^-1, column-major: B(i, j) = rest[3 j + i]
+using ElementNodes = std::array<Lanes<Index, element_lanes>, 4>;  // corner a of lane l: nodes[a][l]
+// B = Dm^-1, column-major: B(i, j) = rest[3 j + i]
+using ElementRest = std::array<ElementLane, 9>;
 using ElementRotation = std::array<ElementLane, 4>;                    // unit quaternion w, x, y, z
 using ElementForces = std::array<std::array<Vec3, 4>, element_lanes>;  // N, of lane l on its corner a: forces[l][a]
 
-/// Tetrahedra, element_lanes side by side. A block belongs to one body; lanes that are left over repeat the body's first node with
-/// volume and B zero, so that they add nothing. Element e of the table is lane e % element_lanes of block e / element_lanes.
+/// Tetrahedra, element_lanes side by side. A block belongs to one body; lanes that are left over repeat the body's
+/// first node with volume and B zero, so that they add nothing. Element e of the table is lane e % element_lanes of
+/// block e / element_lanes.
 struct ElementBlockTable {
     Column<ElementNodes> node;              // rows of NodeTable
     Column<ElementRest> inverse_rest;       // 1/m
@@ -27,27 +30,27 @@ struct ElementBlockTable {
     Column<ElementForces> force;            // N
     Column<Index> body;                     // row of BodyTable
     Column<Index> material;                 // row of MaterialTable
-    Column<Real> viscous_time;              // s, stress of the strain rate over that of the strain; 0 but for fine elements among coarse
-    Column<Real> sound_until;               // m: no element of the block turns inside out, or back, while the body's travel is below this
-    Column<std::uint8_t> level;             // within the body: impulses come every 2^level of the body's steps (step_levels.h)
+    // s, stress of the strain rate over that of the strain; 0 but for fine elements among coarse
+    Column<Real> viscous_time;
+    // m: no element of the block turns inside out, or back, while the body's travel is below this
+    Column<Real> uninverted_until;
+    // within the body: impulses come every 2^level of the body's steps (step_levels.h)
+    Column<std::uint8_t> level;
 
-    /// What the next step depends on: hash and snapshot walk this part.
-    void for_each_state_column(auto&& visit) {
-        visit("node", node);
-        visit("inverse_rest", inverse_rest);
-        visit("volume", volume);
-        visit("rotation", rotation);
-        visit("body", body);
-        visit("material", material);
-        visit("viscous_time", viscous_time);
-        visit("level", level);
-    }
-    /// The only list of columns: resize and erase walk it.
+    /// The only list of columns: resize, erase, copy and hash walk it. Derived: uninverted_until by
+    /// ContactCache::forget_distances.
     void for_each_column(auto&& visit) {
-        for_each_state_column(visit);
-        visit("rotation_next", rotation_next);
-        visit("sound_until", sound_until);
-        visit("force", force);
+        visit("node", node, ColumnRole::link);
+        visit("inverse_rest", inverse_rest, ColumnRole::state);
+        visit("volume", volume, ColumnRole::state);
+        visit("rotation", rotation, ColumnRole::state);
+        visit("body", body, ColumnRole::link);
+        visit("material", material, ColumnRole::link);
+        visit("viscous_time", viscous_time, ColumnRole::state);
+        visit("level", level, ColumnRole::state);
+        visit("rotation_next", rotation_next, ColumnRole::scratch);
+        visit("uninverted_until", uninverted_until, ColumnRole::derived);
+        visit("force", force, ColumnRole::scratch);
     }
 };
 

@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Names one row of a table for as long as that row lives. A handle to a removed row is recognised as stale, also when its slot has
-/// been used again.
+/// Names one row of a table for as long as that row lives. A handle to a removed row is recognised as stale, also when
+/// its slot has been used again.
 template <class Tag>
 struct Handle {
     std::uint32_t slot = 0xffffffffu;
@@ -28,7 +28,8 @@ using AttachmentHandle = Handle<struct AttachmentTag>;
 template <class HandleType>
 class HandleMap {
 public:
-    /// A handle for the new last row, `row`. Freed slots are used again, the lowest first, so that the same calls give the same handles.
+    /// A handle for the new last row, `row`. Freed slots are used again, the lowest first, so that the same calls give
+    /// the same handles.
     HandleType insert(Index row) {
         std::uint32_t slot = 0;
         while (slot < row_.size() && row_[slot] != no_index) ++slot;

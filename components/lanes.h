@@ -1,4 +1,5 @@
-// Lanes<T, W>: W rows side by side, so that a kernel loads W values of one field at once, and Real8, the register they are loaded into.
+// Lanes<T, W>: W rows side by side, so that a kernel loads W values of one field at once, and Real8, the register they
+// are loaded into.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +20,9 @@ struct alignas(sizeof(T) * W <= 64 ? sizeof(T) * W : 64) Lanes {
     const T& operator[](std::size_t i) const { return lane[i]; }
 };
 
-/// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler instead of a loop over Lanes:
-/// it does not depend on the vectoriser's luck, and every lane gets the bits that the same source gives for one Real.
+/// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler instead of a
+/// loop over Lanes: it does not depend on the vectoriser's luck, and every lane gets the bits that the same source
+/// gives for one Real.
 typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 
 inline Real8 load(const Lanes<Real, element_lanes>& from) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/options.h"
 #include "components/types.h"
 
@@ -33,12 +34,12 @@ struct MaterialTable {
     Column<std::uint32_t> slot;  // handle slot
 
     void for_each_column(auto&& visit) {
-        visit("constants", constants);
-        visit("surface", surface);
-        visit("young_modulus", young_modulus);
-        visit("poisson_ratio", poisson_ratio);
-        visit("damping", damping);
-        visit("slot", slot);
+        visit("constants", constants, ColumnRole::state);
+        visit("surface", surface, ColumnRole::state);
+        visit("young_modulus", young_modulus, ColumnRole::state);
+        visit("poisson_ratio", poisson_ratio, ColumnRole::state);
+        visit("damping", damping, ColumnRole::state);
+        visit("slot", slot, ColumnRole::state);
     }
 };
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/types.h"
 
 namespace skerry {
 
-inline constexpr Index nodes_per_block = 256;  // fixed: sums over a body are sums over its blocks in order, whatever the worker count
+// fixed: sums over a body are sums over its blocks in order, whatever the worker count
+inline constexpr Index nodes_per_block = 256;
 
 /// What one pass over a block of nodes found; added up per body in block order.
 struct NodeBlockSums {
@@ -20,20 +22,22 @@ struct NodeBlockSums {
 
 /// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next.
 struct NodeBlockTable {
-    Column<Index> begin;             // first node
-    Column<Index> end;               // one past the last node
-    Column<Index> body;              // row of BodyTable
-    Column<Real> max_speed_squared;  // m^2/s^2, of velocity_next + push_out, by check_state; not a number if any node's is not finite
-    Column<Real> drift_squared;      // m^2, by advance_positions
-    Column<NodeBlockSums> sums;      // by damp_velocity
+    Column<Index> begin;  // first node
+    Column<Index> end;    // one past the last node
+    Column<Index> body;   // row of BodyTable
+    // m^2/s^2, of velocity_next + push_out, by check_state; not a number if any node's is not finite
+    Column<Real> max_speed_squared;
+    Column<Real> displacement_squared;  // m^2, by advance_positions
+    Column<NodeBlockSums> sums;         // by damp_velocity
 
+    /// Derived: displacement_squared by ContactCache::forget_distances.
     void for_each_column(auto&& visit) {
-        visit("begin", begin);
-        visit("end", end);
-        visit("body", body);
-        visit("max_speed_squared", max_speed_squared);
-        visit("drift_squared", drift_squared);
-        visit("sums", sums);
+        visit("begin", begin, ColumnRole::link);
+        visit("end", end, ColumnRole::link);
+        visit("body", body, ColumnRole::link);
+        visit("max_speed_squared", max_speed_squared, ColumnRole::scratch);
+        visit("displacement_squared", displacement_squared, ColumnRole::derived);
+        visit("sums", sums, ColumnRole::scratch);
     }
 };
 

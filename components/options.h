@@ -1,5 +1,5 @@
-// The choices a user makes by name. Each enum has its names in one place (names()), which the scene reader, the program's
-// help and the reports share.
+// The choices a user makes by name. Each enum has its names in one place (names()), which the scene reader, the
+// program's help and the reports share.
 #pragma once
 
 #include <array>
@@ -10,18 +10,20 @@
 namespace skerry {
 
 enum class MaterialModel { linear, corotational, stable_neo_hookean };
-/// cone_convex is the associated law: every contact minimises a convex energy over the cone, and what slides also lifts off at mu times its
-/// speed. A solution is found whatever mu is, but it is another model: its Coulomb error is 1e-5 to 6e-2 on most problems, 2e-1 at the
-/// worst (docs/solvers.md). For comparison, and as the last resort where Coulomb's law has no solution.
+/// cone_convex is the associated law: every contact minimises a convex energy over the cone, and what slides also lifts
+/// off at mu times its speed. A solution is found whatever mu is, but it is another model: its Coulomb error is 1e-5 to
+/// 6e-2 on most problems, 2e-1 at the worst (docs/solvers.md). For comparison, and as the last resort where Coulomb's
+/// law has no solution.
 enum class Friction { cone, pyramid, cone_convex };
 enum class ContactRegions { separate, global, paper_algorithm_1 };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr, nncg, apgd, mprgp };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
 enum class WarmStart { off, on };
-/// symplectic_euler: first order where it is started from given velocities, bounded energy. leapfrog: the same kicks and drifts with positions
-/// drifted by half a step before the first and after the last, second order in smooth motion. literal: forward Euler as the paper
-/// writes it; unstable without damping at any step, for comparison only (docs/integration.md).
-enum class Integrator { symplectic_euler, leapfrog, literal };
+/// symplectic_euler: first order where it is started from given velocities, bounded energy. leapfrog: the same kicks
+/// and drifts with positions drifted by half a step before the first and after the last, second order in smooth motion.
+/// forward_euler: forward Euler as the paper writes it; unstable without damping at any step, for comparison only
+/// (docs/integration.md).
+enum class Integrator { symplectic_euler, leapfrog, forward_euler };
 
 template <class Enum>
 struct EnumNames;
@@ -88,7 +90,7 @@ struct EnumNames<Integrator> {
     static constexpr std::array<std::pair<Integrator, std::string_view>, 3> table{{
         {Integrator::symplectic_euler, "symplectic_euler"},
         {Integrator::leapfrog, "leapfrog"},
-        {Integrator::literal, "literal"},
+        {Integrator::forward_euler, "forward_euler"},
     }};
 };
 

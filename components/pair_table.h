@@ -1,4 +1,5 @@
-// Close pairs: two bodies, a body and a collider, or a body and itself, with the features of theirs that could touch soon.
+// Close pairs: two bodies, a body and a collider, or a body and itself, with the features of theirs that could touch
+// soon.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +7,14 @@
 
 #include "components/bvh_table.h"
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/contact_table.h"
 #include "components/types.h"
 
 namespace skerry {
 
-/// Two features that were close when the pair was last searched. Rows of VertexTable, TriangleTable or EdgeTable, by kind.
+/// Two features that were close when the pair was last searched. Rows of VertexTable, TriangleTable or EdgeTable, by
+/// kind.
 struct Candidate {
     std::uint64_t feature;  // ContactKey::feature
     Index first;            // vertex, or edge of the first body
@@ -29,25 +32,42 @@ struct CandidatePlace {
     Index candidate;
 };
 
-/// One row per pair whose bounding boxes were close at the last broad search, in the order of ContactKey::pair. The candidate lists
-/// are columns of their own, so that one pair is searched again without moving the others; lists beyond size() are memory for later.
+/// One row per pair whose bounding boxes were close at the last broad search, in the order of ContactKey::pair. The
+/// candidate lists are columns of their own, so that one pair is searched again without moving the others; lists beyond
+/// size() are memory for later.
 struct PairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
     Column<PairKind> kind;
-    Column<Index> first;           // row of BodyTable; never a kinematic body
-    Column<Index> second;          // row of BodyTable, or of ColliderTable
-    Column<std::uint8_t> resting;  // neither partner moves in this step: no contacts are looked for, last ones are kept
-    Column<Real> front;            // m: sum of both travels and of what this step may add to the closing, written in every step
-    Column<Real> valid_until;      // m: the list holds while front is below this
-    Column<std::uint8_t> fresh;    // searched for this step: what its nodes drifted before takes nothing from the list
-    Column<PairState> state;       // as last searched; apart stays apart, find_crossings sees to it
+    Column<Index> first;        // row of BodyTable; never a kinematic body
+    Column<Index> second;       // row of BodyTable, or of ColliderTable
+    Column<std::uint8_t> idle;  // neither partner moves in this step: no contacts are looked for, last ones are kept
+    // m: sum of both travels and of what this step may add to the closing, written in every step
+    Column<Real> travel_bound;
+    Column<Real> valid_until;    // m: the list holds while travel_bound is below this
+    Column<std::uint8_t> fresh;  // searched for this step: what its nodes drifted before takes nothing from the list
+    Column<PairState> state;     // as last searched; apart stays apart, find_crossings sees to it
     std::vector<Column<Candidate>> candidates;  // by pair, sorted by feature
-    std::vector<Column<Real>> asleep_until;     // m, by pair and candidate: it cannot touch while front is below this
-    Column<CandidatePlace> block;               // where the blocks of find_contacts start, and one past the last
-    Column<std::size_t> block_first;            // row of ContactTable where the contacts of a block start
-    std::vector<Column<ContactRow>> found;      // this step's contacts, by block, in candidate order
-    Column<Real> block_nearest;                 // m: no features that were looked at in this block are nearer to each other
+    std::vector<Column<Real>>
+        asleep_until;                 // m, by pair and candidate: it cannot touch while travel_bound is below this
+    Column<CandidatePlace> block;     // where the blocks of find_contacts start, and one past the last
+    Column<std::size_t> block_first;  // row of ContactTable where the contacts of a block start
+    std::vector<Column<ContactRow>> found;  // this step's contacts, by block, in candidate order
+    // m: no features that were looked at in this block are nearer to each other
+    Column<Real> block_nearest;
 
+    /// Of the columns with one row per pair. State is which pairs overlap: a search finds again what is apart. Derived:
+    /// valid_until, with the lists, by ContactCache::forget_distances.
+    void for_each_row_column(auto&& visit) {
+        visit("key", key, ColumnRole::state);
+        visit("kind", kind, ColumnRole::state);
+        visit("first", first, ColumnRole::link);
+        visit("second", second, ColumnRole::link);
+        visit("state", state, ColumnRole::state);
+        visit("valid_until", valid_until, ColumnRole::derived);
+        visit("idle", idle, ColumnRole::scratch);
+        visit("travel_bound", travel_bound, ColumnRole::scratch);
+        visit("fresh", fresh, ColumnRole::scratch);
+    }
     std::size_t size() const { return key.size(); }
 };
 
@@ -67,7 +87,8 @@ struct FoundPair {
     PairState state;
 };
 
-/// Features that would have gone through each other in a try of this step. The step is tried again with them as contacts.
+/// Features that would have gone through each other in a try of this step. The step is tried again with them as
+/// contacts.
 struct CrossingTable {
     Column<ContactRow> row;                 // in key order; empty once a step is taken
     std::vector<Column<ContactRow>> found;  // of the last try, by block of find_contacts
@@ -86,28 +107,30 @@ struct BoundingSphere {
 
 /// Working memory of the searches, kept between steps so that a steady state allocates nothing.
 struct SearchMemory {
-    Column<Real> body_front;        // m: travel and what this step may close, by body
-    Column<Real> collider_front;    // m, the same by collider
-    Column<Real> collider_extent;   // m: no point of it near a body is further from its origin, until the next broad search
-    Column<Real> collider_margin;   // m: how far a box may be and still make a pair with the collider
-    Column<Aabb> box;               // m, grown by what may happen until the next broad search: bodies, then colliders
-    Column<BoundingSphere> sphere;  // by body, as of the last broad search or refit: for round bodies nearer the truth than a box
-    Column<Index> order;            // rows of `box`, by their lower end
+    Column<Real> body_travel_bound;      // m: travel and what this step may close, by body
+    Column<Real> collider_travel_bound;  // m, the same by collider
+    // m: no point of it near a body is further from its origin, until the next broad search
+    Column<Real> collider_extent;
+    Column<Real> collider_margin;  // m: how far a box may be and still make a pair with the collider
+    Column<Aabb> box;              // m, grown by what may happen until the next broad search: bodies, then colliders
+    // by body, as of the last broad search or refit: for round bodies nearer the truth than a box
+    Column<BoundingSphere> sphere;
+    Column<Index> order;  // rows of `box`, by their lower end
     Column<FoundPair> pairs;
     Column<std::uint8_t> moved;                 // by list: bit 0 it was given away, bit 1 it was received
     std::vector<Column<Candidate>> candidates;  // on their way to the new order of pairs
     std::vector<Column<Real>> asleep_until;
-    Column<Index> expired;                      // rows of PairTable
-    Column<std::uint8_t> needs_refit;           // by body
-    Column<std::uint8_t> rebase;                // by body: its drift costs a pair much; measure_drift sets it to zero
-    Column<Index> refit;                        // rows of BodyTable
+    Column<Index> expired;             // rows of PairTable
+    Column<std::uint8_t> needs_refit;  // by body
+    Column<std::uint8_t> rebase;  // by body: its displacement costs a pair much; measure_displacement sets it to zero
+    Column<Index> refit;          // rows of BodyTable
     std::vector<Column<FoundCandidate>> found;  // by expired pair
 };
 
-/// When the broad search has to run again, and what the searches did. Clear both columns when a body or collider comes, goes or is moved by
-/// hand: everything is then searched afresh.
+/// When the broad search has to run again, and what the searches did. Clear both columns when a body or collider comes,
+/// goes or is moved by hand: everything is then searched afresh.
 struct SearchState {
-    Column<Real> body_valid_until;      // m, by body: the list of pairs holds while every body's front is below this
+    Column<Real> body_valid_until;  // m, by body: the list of pairs holds while every body's travel_bound is below this
     Column<Real> collider_valid_until;  // m, by collider
     std::uint64_t broad_searches = 0;
     std::uint64_t pair_searches = 0;

@@ -16,7 +16,8 @@ struct RaggedView {
 
     std::size_t size() const { return offset.empty() ? 0 : offset.size() - 1; }
     std::span<const T> operator[](std::size_t row) const {
-        return item.subspan(static_cast<std::size_t>(offset[row]), static_cast<std::size_t>(offset[row + 1] - offset[row]));
+        return item.subspan(static_cast<std::size_t>(offset[row]),
+                            static_cast<std::size_t>(offset[row + 1] - offset[row]));
     }
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/contact_table.h"
 #include "components/ragged.h"
 #include "components/types.h"
@@ -27,31 +28,34 @@ struct RegionTable {
     Ragged<Index> contacts;    // rows of ContactTable, ascending
     Column<ContactKey> id;     // key of its first contact: a region that keeps it is the same region in the next step
     Column<Index> iterations;  // sweeps; 0 when the warm start already solves it
-    Column<Real> error;        // e_nat, methods.md 2.1
+    Column<Real> error;        // e_nat, docs/methods/errors.md 2
     Column<RegionStatus> status;
     Column<RegionShortcut> shortcut;
     Column<Index> frozen;     // contact steps left out since nothing changed there
     Column<Real> dissipated;  // J, taken out by its contacts in this step
-    Column<Index> order;      // in which they are started: large ones by predicted cost, small ones by size, single contacts last
-    bool independent = true;  // no two regions share a moving node; false only from paper_algorithm_1: then solved one by one
+    // in which they are started: large ones by predicted cost, small ones by size, single contacts last
+    Column<Index> order;
+    // no two regions share a moving node; false only from paper_algorithm_1: then solved one by one
+    bool independent = true;
+    bool pushed = false;  // some region wrote NodeTable::push_out
 
     std::size_t size() const { return contacts.size(); }
     void for_each_column(auto&& visit) {
-        visit("contacts.offset", contacts.offset);
-        visit("contacts.item", contacts.item);
-        visit("id", id);
-        visit("iterations", iterations);
-        visit("error", error);
-        visit("status", status);
-        visit("shortcut", shortcut);
-        visit("frozen", frozen);
-        visit("dissipated", dissipated);
-        visit("order", order);
+        visit("contacts.offset", contacts.offset, ColumnRole::scratch);
+        visit("contacts.item", contacts.item, ColumnRole::scratch);
+        visit("id", id, ColumnRole::scratch);
+        visit("iterations", iterations, ColumnRole::scratch);
+        visit("error", error, ColumnRole::scratch);
+        visit("status", status, ColumnRole::scratch);
+        visit("shortcut", shortcut, ColumnRole::scratch);
+        visit("frozen", frozen, ColumnRole::scratch);
+        visit("dissipated", dissipated, ColumnRole::scratch);
+        visit("order", order, ColumnRole::scratch);
     }
 };
 
-/// What is remembered of regions from step to step, by ascending id. It tells how long a region will take, and nothing else: no result
-/// depends on it, so it is no part of the state.
+/// What is remembered of regions from step to step, by ascending id. It tells how long a region will take, and nothing
+/// else: no result depends on it, so it is no part of the state.
 struct RegionHistoryTable {
     Column<ContactKey> id;
     Column<Index> contacts;  // how many
@@ -59,14 +63,14 @@ struct RegionHistoryTable {
     Column<Index> age;       // steps since the number of its contacts changed
 
     void for_each_column(auto&& visit) {
-        visit("id", id);
-        visit("contacts", contacts);
-        visit("sweeps", sweeps);
-        visit("age", age);
+        visit("id", id, ColumnRole::scratch);
+        visit("contacts", contacts, ColumnRole::scratch);
+        visit("sweeps", sweeps, ColumnRole::scratch);
+        visit("age", age, ColumnRole::scratch);
     }
     std::size_t size() const { return id.size(); }
     void resize(std::size_t count) {
-        for_each_column([count](const char*, auto& column) { column.resize(count); });
+        for_each_column([count](const char*, auto& column, ColumnRole) { column.resize(count); });
     }
 };
 

@@ -13,7 +13,9 @@ struct RestingNodes {
     std::span<const Index> node_body = {};           // NodeTable
     std::span<const std::uint8_t> body_asleep = {};  // BodyTable
 
-    bool contain(std::size_t node) const { return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(node_body[node])] != 0; }
+    bool contain(std::size_t node) const {
+        return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(node_body[node])] != 0;
+    }
 };
 
 }  // namespace skerry

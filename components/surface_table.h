@@ -5,12 +5,13 @@
 #include <cstdint>
 
 #include "components/column.h"
+#include "components/column_role.h"
 #include "components/types.h"
 
 namespace skerry {
 
-/// Boundary triangles, counter-clockwise seen from outside. Each vertex and each edge of a body is owned by exactly one of its
-/// triangles (the lowest that has it), so that a pair of close triangles yields each pair of features once.
+/// Boundary triangles, counter-clockwise seen from outside. Each vertex and each edge of a body is owned by exactly one
+/// of its triangles (the lowest that has it), so that a pair of close triangles yields each pair of features once.
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k joins node k and node (k + 1) % 3
@@ -20,12 +21,12 @@ struct TriangleTable {
     Column<Index> element;                // the tetrahedron behind it (element index of ElementBlockTable), or no_index
 
     void for_each_column(auto&& visit) {
-        visit("node", node);
-        visit("edge", edge);
-        visit("vertex", vertex);
-        visit("owned_vertices", owned_vertices);
-        visit("owned_edges", owned_edges);
-        visit("element", element);
+        visit("node", node, ColumnRole::derived);
+        visit("edge", edge, ColumnRole::derived);
+        visit("vertex", vertex, ColumnRole::derived);
+        visit("owned_vertices", owned_vertices, ColumnRole::derived);
+        visit("owned_edges", owned_edges, ColumnRole::derived);
+        visit("element", element, ColumnRole::derived);
     }
 };
 
@@ -34,8 +35,8 @@ struct EdgeTable {
     Column<std::array<Index, 2>> triangle;  // rows of TriangleTable; the second is no_index on an open boundary
 
     void for_each_column(auto&& visit) {
-        visit("node", node);
-        visit("triangle", triangle);
+        visit("node", node, ColumnRole::derived);
+        visit("triangle", triangle, ColumnRole::derived);
     }
 };
 
@@ -45,13 +46,13 @@ struct VertexTable {
     Column<Index> triangle_end;
 
     void for_each_column(auto&& visit) {
-        visit("node", node);
-        visit("triangle_begin", triangle_begin);
-        visit("triangle_end", triangle_end);
+        visit("node", node, ColumnRole::derived);
+        visit("triangle_begin", triangle_begin, ColumnRole::derived);
+        visit("triangle_end", triangle_end, ColumnRole::derived);
     }
 };
 
-/// The three tables and the list that vertices point into.
+/// The three tables and the list that vertices point into. All of it is derived: Model::rebuild_outlines.
 struct SurfaceTables {
     TriangleTable triangles;
     EdgeTable edges;
@@ -62,7 +63,7 @@ struct SurfaceTables {
         triangles.for_each_column(visit);
         edges.for_each_column(visit);
         vertices.for_each_column(visit);
-        visit("vertex_triangle", vertex_triangle);
+        visit("vertex_triangle", vertex_triangle, ColumnRole::derived);
     }
 };
 

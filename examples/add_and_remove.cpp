@@ -1,4 +1,5 @@
-// Bodies come and go while the world runs; a handle names its body for as long as it lives, and is known to be stale afterwards.
+// Bodies come and go while the world runs; a handle names its body for as long as it lives, and is known to be stale
+// afterwards.
 #include <skerry/world.h>
 
 #include <iostream>
@@ -17,7 +18,8 @@ int main() {
     std::vector<skerry::BodyHandle> removed;
     for (int i = 0; i < 6; ++i) {
         const skerry::Real side = i % 2 == 0 ? 0.05 : -0.05;  // m, so that they do not stack up in a line
-        balls.push_back(world.add_body(ball, {.material = rubber, .position = {side, 0, 0.7}, .name = "ball " + std::to_string(i)}));
+        balls.push_back(world.add_body(
+            ball, {.material = rubber, .position = {side, 0, 0.7}, .name = "ball " + std::to_string(i)}));
         if (balls.size() > 3) {
             world.remove(balls.front());
             removed.push_back(balls.front());

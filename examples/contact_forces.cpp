@@ -9,9 +9,11 @@ int main() {
     const skerry::Real slope = 0.3;  // rad, below the friction angle atan(0.5) = 0.46
     skerry::World world;
     auto rubber = world.add_material({.young_modulus = 2e5, .density = 1000, .friction = 0.5, .damping = 50});
-    auto block = world.add_body(skerry::mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), {.material = rubber, .position = {0, 0, 0.0505}});
+    auto block =
+        world.add_body(skerry::mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), {.material = rubber, .position = {0, 0, 0.0505}});
     world.add_collider(skerry::Plane{.normal = {0, 0, 1}});
-    world.set_gravity({9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)});  // the floor is the slope, seen by who stands on it
+    // the floor is the slope, seen by who stands on it
+    world.set_gravity({9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)});
 
     // Let it settle, then add up what the contacts do in each single step of half a second.
     skerry::StepReport report = world.advance(1.5);
@@ -30,8 +32,8 @@ int main() {
 
     const skerry::Vec3 force = impulse / (world.time() - start);               // N, mean
     const skerry::Vec3 weight = world.mass(block) * world.settings().gravity;  // N
-    std::cout << "The block weighs " << weight.norm() << " N; the floor pushes with " << force.z() << " N and holds with " << -force.x()
-              << " N of friction.\n"
+    std::cout << "The block weighs " << weight.norm() << " N; the floor pushes with " << force.z()
+              << " N and holds with " << -force.x() << " N of friction.\n"
               << sticking << " contacts stuck and " << sliding << " slid.\n";
 
     // At rest the contacts carry the weight; what is left of the swinging in half a second is below a percent.

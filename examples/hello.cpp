@@ -24,8 +24,9 @@ int main() {
     }
 
     const skerry::WorldReport report = world.report();
-    std::cout << "After " << world.time() << " s and " << report.steps << " steps the ball's centre is " << world.center_of_mass(ball).z()
-              << " m above the floor; it touched the floor with up to " << report.max_contacts << " nodes.\n";
+    std::cout << "After " << world.time() << " s and " << report.steps << " steps the ball's centre is "
+              << world.center_of_mass(ball).z() << " m above the floor; it touched the floor with up to "
+              << report.max_contacts << " nodes.\n";
 
     // It reached the floor, did not sink into it, and did not jump higher than it was dropped from.
     const bool as_expected = lowest < 0.01 && lowest > -0.001 && highest < 1.1 && report.max_contacts > 0;

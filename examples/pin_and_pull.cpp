@@ -28,8 +28,10 @@ void advance(skerry::World& world, skerry::Real seconds) {
 
 int main() {
     skerry::World world({.gravity = {0, 0, 0}});
-    // Poisson's ratio 0 keeps the clamped end from being stiffer than the rest, so that Hooke's law for a bar is exact for small strains.
-    auto rubber = world.add_material({.young_modulus = young_modulus, .poisson_ratio = 0, .density = 1000, .damping = 60});
+    // Poisson's ratio 0 keeps the clamped end from being stiffer than the rest, so that Hooke's law for a bar is exact
+    // for small strains.
+    auto rubber =
+        world.add_material({.young_modulus = young_modulus, .poisson_ratio = 0, .density = 1000, .damping = 60});
     auto bar = world.add_body(skerry::mesh::box({length, width, width}, {10, 2, 2}), {.material = rubber});
     const std::vector<skerry::Index> left = nodes_at(world, bar, -length / 2), right = nodes_at(world, bar, length / 2);
     world.attach(bar, left);
@@ -37,15 +39,16 @@ int main() {
     // A force of 10 N along x, spread over the end. Strain F / (E A) = 1 %.
     const skerry::Real pull = 10;  // N
     std::vector<skerry::Vec3> load(world.positions(bar).size(), skerry::Vec3::Zero());
-    for (const skerry::Index node : right) load[static_cast<std::size_t>(node)].x() = pull / static_cast<skerry::Real>(right.size());
+    for (const skerry::Index node : right)
+        load[static_cast<std::size_t>(node)].x() = pull / static_cast<skerry::Real>(right.size());
     world.set_loads(bar, load);
     advance(world, 1.0);
     skerry::Real end = 0;  // m, mean
     for (const skerry::Index node : right)
         end += world.positions(bar)[static_cast<std::size_t>(node)].x() / static_cast<skerry::Real>(right.size());
     const skerry::Real strain = (end - length / 2) / length;
-    std::cout << "10 N stretch the bar by " << 100 * strain << " %, Hooke's law says " << 100 * pull / (young_modulus * width * width)
-              << " %.\n";
+    std::cout << "10 N stretch the bar by " << 100 * strain << " %, Hooke's law says "
+              << 100 * pull / (young_modulus * width * width) << " %.\n";
 
     // Let go, hold the end in a clamp instead, and move that for a tenth of a second.
     world.set_loads(bar, std::vector<skerry::Vec3>(load.size(), skerry::Vec3::Zero()));
@@ -62,6 +65,7 @@ int main() {
     std::cout << "Without it the end came back to " << 1000 * back << " mm.\n";
 
     // 2 %: the end nodes carry equal shares of the load, which a uniform stress would not give them.
-    const bool as_expected = std::abs(strain - 0.01) < 0.02 * 0.01 && std::abs(stretched - 0.01) < 1e-4 && std::abs(back) < 1e-4;
+    const bool as_expected =
+        std::abs(strain - 0.01) < 0.02 * 0.01 && std::abs(stretched - 0.01) < 1e-4 && std::abs(back) < 1e-4;
     return as_expected ? 0 : 1;
 }

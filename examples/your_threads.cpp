@@ -1,5 +1,5 @@
-// The host owns the threads: a world runs in the task arena that calls it and never outside of it, and the number of threads does not
-// change a bit of what it computes.
+// The host owns the threads: a world runs in the task arena that calls it and never outside of it, and the number of
+// threads does not change a bit of what it computes.
 #include <skerry/world.h>
 #include <tbb/task_arena.h>
 

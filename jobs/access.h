@@ -1,11 +1,10 @@
-// What a stage is given and what it touches: read(...), write(...), value(...), make(...), reads(...), writes(...), bundle(...), only_if(...).
+// What a stage touches: accesses, and the Binder that hands out columns and notes what it hands out.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <tuple>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "components/column.h"
@@ -13,18 +12,28 @@
 
 namespace skerry {
 
-/// A read or write of one object: a column, a table, a number. Objects are told apart by the memory that they occupy, so that a table
-/// and its columns, which lie inside it, are known to be the same data, whatever the table lists.
+/// value: is read, and no stage may write it; so nothing waits for it.
+enum class Use : std::uint8_t { value, read, write };
+
+/// The use of one object: a column, a table, a number. Objects are told apart by the memory that they occupy, so that a
+/// table and its columns, which lie inside it, are known to be the same data, whatever the table lists.
 struct Access {
     std::uintptr_t begin;
     std::uintptr_t end;
-    bool writes;
+    Use use;
 
-    bool conflicts_with(const Access& other) const { return (writes || other.writes) && begin < other.end && other.begin < end; }
+    bool writes() const { return use == Use::write; }
+    bool overlaps(const Access& other) const { return begin < other.end && other.begin < end; }
+    /// One has to wait for the other.
+    bool conflicts_with(const Access& other) const {
+        return use != Use::value && other.use != Use::value && (writes() || other.writes()) && overlaps(other);
+    }
+    bool operator==(const Access&) const = default;
 };
 using AccessList = std::vector<Access>;
 
-/// Something that can be declared: an object that stays where it is. A span or a pointer would declare itself instead of what it shows.
+/// Something that can be declared: an object that stays where it is. A span or a pointer would declare itself instead
+/// of what it shows.
 template <class T>
 inline constexpr bool shows_other_data = std::is_pointer_v<T>;
 template <class T, std::size_t N>
@@ -34,151 +43,84 @@ inline constexpr bool shows_other_data<RaggedView<T>> = true;
 template <class T>
 concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>;
 
-namespace access_detail {
+/// Makes what a function takes, spans, of what the tables own, columns. A struct of inputs is bound where it is
+/// defined:
+///
+///     struct RestInputs {
+///         std::span<const Range> nodes;
+///         std::span<const Real> mass;  // kg, by node
+///
+///         static RestInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
+///             return {.nodes = binder.read(body.nodes), .mass = binder.read(node.mass)};
+///         }
+///     };
+///
+/// The same bind runs with a list when a stage is listed, which declares what the stage takes, and without one whenever
+/// it starts. So it must ask for the same columns whatever these hold: read_if and write_if, never if. Must not
+/// allocate.
+class Binder {
+public:
+    Binder() = default;
+    explicit Binder(AccessList& list) : list_(&list) {}
 
-template <class T>
-Access access_to(const T& object, bool writes) {
-    const auto begin = reinterpret_cast<std::uintptr_t>(std::addressof(object));
-    return {begin, begin + sizeof(T), writes};
-}
+    template <class T>
+    std::span<const T> read(const Column<T>& column) const {
+        note(column, Use::read);
+        return column.span();
+    }
+    template <class T>
+    RaggedView<T> read(const Ragged<T>& ragged) const {
+        note(ragged, Use::read);
+        return ragged.view();
+    }
+    template <Resource T>
+    const T& read(const T& object) const {
+        note(object, Use::read);
+        return object;
+    }
+    template <class T>
+    std::span<T> write(Column<T>& column) const {
+        note(column, Use::write);
+        return column.span();
+    }
+    /// For those that make rows, or write an object as a whole.
+    template <Resource T>
+    requires(!std::is_const_v<T>) T& make(T& object) const {
+        note(object, Use::write);
+        return object;
+    }
+    template <Resource T>
+    const T& value(const T& object) const {
+        note(object, Use::value);
+        return object;
+    }
 
-// An argument of a stage: pass() makes a tuple of what the function gets, when the stage starts; declare() adds what is touched; allows()
-// says whether the stage is to run.
-struct Always {
-    bool allows() const { return true; }
+    /// Nothing where not wanted; declared all the same.
+    template <class T>
+    std::span<const T> read_if(bool wanted, const Column<T>& column) const {
+        const std::span<const T> rows = read(column);
+        return wanted ? rows : std::span<const T>();
+    }
+    template <class T>
+    std::span<T> write_if(bool wanted, Column<T>& column) const {
+        const std::span<T> rows = write(column);
+        return wanted ? rows : std::span<T>();
+    }
+
+    template <Resource T>
+    void read(const T&&) const = delete;  // nothing to come back to when the stage runs
+    template <Resource T>
+    void value(const T&&) const = delete;
+
+private:
+    template <class T>
+    void note(const T& object, Use use) const {
+        if (!list_) return;
+        const auto begin = reinterpret_cast<std::uintptr_t>(std::addressof(object));
+        list_->push_back({begin, begin + sizeof(T), use});
+    }
+
+    AccessList* list_ = nullptr;
 };
-struct PassesNothing {
-    std::tuple<> pass() const { return {}; }
-};
-
-template <class T>
-struct ReadColumn : Always {
-    const Column<T>* column;
-    std::tuple<std::span<const T>> pass() const { return {column->span()}; }
-    void declare(AccessList& list) const { list.push_back(access_to(*column, false)); }
-};
-
-template <class T>
-struct WriteColumn : Always {
-    Column<T>* column;
-    std::tuple<std::span<T>> pass() const { return {column->span()}; }
-    void declare(AccessList& list) const { list.push_back(access_to(*column, true)); }
-};
-
-template <class T>
-struct ReadRagged : Always {
-    const Ragged<T>* ragged;
-    std::tuple<RaggedView<T>> pass() const { return {ragged->view()}; }
-    void declare(AccessList& list) const { list.push_back(access_to(*ragged, false)); }
-};
-
-template <class T>
-struct ReadObject : Always {
-    const T* object;
-    std::tuple<const T&> pass() const { return {*object}; }
-    void declare(AccessList& list) const { list.push_back(access_to(*object, false)); }
-};
-
-template <class T>
-struct MakeObject : Always {
-    T* object;
-    std::tuple<T&> pass() const { return {*object}; }
-    void declare(AccessList& list) const { list.push_back(access_to(*object, true)); }
-};
-
-template <class T>
-struct Value : Always {
-    const T* object;
-    std::tuple<const T&> pass() const { return {*object}; }
-    void declare(AccessList&) const {}
-};
-
-struct Declared : Always, PassesNothing {
-    AccessList accesses;
-    void declare(AccessList& list) const { list.insert(list.end(), accesses.begin(), accesses.end()); }
-};
-
-template <class Make>
-struct Bundle : Always {
-    Make make;
-    AccessList accesses;
-    std::tuple<std::invoke_result_t<const Make&>> pass() const { return {make()}; }
-    void declare(AccessList& list) const { list.insert(list.end(), accesses.begin(), accesses.end()); }
-};
-
-template <class Guard>
-struct OnlyIf : PassesNothing {
-    Guard guard;
-    AccessList accesses;
-    bool allows() const { return guard(); }
-    void declare(AccessList& list) const { list.insert(list.end(), accesses.begin(), accesses.end()); }
-};
-
-AccessList joined(const auto&... declared) {
-    AccessList list;
-    (declared.declare(list), ...);
-    return list;
-}
-
-}  // namespace access_detail
-
-/// Passes span<const T> of a column, RaggedView<T> of a ragged, const T& of anything else.
-template <class T>
-auto read(const Column<T>& column) {
-    return access_detail::ReadColumn<T>{{}, &column};
-}
-template <class T>
-auto read(const Ragged<T>& ragged) {
-    return access_detail::ReadRagged<T>{{}, &ragged};
-}
-template <Resource T>
-auto read(const T& object) {
-    return access_detail::ReadObject<T>{{}, &object};
-}
-template <Resource T>
-void read(const T&&) = delete;  // nothing to come back to when the stage runs
-
-/// Passes span<T> of a column.
-template <class T>
-auto write(Column<T>& column) {
-    return access_detail::WriteColumn<T>{{}, &column};
-}
-
-/// Passes T&: for stages that make rows, or write an object as a whole.
-template <Resource T>
-requires(!std::is_const_v<T>) auto make(T& object) {
-    return access_detail::MakeObject<T>{{}, &object};
-}
-
-/// Passes const T& and declares nothing: for what no stage writes.
-template <Resource T>
-auto value(const T& object) {
-    return access_detail::Value<T>{{}, &object};
-}
-template <Resource T>
-void value(const T&&) = delete;
-
-/// Declare accesses and pass nothing.
-template <Resource... T>
-access_detail::Declared reads(const T&... objects) {
-    return {{}, {}, {access_detail::access_to(objects, false)...}};
-}
-template <Resource... T>
-requires(!std::is_const_v<T> && ...) access_detail::Declared writes(T&... objects) {
-    return {{}, {}, {access_detail::access_to(objects, true)...}};
-}
-
-/// Passes what make() returns when the stage starts: a struct of spans, usually. `declared`: reads(...) and writes(...) of what is in it.
-template <class Make>
-auto bundle(Make make, const std::same_as<access_detail::Declared> auto&... declared) {
-    return access_detail::Bundle<Make>{{}, std::move(make), access_detail::joined(declared...)};
-}
-
-/// The stage is skipped if guard() is false when its turn comes. `declared`: what the guard reads.
-template <class Guard>
-auto only_if(Guard guard, const std::same_as<access_detail::Declared> auto&... declared) {
-    static_assert(sizeof...(declared) > 0, "only_if: declare what the guard reads, else it may look too early");
-    return access_detail::OnlyIf<Guard>{{}, std::move(guard), access_detail::joined(declared...)};
-}
 
 }  // namespace skerry

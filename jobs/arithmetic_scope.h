@@ -7,10 +7,10 @@
 
 namespace skerry {
 
-/// Sums round to nearest, exceptions are masked, and numbers below 2^-1022 count as zero, as operands and as results; the end of the scope
-/// gives the thread back as it was. Blocks and stages run in such a scope, whoever's thread it is, so that all workers calculate alike.
-/// Denormal numbers are what motion that decays ends in, and cost a hundred times as much as others (Intel 64 manual, volume 1, 11.6.3).
-/// Does nothing on processors without SSE2.
+/// Sums round to nearest, exceptions are masked, and numbers below 2^-1022 count as zero, as operands and as results;
+/// the end of the scope gives the thread back as it was. Blocks and stages run in such a scope, whoever's thread it is,
+/// so that all workers calculate alike. Denormal numbers are what motion that decays ends in, and cost a hundred times
+/// as much as others (Intel 64 manual, volume 1, 11.6.3). Does nothing on processors without SSE2.
 class ArithmeticScope {
 public:
 #if defined(__SSE2__)

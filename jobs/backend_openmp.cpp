@@ -39,7 +39,8 @@ public:
         } else if (team_of_thread == this) {
             drain_in_team(job, std::min(count, workers_) - 1);
         } else {
-            // Always the whole team, also for fewer blocks: the runtime ends the threads that a smaller team leaves out.
+            // Always the whole team, also for fewer blocks: the runtime ends the threads that a smaller team leaves
+            // out.
 #pragma omp parallel num_threads(workers_)
             {
                 const TeamScope scope(this);

@@ -1,4 +1,5 @@
-// The calling thread alone: the twin that the other backends are compared with, and what a scene too small for threads runs on.
+// The calling thread alone: the twin that the other backends are compared with, and what a scene too small for threads
+// runs on.
 #include "jobs/backends.h"
 
 namespace skerry {

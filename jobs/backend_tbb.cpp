@@ -17,12 +17,15 @@ namespace {
 class TbbExecutor final : public Executor {
 public:
     explicit TbbExecutor(int workers) {
-        if (workers > tbb::info::default_concurrency()) more_threads_.emplace(tbb::global_control::max_allowed_parallelism, workers);
+        if (workers > tbb::info::default_concurrency())
+            more_threads_.emplace(tbb::global_control::max_allowed_parallelism, workers);
         if (workers > 0) arena_.emplace(workers);
     }
 
     Backend backend() const override { return Backend::tbb; }
-    int worker_count() const override { return arena_ ? arena_->max_concurrency() : tbb::this_task_arena::max_concurrency(); }
+    int worker_count() const override {
+        return arena_ ? arena_->max_concurrency() : tbb::this_task_arena::max_concurrency();
+    }
 
     void run_blocks(Index count, FunctionRef<void(Index)> body) override {
         BlockJob job(count, body);
@@ -30,8 +33,8 @@ public:
         if (workers <= 1) {
             job.drain();
         } else {
-            // Isolated: a worker that waits for the last block must not start a long stage meanwhile, which would hold up everything
-            // that waits for these blocks, and would be counted as time of this stage.
+            // Isolated: a worker that waits for the last block must not start a long stage meanwhile, which would hold
+            // up everything that waits for these blocks, and would be counted as time of this stage.
             in_arena([&] { tbb::this_task_arena::isolate([&] { drain_together(job, workers); }); });
         }
         job.rethrow();
@@ -60,8 +63,8 @@ private:
     static void drain_together(BlockJob& job, int workers) {
         tbb::task_group_context context(tbb::task_group_context::isolated);
         tbb::parallel_for(
-            tbb::blocked_range<int>(0, workers, 1), [&](const tbb::blocked_range<int>&) { job.drain(); }, tbb::simple_partitioner(),
-            context);
+            tbb::blocked_range<int>(0, workers, 1), [&](const tbb::blocked_range<int>&) { job.drain(); },
+            tbb::simple_partitioner(), context);
     }
 
     static void run_together(GraphJob& job) {
@@ -81,8 +84,8 @@ private:
         }
     };
 
-    // More workers than cores only come when the library is told to allow them. It takes the least of what is asked for, so this never
-    // raises a limit that the host has set.
+    // More workers than cores only come when the library is told to allow them. It takes the least of what is asked
+    // for, so this never raises a limit that the host has set.
     std::optional<tbb::global_control> more_threads_;
     std::optional<tbb::task_arena> arena_;  // none: the caller's
     PredecessorCounts left_;

@@ -31,8 +31,8 @@ bool spin_until(bool may_spin, auto&& ready) {
     return false;
 }
 
-/// workers - 1 threads and the caller. What is to do is listed under one mutex: the blocks of the run_blocks calls that are open, and the
-/// stages that are ready. Blocks are taken from the counter of their job, without the mutex.
+/// workers - 1 threads and the caller. What is to do is listed under one mutex: the blocks of the run_blocks calls that
+/// are open, and the stages that are ready. Blocks are taken from the counter of their job, without the mutex.
 class ThreadsExecutor final : public Executor {
 public:
     explicit ThreadsExecutor(int workers)
@@ -90,7 +90,8 @@ public:
     }
 
 private:
-    /// A run_blocks call that others may help with. Lives on the stack of its caller, which leaves only when all helpers have.
+    /// A run_blocks call that others may help with. Lives on the stack of its caller, which leaves only when all
+    /// helpers have.
     struct OpenJob {
         BlockJob& job;
         OpenJob* next = nullptr;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "components/access_check.h"
 #include "jobs/arithmetic_scope.h"
 #include "jobs/executor.h"
 
@@ -40,15 +41,16 @@ private:
     std::exception_ptr error_;
 };
 
-/// The blocks of one run_blocks call. Workers take the next number from one counter: as cheap as a task for each worker instead of one
-/// for each block, and a slow block holds nobody up. After an exception the other blocks still run, so that which one is the lowest does
-/// not depend on timing.
+/// The blocks of one run_blocks call. Workers take the next number from one counter: as cheap as a task for each worker
+/// instead of one for each block, and a slow block holds nobody up. After an exception the other blocks still run, so
+/// that which one is the lowest does not depend on timing.
 class BlockJob {
 public:
-    BlockJob(Index count, FunctionRef<void(Index)> body) : body_(body), count_(count) {}
+    BlockJob(Index count, FunctionRef<void(Index)> body) : body_(body), count_(count), watch_(current_access_watch()) {}
 
     void drain() noexcept {
         const ArithmeticScope arithmetic;
+        const AccessScope access(watch_);  // whose blocks they are may touch what the stage may, whoever's thread it is
         for (Index block = take(); block < count_; block = take()) {
             try {
                 body_(block);
@@ -65,11 +67,13 @@ private:
 
     FunctionRef<void(Index)> body_;
     Index count_;
+    const AccessWatch* watch_;
     std::atomic<Index> next_{0};
     FirstError error_;
 };
 
-/// How many predecessors each stage still waits for. Kept by an executor, so that a graph no larger than one before allocates nothing.
+/// How many predecessors each stage still waits for. Kept by an executor, so that a graph no larger than one before
+/// allocates nothing.
 class PredecessorCounts {
 public:
     void reset(std::span<const Index> counts) {
@@ -77,10 +81,13 @@ public:
             left_ = std::make_unique<std::atomic<Index>[]>(counts.size());
             capacity_ = counts.size();
         }
-        for (std::size_t stage = 0; stage < counts.size(); ++stage) left_[stage].store(counts[stage], std::memory_order_relaxed);
+        for (std::size_t stage = 0; stage < counts.size(); ++stage)
+            left_[stage].store(counts[stage], std::memory_order_relaxed);
     }
     /// True for the last predecessor of the stage, which then sees what all the others wrote.
-    bool arrive(Index stage) { return left_[static_cast<std::size_t>(stage)].fetch_sub(1, std::memory_order_acq_rel) == 1; }
+    bool arrive(Index stage) {
+        return left_[static_cast<std::size_t>(stage)].fetch_sub(1, std::memory_order_acq_rel) == 1;
+    }
 
 private:
     std::unique_ptr<std::atomic<Index>[]> left_;
@@ -95,7 +102,8 @@ public:
         left_.reset(edges.predecessor_count);
     }
 
-    /// Calls spawn for every stage without a predecessor but the first, which it returns (no_index: the graph is empty).
+    /// Calls spawn for every stage without a predecessor but the first, which it returns (no_index: the graph is
+    /// empty).
     template <class Spawn>
     Index spawn_roots(Spawn&& spawn) {
         Index first = no_index;
@@ -110,8 +118,9 @@ public:
         return first;
     }
 
-    /// Runs the stage, then a stage that became ready by it, and so on until there is none; spawn gets all others that became ready.
-    /// Returns how many stages are done. After an exception the rest of the graph is walked without running it.
+    /// Runs the stage, then a stage that became ready by it, and so on until there is none; spawn gets all others that
+    /// became ready. Returns how many stages are done. After an exception the rest of the graph is walked without
+    /// running it.
     template <class Spawn>
     Index run_from(Index stage, Spawn&& spawn) noexcept {
         Index done = 0;

@@ -15,7 +15,8 @@ class FunctionRef<Result(Args...)> {
 public:
     template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>) FunctionRef(F&& callable)
-        : callable_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))), call_([](void* target, Args... args) -> Result {
+        : callable_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
+          call_([](void* target, Args... args) -> Result {
               return (*static_cast<std::remove_reference_t<F>*>(target))(std::forward<Args>(args)...);
           }) {}
 

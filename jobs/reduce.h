@@ -8,15 +8,17 @@
 
 namespace skerry {
 
-/// combine(... combine(combine(identity, block 0), block 1) ..., last block), where block b is block_result(begin, end) of at most `block`
-/// rows. Blocks run at the same time, their results are joined in block order: floating-point addition gives another result in another
-/// order. `partial` holds the results of the blocks and keeps its memory between calls.
+/// combine(... combine(combine(identity, block 0), block 1) ..., last block), where block b is block_result(begin, end)
+/// of at most `block` rows. Blocks run at the same time, their results are joined in block order: floating-point
+/// addition gives another result in another order. `partial` holds the results of the blocks and keeps its memory
+/// between calls.
 template <class T, class BlockResult, class Combine>
-T reduce(Executor& executor, std::size_t count, std::size_t block, Column<T>& partial, const std::type_identity_t<T>& identity,
-         BlockResult&& block_result, Combine&& combine) {
+T reduce(Executor& executor, std::size_t count, std::size_t block, Column<T>& partial,
+         const std::type_identity_t<T>& identity, BlockResult&& block_result, Combine&& combine) {
     const std::size_t blocks = (count + block - 1) / block;
     if (partial.size() < blocks) partial.resize(blocks);
-    parallel_for(executor, count, block, [&](std::size_t begin, std::size_t end) { partial[begin / block] = block_result(begin, end); });
+    parallel_for(executor, count, block,
+                 [&](std::size_t begin, std::size_t end) { partial[begin / block] = block_result(begin, end); });
     T result = identity;
     for (std::size_t b = 0; b < blocks; ++b) result = combine(result, partial[b]);
     return result;

@@ -16,24 +16,63 @@ bool conflict(const AccessList& a, const AccessList& b) {
     });
 }
 
+/// What one stage may overwrite while the other takes it as a value.
+bool breaks_value(const AccessList& written, const AccessList& taken) {
+    return std::ranges::any_of(written, [&](const Access& access) {
+        return access.writes() && std::ranges::any_of(taken, [&](const Access& other) {
+                   return other.use == Use::value && access.overlaps(other);
+               });
+    });
+}
+
 }  // namespace
 
 TaskGraph::TaskGraph() : inline_executor_(make_executor(Backend::serial, 1)) {}
 
-void TaskGraph::add(const char* name, AccessList accesses, std::function<Outcome(Executor&)> run) {
-    if (accesses.empty()) throw CheckFailed(std::string("the stage ") + name + " declares no access: nothing would wait for it");
-    for (const StageStats& other : stats_)
-        if (std::string_view(other.name) == name) throw CheckFailed(std::string("two stages are named ") + name);
-    stages_.push_back({std::move(accesses), std::move(run)});
-    stats_.push_back({name});
+/// Refuses what the running stage has not declared.
+class TaskGraph::StageWatch final : public AccessWatch {
+public:
+    StageWatch(const StageDeclaration& stage, const Tracked& tracked) : stage_(stage), tracked_(tracked) {}
+
+    void touched(const void* column, std::size_t bytes, bool writes) const override {
+        const auto begin = reinterpret_cast<std::uintptr_t>(column);
+        const auto memory = reinterpret_cast<std::uintptr_t>(tracked_.memory);
+        if (begin < memory || begin >= memory + tracked_.bytes) return;
+        const auto declared = [&](const Access& access) {
+            return (access.writes() || !writes) && access.begin <= begin && begin + bytes <= access.end;
+        };
+        if (std::ranges::any_of(stage_.accesses, declared)) return;
+        throw CheckFailed(std::string("the stage ") + stage_.name + (writes ? " writes " : " reads ") +
+                          tracked_.name_of(tracked_.memory, column) + " and has not declared it");
+    }
+
+private:
+    const StageDeclaration& stage_;
+    const Tracked& tracked_;
+};
+
+void TaskGraph::add(StageDeclaration stage, Run run) {
+    if (std::ranges::all_of(stage.accesses, [](const Access& access) { return access.use == Use::value; }))
+        throw CheckFailed(std::string("the stage ") + stage.name + " declares no access: nothing would wait for it");
+    for (const StageDeclaration& other : stages_)
+        if (std::string_view(other.name) == stage.name)
+            throw CheckFailed(std::string("two stages are named ") + stage.name);
+    stats_.push_back({stage.name});
+    run_.push_back(std::move(run));
+    stages_.push_back(std::move(stage));
     compiled_ = false;
 }
 
 void TaskGraph::compile() {
     const std::size_t count = stages_.size();
+    for (const StageDeclaration& writer : stages_)
+        for (const StageDeclaration& reader : stages_)
+            if (breaks_value(writer.accesses, reader.accesses))
+                throw CheckFailed(std::string("the stage ") + reader.name + " takes as a value what " + writer.name +
+                                  " writes");
     edges_.clear();
-    // before[s][p]: s waits for p, directly or through others. Nearest predecessors first: one that another already waits for needs no
-    // edge of its own, and what is left is the smallest set of edges.
+    // before[s][p]: s waits for p, directly or through others. Nearest predecessors first: one that another already
+    // waits for needs no edge of its own, and what is left is the smallest set of edges.
     std::vector<std::vector<bool>> before(count, std::vector<bool>(count, false));
     for (std::size_t s = 0; s < count; ++s) {
         for (std::size_t p = s; p-- > 0;) {
@@ -80,7 +119,9 @@ void TaskGraph::run_all(Executor& executor, Trace* trace) {
 
 Trace::Time TaskGraph::run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace) {
     StageStats& stats = stats_[number];
-    const Outcome outcome = stages_[number].run(executor);
+    const StageWatch watch(stages_[number], tracked_);
+    const AccessScope access(access_is_checked ? &watch : nullptr);
+    const Outcome outcome = run_[number](executor);
     if (outcome == Outcome::guarded) {
         ++stats.skipped;
         return begin;

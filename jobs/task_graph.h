@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "jobs/access.h"
 #include "jobs/executor.h"
+#include "jobs/stage_arguments.h"
 #include "jobs/trace.h"
 
 namespace skerry {
@@ -47,7 +47,8 @@ using Passed = decltype(std::tuple_cat(std::declval<const Args&>().pass()...));
 template <class F, class... Args>
 using CallOf = StageCall<F, Passed<Args...>>;
 template <class F, class... Args>
-using ResultOf = decltype(CallOf<F, Args...>::call(std::declval<F&>(), std::declval<Executor&>(), std::declval<Passed<Args...>>()));
+using ResultOf =
+    decltype(CallOf<F, Args...>::call(std::declval<F&>(), std::declval<Executor&>(), std::declval<Passed<Args...>>()));
 
 }  // namespace access_detail
 
@@ -63,13 +64,21 @@ struct StageStats {
     std::uint64_t skipped = 0;  // its guard was false, or it returned false
 };
 
+/// What a stage was listed as.
+struct StageDeclaration {
+    const char* name;
+    AccessList accesses;
+    bool guarded;  // by an only_if: it may be left out
+};
+
 /// Stages and the order between them. Building may allocate; running does not, after the first run on an executor.
 ///
-///     g.stage("dynamics/predict_velocity", predict_velocity, read(n.force), read(n.inverse_mass), read(n.velocity), value(s.h),
-///             write(n.velocity_next));
+///     g.stage("dynamics/drive_nodes", drive_nodes, inputs<NodeMotionInputs>(attachments), value(s.h),
+///             read(n.position), write(n.velocity));
 ///
-/// Arguments are made by the functions of access.h, in the order of the function's parameters; a leading Executor& is passed by the graph.
-/// Spans are taken when the stage starts. Two stages that touch the same object, one of them writing, run in the order of the list.
+/// Arguments are made by the functions of stage_arguments.h, in the order of the function's parameters; a leading
+/// Executor& is passed by the graph. Spans are taken when the stage starts. Two stages that touch the same object, one
+/// of them writing, run in the order of the list.
 class TaskGraph {
 public:
     struct Edge {
@@ -80,15 +89,16 @@ public:
 
     TaskGraph();
 
-    /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A function that returns bool says
-    /// false when there was nothing to do.
+    /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A function that
+    /// returns bool says false when there was nothing to do.
     template <class F, class... Args>
     requires StageFits<F, Args...>
     void stage(const char* name, F function, Args... args) {
         using Call = access_detail::CallOf<F, Args...>;
         using Result = access_detail::ResultOf<F, Args...>;
-        static_assert(std::is_void_v<Result> || std::is_same_v<Result, bool>, "a stage with another result needs stage_with_result");
-        add(name, access_detail::joined(args...), [function, args...](Executor& executor) mutable {
+        static_assert(std::is_void_v<Result> || std::is_same_v<Result, bool>,
+                      "a stage with another result needs stage_with_result");
+        auto run = [function, args...](Executor& executor) mutable {
             if (!(args.allows() && ...)) return Outcome::guarded;
             if constexpr (std::is_void_v<Result>) {
                 Call::call(function, executor, std::tuple_cat(args.pass()...));
@@ -96,7 +106,8 @@ public:
             } else {
                 return Call::call(function, executor, std::tuple_cat(args.pass()...)) ? Outcome::ran : Outcome::idle;
             }
-        });
+        };
+        add({name, access_detail::joined(args...), (Args::guards || ...)}, std::move(run));
     }
 
     /// Adds a stage whose return value is written to `result`, which counts as written by it.
@@ -104,46 +115,60 @@ public:
     requires StageFits<F, Args...>
     void stage_with_result(const char* name, Result& result, F function, Args... args) {
         using Call = access_detail::CallOf<F, Args...>;
-        add(name, access_detail::joined(args..., writes(result)), [function, &result, args...](Executor& executor) mutable {
+        auto run = [function, &result, args...](Executor& executor) mutable {
             if (!(args.allows() && ...)) return Outcome::guarded;
             result = Call::call(function, executor, std::tuple_cat(args.pass()...));
             return Outcome::ran;
-        });
+        };
+        add({name, access_detail::joined(args..., make(result)), (Args::guards || ...)}, std::move(run));
     }
 
-    /// Finds the edges. Once, after the last stage was added.
+    /// Finds the edges. Once, after the last stage was added. Throws CheckFailed when a stage takes as a value what a
+    /// stage writes.
     void compile();
+
+    /// With SKERRY_CHECK_ACCESS: a stage that touches a column within this memory without having declared it throws
+    /// CheckFailed. `name_of` says what lies at a place, for the message.
+    using NameOf = std::string (*)(void* memory, const void* place);
+    void track(void* memory, std::size_t bytes, NameOf name_of) { tracked_ = {memory, bytes, name_of}; }
 
     /// Runs every stage once. An exception of a stage comes out here; stages that had not started are left out.
     void run(Executor& executor, Trace* trace = nullptr);
     /// The same on the calling thread alone, in the order of the list: for scenes too small to pay for threads.
     void run_inline(Trace* trace = nullptr);
 
+    std::span<const StageDeclaration> stages() const { return stages_; }
     std::span<const StageStats> stats() const { return stats_; }
     void reset_stats();
 
-    /// The edges without those that follow from others, ordered by their first, then their second stage. Stages are numbered as listed.
+    /// The edges without those that follow from others, ordered by their first, then their second stage. Stages are
+    /// numbered as listed.
     std::span<const Edge> edges() const { return edges_; }
     /// The graph as Graphviz dot text.
     std::string to_dot() const;
 
 private:
     enum class Outcome { ran, idle, guarded };
-    struct Stage {
-        AccessList accesses;
-        std::function<Outcome(Executor&)> run;
+    using Run = std::function<Outcome(Executor&)>;
+    struct Tracked {
+        void* memory = nullptr;
+        std::size_t bytes = 0;
+        NameOf name_of = nullptr;
     };
+    class StageWatch;
 
-    void add(const char* name, AccessList accesses, std::function<Outcome(Executor&)> run);
+    void add(StageDeclaration stage, Run run);
     /// Returns when it ended: `begin` if it was not allowed to run.
     Trace::Time run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace);
     void run_all(Executor& executor, Trace* trace);
 
-    std::vector<Stage> stages_;
+    std::vector<StageDeclaration> stages_;
+    std::vector<Run> run_;           // by stage
     std::vector<StageStats> stats_;  // by stage
     std::vector<Edge> edges_;
     std::vector<Index> successor_offset_, successor_, predecessor_count_;  // edges_, as an executor wants them
     std::unique_ptr<Executor> inline_executor_;
+    Tracked tracked_;
     bool compiled_ = false;
 };
 

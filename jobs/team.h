@@ -1,4 +1,5 @@
-// Team: workers that stay together through many short phases, for which a call of run_blocks each would cost more than the work in them.
+// Team: workers that stay together through many short phases, for which a call of run_blocks each would cost more than
+// the work in them.
 #pragma once
 
 #include <atomic>
@@ -14,18 +15,20 @@ namespace skerry {
 
 class FirstError;
 
-/// One thread leads and the others wait, spinning, for what it hands out. Nobody is needed: a worker that is busy elsewhere, or that the
-/// system has put aside, comes late or never, and what it would have done is done by those who are there. A phase costs about 0.3 us; how
-/// long it takes a worker to join is the executor's matter and is paid once. Memory is kept between calls.
+/// One thread leads and the others wait, spinning, for what it hands out. Nobody is needed: a worker that is busy
+/// elsewhere, or that the system has put aside, comes late or never, and what it would have done is done by those who
+/// are there. A phase costs about 0.3 us; how long it takes a worker to join is the executor's matter and is paid once.
+/// Memory is kept between calls.
 class Team {
 public:
     /// Calls work() once; run_phases called in it may use all workers of the executor. Not within itself.
     void gather(Executor& executor, FunctionRef<void()> work);
 
-    /// Calls body(block) once for every block 0 .. phase_offset.back() - 1, after all blocks of earlier phases have returned; phase p is
-    /// the blocks phase_offset[p] .. phase_offset[p + 1] - 1. A worker prefers the same share of every phase, so that rows that are
-    /// near each other in all phases stay in its cache. After an exception the other blocks still run; that of the lowest block comes
-    /// out. Only from the thread that leads; outside of gather it works alone.
+    /// Calls body(block) once for every block 0 .. phase_offset.back() - 1, after all blocks of earlier phases have
+    /// returned; phase p is the blocks phase_offset[p] .. phase_offset[p + 1] - 1. A worker prefers the same share of
+    /// every phase, so that rows that are near each other in all phases stay in its cache. After an exception the other
+    /// blocks still run; that of the lowest block comes out. Only from the thread that leads; outside of gather it
+    /// works alone.
     void run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index block)> body);
 
     /// One phase of `count` blocks.

@@ -31,8 +31,8 @@ std::string json_string(std::string_view text) {
     return quoted + '"';
 }
 
-// Nanoseconds as microseconds with three places: exact, and independent of the stream's settings and locale. Negative for a zone that was
-// open when the trace was cleared.
+// Nanoseconds as microseconds with three places: exact, and independent of the stream's settings and locale. Negative
+// for a zone that was open when the trace was cleared.
 std::string microseconds(std::int64_t nanoseconds) {
     const long long size = std::abs(static_cast<long long>(nanoseconds));
     std::array<char, 40> text{};
@@ -52,7 +52,8 @@ std::string_view category(std::string_view name) {
 
 }  // namespace
 
-Trace::Trace(std::size_t max_zones_per_worker) : id_(++traces_made), max_zones_per_worker_(max_zones_per_worker), start_(now()) {
+Trace::Trace(std::size_t max_zones_per_worker)
+    : id_(++traces_made), max_zones_per_worker_(max_zones_per_worker), start_(now()) {
     worker_of_this_thread();
 }
 
@@ -123,7 +124,8 @@ void Trace::write_json(std::ostream& out) const {
     for (std::size_t w = 0; w < workers_.size(); ++w) {
         const std::string number = std::to_string(w);
         out << ",\n"
-            << R"({"name":"thread_name","ph":"M","pid":1,"tid":)" << number << R"(,"args":{"name":"worker )" << number << "\"}}";
+            << R"({"name":"thread_name","ph":"M","pid":1,"tid":)" << number << R"(,"args":{"name":"worker )" << number
+            << "\"}}";
         for (const Zone& zone : workers_[w]->zones)
             out << ",\n{\"name\":" << json_string(zone.name) << ",\"cat\":" << json_string(category(zone.name))
                 << R"(,"ph":"X","pid":1,"tid":)" << number << ",\"ts\":" << microseconds(zone.begin)

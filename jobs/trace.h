@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Records zones: pieces of work with a begin and an end. Every thread writes to a list of its own; the lists grow while recording, up to
-/// the bound given. Zones beyond it are counted, and the file says how many.
+/// Records zones: pieces of work with a begin and an end. Every thread writes to a list of its own; the lists grow
+/// while recording, up to the bound given. Zones beyond it are counted, and the file says how many.
 class Trace {
 public:
     using Clock = std::chrono::steady_clock;
@@ -29,7 +29,8 @@ public:
 
     static Time now() { return Clock::now(); }
 
-    /// Adds a zone of the calling thread. The name must outlive the trace: a literal. Any thread, at any time but during clear and write_json.
+    /// Adds a zone of the calling thread. The name must outlive the trace: a literal. Any thread, at any time but
+    /// during clear and write_json.
     void add(const char* name, Time begin, Time end);
 
     /// Forgets all zones, and counts time from now on.

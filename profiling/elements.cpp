@@ -1,8 +1,10 @@
-// profile_elements: nanoseconds per tetrahedron of the elastic kernels, in cache and from memory, beside what the machine could do.
+// profile_elements: nanoseconds per tetrahedron of the elastic kernels, in cache and from memory, beside what the
+// machine could do.
 //
-// The bound is the larger of bytes / bandwidth and flops / flop rate, both measured in the same run on as many workers. Bandwidth is that of a
-// triad a = b + s c over a working set of the same size as the mesh, counting the line that a store fetches first. The flop rate is that
-// of separate multiplications and additions: the project compiles without contraction, so a fused multiply-add is not available.
+// The bound is the larger of bytes / bandwidth and flops / flop rate, both measured in the same run on as many workers.
+// Bandwidth is that of a triad a = b + s c over a working set of the same size as the mesh, counting the line that a
+// store fetches first. The flop rate is that of separate multiplications and additions: the project compiles without
+// contraction, so a fused multiply-add is not available.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -13,31 +15,27 @@
 
 #include "jobs/executor.h"
 #include "jobs/parallel_for.h"
-#include "systems/dynamics/predict_velocity.h"
+#include "systems/dynamics/motion/predict_velocity.h"
 #include "systems/material/lane_math.h"
+#include "systems/material/with_law.h"
 #include "tests/support/elastic_body.h"
 
 namespace {
 
 using namespace skerry;
 
-/// What one tetrahedron costs, counted in the source. Bytes: B 72, volume 8, nodes 16, material 0.5, positions 4 (0.18 nodes a tetrahedron),
-/// forces 96 stored and 96 fetched before; corotational 32 + 32 + 32 for the quaternions. Flops: edges 9, F 45, forces 63, and the law:
-/// linear 18; stable neo-Hookean 82; corotational 172 in each of two passes (division and root count as one), frame 24, stress 54.
+/// What one tetrahedron costs, counted in the source. Bytes: B 72, volume 8, nodes 16, material 0.5, positions 4 (0.18
+/// nodes a tetrahedron), forces 96 stored and 96 fetched before; with a frame 32 + 32 + 32 for the quaternions. Flops:
+/// edges 9, F 45, forces 63, and the law; a frame 172 in each of two passes (division and root count as one) and 24.
 struct Cost {
     double bytes, flops;
 };
 Cost element_cost(MaterialModel model) {
     constexpr double shared_bytes = 292.5, shared_flops = 117;
-    switch (model) {
-        case MaterialModel::linear:
-            return {shared_bytes, shared_flops + 18};
-        case MaterialModel::corotational:
-            return {shared_bytes + 96, shared_flops + 2 * 172 + 24 + 54};
-        case MaterialModel::stable_neo_hookean:
-            break;
-    }
-    return {shared_bytes, shared_flops + 82};
+    return with_law(model, [](auto law) -> Cost {
+        if constexpr (law.has_frame) return {shared_bytes + 96, shared_flops + 2 * 172 + 24 + law.stress_flops};
+        return {shared_bytes, shared_flops + law.stress_flops};
+    });
 }
 /// The gather with its kick: forces 96, corners 16, and 0.18 nodes of 92 bytes; 12 additions and 0.18 nodes of 15.
 constexpr Cost gather_cost{129, 15};
@@ -77,13 +75,13 @@ double triad_bandwidth(Executor& executor, std::size_t bytes, int repeats) {
 constexpr int chains = 12;  // registers of 8 reals: enough to hide the latency
 constexpr int rounds = 20000;
 
-#define SKERRY_ROUNDS                                                                                                                  \
-    Real8 x0 = x, x1 = x + 1, x2 = x + 2, x3 = x + 3, x4 = x + 4, x5 = x + 5, x6 = x + 6, x7 = x + 7, x8 = x + 8, x9 = x + 9, xa = -x, \
-          xb = 2 * x;                                                                                                                  \
-    for (int i = 0; i < rounds; ++i) {                                                                                                 \
-        x0 = x0 * a + b, x1 = x1 * a + b, x2 = x2 * a + b, x3 = x3 * a + b, x4 = x4 * a + b, x5 = x5 * a + b;                          \
-        x6 = x6 * a + b, x7 = x7 * a + b, x8 = x8 * a + b, x9 = x9 * a + b, xa = xa * a + b, xb = xb * a + b;                          \
-    }                                                                                                                                  \
+#define SKERRY_ROUNDS                                                                                             \
+    Real8 x0 = x, x1 = x + 1, x2 = x + 2, x3 = x + 3, x4 = x + 4, x5 = x + 5, x6 = x + 6, x7 = x + 7, x8 = x + 8, \
+          x9 = x + 9, xa = -x, xb = 2 * x;                                                                        \
+    for (int i = 0; i < rounds; ++i) {                                                                            \
+        x0 = x0 * a + b, x1 = x1 * a + b, x2 = x2 * a + b, x3 = x3 * a + b, x4 = x4 * a + b, x5 = x5 * a + b;     \
+        x6 = x6 * a + b, x7 = x7 * a + b, x8 = x8 * a + b, x9 = x9 * a + b, xa = xa * a + b, xb = xb * a + b;     \
+    }                                                                                                             \
     x = x0 + x1 + x2 + x3 + x4 + x5 + x6 + x7 + x8 + x9 + xa + xb
 
 [[gnu::noinline]] void multiply_and_add(Real8& x, const Real8& a, const Real8& b) {
@@ -122,17 +120,19 @@ void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_
         end.push_back(std::min(n + nodes_per_block, count));
     }
     const std::vector<Index> of_body(begin.size(), 0);
-    predict_velocity(executor, {begin, end, of_body, body.corners.view(), body.elements.force, {}, body.mass, body.inverse_mass},
+    predict_velocity(executor,
+                     {begin, end, of_body, body.corners.view(), body.elements.force, {}, body.mass, body.inverse_mass},
                      body.velocity, 1e-6, body.force, velocity_next);
 }
 
-void measure(Executor& executor, const test::TetMesh& mesh, const std::string& name, double bandwidth, double flops, int repeats,
-             std::vector<Row>& rows) {
+void measure(Executor& executor, const test::TetMesh& mesh, const std::string& name, double bandwidth, double flops,
+             int repeats, std::vector<Row>& rows) {
     const double count = static_cast<double>(mesh.tetrahedra.size());
     const auto bound = [&](const Cost& cost) { return 1e9 * std::max(cost.bytes / bandwidth, cost.flops / flops); };
     for (const auto& [model, model_name] : EnumNames<MaterialModel>::table) {
         test::ElasticBody body(mesh, material_constants(model, 1e5, 0.4, 1000));
-        // Two shapes in turn, deformed by a tenth and 1e-4 rad apart, as a quick step would have it: two passes of the frame.
+        // Two shapes in turn, deformed by a tenth and 1e-4 rad apart, as a quick step would have it: two passes of the
+        // frame.
         std::vector<Vec3> shape[2] = {body.position, body.position};
         const Eigen::AngleAxis<Real> turn(1e-4, Vec3(1, 2, 3).normalized());
         for (std::size_t n = 0; n < shape[0].size(); ++n) {
@@ -155,12 +155,12 @@ void print(const Machine& machine, const std::vector<Row>& rows, int threads) {
     std::printf("threads %d\n", threads);
     std::printf("triad, in cache      %8.1f GB/s\ntriad, from memory   %8.1f GB/s\n", machine.triad_cached / 1e9,
                 machine.triad_large / 1e9);
-    std::printf("multiply and add     %8.1f GF/s\nfused multiply-add   %8.1f GF/s (not used: no contraction)\n\n", machine.flops / 1e9,
-                machine.flops_fused / 1e9);
+    std::printf("multiply and add     %8.1f GF/s\nfused multiply-add   %8.1f GF/s (not used: no contraction)\n\n",
+                machine.flops / 1e9, machine.flops_fused / 1e9);
     std::printf("%-9s %-20s %-9s %10s %10s %10s\n", "mesh", "model", "pass", "ns/tet", "bound", "of bound");
     for (const Row& row : rows)
-        std::printf("%-9s %-20s %-9s %10.2f %10.2f %9.0f%%\n", row.mesh.c_str(), row.model.c_str(), row.pass.c_str(), row.nanoseconds,
-                    row.bound, 100 * row.bound / row.nanoseconds);
+        std::printf("%-9s %-20s %-9s %10.2f %10.2f %9.0f%%\n", row.mesh.c_str(), row.model.c_str(), row.pass.c_str(),
+                    row.nanoseconds, row.bound, 100 * row.bound / row.nanoseconds);
 }
 
 void write_json(const std::string& file, const Machine& machine, const std::vector<Row>& rows, int threads) {
@@ -188,7 +188,8 @@ int main(int argc, char** argv) {
     std::string json;
     app.add_option("--threads", threads, "workers")->capture_default_str()->check(CLI::PositiveNumber);
     app.add_option("--json", json, "write the figures to this file");
-    app.add_option("--cached-cells", cached_cells, "cells along an edge of the small mesh, six tetrahedra each")->capture_default_str();
+    app.add_option("--cached-cells", cached_cells, "cells along an edge of the small mesh, six tetrahedra each")
+        ->capture_default_str();
     app.add_option("--large-cells", large_cells, "cells along an edge of the large mesh")->capture_default_str();
     app.add_option("--repeats", repeats, "repeats of the large mesh; the small one gets 20 times as many")
         ->capture_default_str()

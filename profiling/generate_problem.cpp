@@ -54,24 +54,29 @@ Sheet add_sheet(const SheetSettings& settings, Index number, Random& random, Lum
             sheet.x.push_back(sheet.spacing * (i + random.symmetric(0.25)));
             sheet.y.push_back(sheet.spacing * (j + random.symmetric(0.25)));
             // a coarse node stands for as much of its sheet as it covers
-            const Real mass = std::exp(0.5 * random.normal()) * sheet.spacing * sheet.spacing * (upper ? settings.mass_ratio : 1);
+            const Real mass =
+                std::exp(0.5 * random.normal()) * sheet.spacing * sheet.spacing * (upper ? settings.mass_ratio : 1);
             out.inverse_mass.push_back(fixed ? 0 : 1 / mass);
             out.velocity.push_back(mean + random.symmetric_vector(noise));
         }
     return sheet;
 }
 
-/// The points inside `from` against the triangles of `to`, taken as a regular grid: it is the places of the points that are random.
-void add_contacts(const Sheet& from, const Sheet& to, const Vec3& up, const SheetSettings& settings, Random& random, LumpedContacts& out) {
+/// The points inside `from` against the triangles of `to`, taken as a regular grid: it is the places of the points that
+/// are random.
+void add_contacts(const Sheet& from, const Sheet& to, const Vec3& up, const SheetSettings& settings, Random& random,
+                  LumpedContacts& out) {
     for (Index i = 1; i + 1 < from.nodes; ++i)
         for (Index j = 1; j + 1 < from.nodes; ++j) {
             const std::size_t local = static_cast<std::size_t>(i * from.nodes + j);
             const Real x = from.x[local] / to.spacing, y = from.y[local] / to.spacing;
-            const Index a = std::clamp(static_cast<Index>(x), 0, to.nodes - 2), b = std::clamp(static_cast<Index>(y), 0, to.nodes - 2);
+            const Index a = std::clamp(static_cast<Index>(x), 0, to.nodes - 2),
+                        b = std::clamp(static_cast<Index>(y), 0, to.nodes - 2);
             const Real u = std::clamp(x - a, 0.0, 1.0), v = std::clamp(y - b, 0.0, 1.0);
             const bool low = u + v <= 1;
             const Index corner = low ? to.node(a, b) : to.node(a + 1, b + 1);
-            const Index along_u = low ? to.node(a + 1, b) : to.node(a, b + 1), along_v = low ? to.node(a, b + 1) : to.node(a + 1, b);
+            const Index along_u = low ? to.node(a + 1, b) : to.node(a, b + 1),
+                        along_v = low ? to.node(a, b + 1) : to.node(a + 1, b);
             const Real share_u = low ? u : 1 - u, share_v = low ? v : 1 - v;
             const std::array<Index, 4> node = {from.node(i, j), corner, along_u, along_v};
             const auto moves = [&](Index n) { return out.inverse_mass[n] > 0; };

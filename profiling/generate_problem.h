@@ -9,7 +9,8 @@
 
 namespace skerry::profiling {
 
-/// Sheets of nodes one above the other. Every node inside a sheet touches the triangle of the neighbouring sheet under or above it.
+/// Sheets of nodes one above the other. Every node inside a sheet touches the triangle of the neighbouring sheet under
+/// or above it.
 struct SheetSettings {
     Index sheets = 2;
     Index nodes = 12;      // along an edge of a sheet

@@ -1,4 +1,5 @@
-// Contacts of lumped masses, solved as a step of the engine solves them: separation into regions, then the stage solve_regions.
+// Contacts of lumped masses, solved as a step of the engine solves them: separation into regions, then the stage
+// solve_regions.
 #pragma once
 
 #include <memory>

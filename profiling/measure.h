@@ -27,13 +27,14 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-/// From this on a run is timed once, by the CPU time of its thread, which other programs do not lengthen. Shorter ones are repeated and
-/// timed by the wall clock, whose reading costs less; the median drops those that were interrupted.
+/// From this on a run is timed once, by the CPU time of its thread, which other programs do not lengthen. Shorter ones
+/// are repeated and timed by the wall clock, whose reading costs less; the median drops those that were interrupted.
 inline constexpr double long_run = 5e-3;  // s
 /// How long a short run is repeated, s. A program that is in a hurry sets less.
 inline double repeat_budget = 20e-3;
 
-/// Seconds of `run`, by the rule above; `prepare` is called before each run and not timed. solve_problem times itself in the same way.
+/// Seconds of `run`, by the rule above; `prepare` is called before each run and not timed. solve_problem times itself
+/// in the same way.
 template <class Prepare, class Run>
 double timed(Prepare&& prepare, Run&& run) {
     std::vector<double> seconds;

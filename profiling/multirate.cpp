@@ -1,5 +1,5 @@
-// profile_multirate: CPU time against error of one step for all elements and of multirate steps, on a mesh with slivers and on a stiff body
-// beside a soft one. profiling/plot_multirate.py draws the table.
+// profile_multirate: CPU time against error of one step for all elements and of multirate steps, on a mesh with slivers
+// and on a stiff body beside a soft one. profiling/plot_multirate.py draws the table.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -37,7 +37,8 @@ struct Outcome {
     Real energy_start = 0, energy_end = 0;  // J
 };
 
-/// A box that turns and is strained by some per cent; 1 % of its elements are flat, and their stable step is a sixteenth of the others'.
+/// A box that turns and is strained by some per cent; 1 % of its elements are flat, and their stable step is a
+/// sixteenth of the others'.
 void add_slivers(World& world, int cells) {
     constexpr Real size = 0.1, flatness = 0.0349;
     const Mesh mesh = test::sliver_box(size, cells, 0.01, flatness);
@@ -54,8 +55,10 @@ void add_stiff_and_soft(World& world, int cells) {
     const auto soft = world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.4});
     const auto stiff = world.add_material({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = 0.4});
     world.add_collider(Plane{});
-    world.add_body(mesh::box({0.2, 0.2, 0.1}, {cells, cells, cells / 2}), {.material = soft, .position = {0, 0, 0.0505}});
-    world.add_body(mesh::ball(0.03, cells / 4), {.material = stiff, .position = {0.01, 0, 0.135}, .velocity = {0, 0, -0.5}});
+    world.add_body(mesh::box({0.2, 0.2, 0.1}, {cells, cells, cells / 2}),
+                   {.material = soft, .position = {0, 0, 0.0505}});
+    world.add_body(mesh::ball(0.03, cells / 4),
+                   {.material = stiff, .position = {0.01, 0, 0.135}, .velocity = {0, 0, -0.5}});
 }
 
 Outcome run(const Case& one, const Variant& variant) {
@@ -92,7 +95,8 @@ Real rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return std::sqrt(sum / static_cast<Real>(a.size()));
 }
 
-void measure(const Case& one, Real reference_safety, const std::vector<Variant>& variants, int repeats, std::ofstream& table) {
+void measure(const Case& one, Real reference_safety, const std::vector<Variant>& variants, int repeats,
+             std::ofstream& table) {
     const std::vector<Vec3> reference = run(one, {Integrator::leapfrog, false, reference_safety}).position;
     std::vector<std::vector<double>> cpu(variants.size());
     std::vector<std::optional<Outcome>> outcome(variants.size());
@@ -103,12 +107,14 @@ void measure(const Case& one, Real reference_safety, const std::vector<Variant>&
         }
     for (std::size_t v = 0; v < variants.size(); ++v) {
         const WorldReport& report = outcome[v]->report;
-        const double share =
-            report.element_steps > 0 ? static_cast<double>(report.element_impulses) / static_cast<double>(report.element_steps) : 1;
+        const double share = report.element_steps > 0 ? static_cast<double>(report.element_impulses) /
+                                                            static_cast<double>(report.element_steps)
+                                                      : 1;
         const Real drift = (outcome[v]->energy_end - outcome[v]->energy_start) / outcome[v]->report.energy.kinetic;
         const auto line = [&](auto&& print) {
-            print(one.scene, name_of(variants[v].integrator), variants[v].multirate ? "multirate" : "one step", variants[v].safety,
-                  report.steps, median(cpu[v]), rms_distance(outcome[v]->position, reference), share, drift);
+            print(one.scene, name_of(variants[v].integrator), variants[v].multirate ? "multirate" : "one step",
+                  variants[v].safety, report.steps, median(cpu[v]), rms_distance(outcome[v]->position, reference),
+                  share, drift);
         };
         line([&](const auto& scene, const auto& integrator, const auto& mode, auto... number) {
             table << scene << ',' << integrator << ',' << mode;
@@ -126,7 +132,9 @@ int main(int argc, char** argv) {
     int cells = 28, repeats = 3;
     bool quick = false;
     app.add_option("--out", out, "Folder for the table")->capture_default_str();
-    app.add_option("--cells", cells, "Cells along an edge of the mesh with slivers")->check(CLI::Range(8, 64))->capture_default_str();
+    app.add_option("--cells", cells, "Cells along an edge of the mesh with slivers")
+        ->check(CLI::Range(8, 64))
+        ->capture_default_str();
     app.add_option("--repeats", repeats, "Runs of each, taken in turns; medians are written")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();

@@ -37,15 +37,16 @@ def main():
                 table.append([scene, integrator, f"{a['safety']:g}", f"{a['error']:.2g}", f"{b['error']:.2g}",
                               f"{100 * b['impulse_share']:.1f} %", f"{a['cpu_seconds'] / b['cpu_seconds']:.2f}",
                               f"{equal / b['cpu_seconds']:.2f}" if equal else "-"])
-    style.print_table(["scene", "integrator", "safety", "error, m", "multirate", "forces", "faster, same step", "to that error"], table)
+    style.print_table(["scene", "integrator", "safety", "error, m", "multirate", "forces", "faster, same step",
+                       "to that error"], table)
 
     figure, axes = plt.subplots(1, len(scenes), figsize=(4.6 * len(scenes), 3.9), squeeze=False)
     for axis, scene in zip(axes[0], scenes):
         for integrator, dash in zip(INTEGRATORS, style.DASHES):
             for mode in (ONE, MULTI):
                 rows = series[scene, integrator, mode]
-                axis.loglog([r["cpu_seconds"] for r in rows], [r["error"] for r in rows], dash, marker="o", color=COLOR[mode],
-                            label=f"{mode}, {integrator.replace('_', ' ')}")
+                axis.loglog([r["cpu_seconds"] for r in rows], [r["error"] for r in rows], dash, marker="o",
+                            color=COLOR[mode], label=f"{mode}, {integrator.replace('_', ' ')}")
         axis.set_title(TITLE[scene])
         axis.set_xlabel("CPU time, s")
         axis.set_ylabel("position error, m (root mean square)")

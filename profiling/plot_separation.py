@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tables and plots of what profile_separation measured, beside the paper's figures: plot_separation.py FOLDER [--figures FOLDER ...]"""
+"""Tables and plots of what profile_separation measured, beside the paper's figures: plot_separation.py FOLDER
+[--figures FOLDER ...]"""
 import argparse
 import collections
 import math
@@ -35,10 +36,11 @@ def by_bin(rows):
 
 
 def speed_up(rows):
-    """Global over separate time at the same number of contacts: geometric mean over the bins that both runs have. Frames are not paired: the
-    two runs of a collision part after a while."""
+    """Global over separate time at the same number of contacts: geometric mean over the bins that both runs have.
+    Frames are not paired: the two runs of a collision part after a while."""
     middle = {mode: by_bin([r for r in rows if r["mode"] == mode]) for mode in (SEPARATE, GLOBAL)}
-    return style.geometric_mean([middle[GLOBAL][b][1] / middle[SEPARATE][b][1] for b in middle[SEPARATE] if b in middle[GLOBAL]])
+    return style.geometric_mean([middle[GLOBAL][b][1] / middle[SEPARATE][b][1] for b in middle[SEPARATE]
+                                 if b in middle[GLOBAL]])
 
 
 def report_scenes(rows, table):
@@ -58,16 +60,18 @@ def plot_scenes(rows, folders):
     handlings = list(dict.fromkeys(r["handling"] for r in rows))
     figure, axes = plt.subplots(len(handlings), 2, figsize=(11, 3.9 * len(handlings)), squeeze=False)
     for line, handling in zip(axes, handlings):
-        for axis, scene, title in zip(line, ("bucket", "skittles"), ("balls at rest in a bucket", "a ball strikes skittles")):
+        for axis, scene, title in zip(line, ("bucket", "skittles"),
+                                      ("balls at rest in a bucket", "a ball strikes skittles")):
             for mode in (GLOBAL, SEPARATE):
                 chosen = [r for r in rows if r["scene"] == scene and r["handling"] == handling and r["mode"] == mode]
-                axis.scatter([r["contacts"] for r in chosen], [1e6 * contact_seconds(r) for r in chosen], s=8, alpha=0.3,
-                             color=COLOR[mode], linewidths=0)
+                axis.scatter([r["contacts"] for r in chosen], [1e6 * contact_seconds(r) for r in chosen], s=8,
+                             alpha=0.3, color=COLOR[mode], linewidths=0)
                 middle = by_bin(chosen)
-                axis.plot([m[0] for m in middle.values()], [1e6 * m[1] for m in middle.values()], color=COLOR[mode], marker="o",
+                axis.plot([m[0] for m in middle.values()], [1e6 * m[1] for m in middle.values()], color=COLOR[mode],
+                          marker="o",
                           markersize=4, label="all contacts together" if mode == GLOBAL else "region by region")
-            axis.set(xscale="log", yscale="log", xlim=(0.8, None), title=f"{title}, {handling}", xlabel="contacts in the step",
-                     ylabel="separation and solution (us a step)")
+            axis.set(xscale="log", yscale="log", xlim=(0.8, None), title=f"{title}, {handling}",
+                     xlabel="contacts in the step", ylabel="separation and solution (us a step)")
             style.plain_decades(axis)
             axis.legend(loc="upper left")
     style.save(figure, folders, "separation_scenes.png")
@@ -79,17 +83,20 @@ def report_dense(rows, table):
             chosen = [r for r in rows if r["scene"] == scene and low <= r["contacts"] <= high]
             if chosen:
                 ratio = style.geometric_mean([r["seconds_global"] / r["seconds_separate"] for r in chosen])
-                table.append([f"{scene}, dense matrices: all together over by region, {low} to {high} contacts", f"{ratio:.1f} x", paper])
+                table.append([f"{scene}, dense matrices: all together over by region, {low} to {high} contacts",
+                              f"{ratio:.1f} x", paper])
 
 
 def plot_dense(rows, folders):
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), sharey=True)
-    for axis, scene, title in zip(axes, ("bucket", "skittles"), ("balls at rest in a bucket", "a ball strikes skittles")):
+    for axis, scene, title in zip(axes, ("bucket", "skittles"),
+                                  ("balls at rest in a bucket", "a ball strikes skittles")):
         for key, label, color in (("seconds_global", "one dense matrix of all contacts", COLOR[GLOBAL]),
                                   ("seconds_separate", "one dense matrix a region", COLOR[SEPARATE]),
                                   ("seconds_sparse", "sparse, by region", style.OURS[2])):
             chosen = [r for r in rows if r["scene"] == scene]
-            axis.scatter([r["contacts"] for r in chosen], [1e6 * r[key] for r in chosen], s=14, color=color, label=label, linewidths=0)
+            axis.scatter([r["contacts"] for r in chosen], [1e6 * r[key] for r in chosen], s=14, color=color,
+                         label=label, linewidths=0)
         axis.set(xscale="log", yscale="log", title=f"{title}: dense matrices", xlabel="contacts in the step")
         style.plain_decades(axis)
         axis.legend(loc="upper left")
@@ -102,8 +109,8 @@ def report_growth(rows, table):
         for mode in (SEPARATE, GLOBAL):
             chosen = [r for r in rows if r["method"] == method and r["mode"] == mode]
             exponent = growth_exponent([r["contacts"] for r in chosen], [contact_seconds(r) for r in chosen])
-            table.append([f"regions of 8 contacts, {method}, {mode}: time grows as contacts to the power", f"{exponent:.2f}",
-                          "1 (linear, separate)" if mode == SEPARATE else "-"])
+            table.append([f"regions of 8 contacts, {method}, {mode}: time grows as contacts to the power",
+                          f"{exponent:.2f}", "1 (linear, separate)" if mode == SEPARATE else "-"])
 
 
 def plot_growth(rows, sweeps, folders):
@@ -111,11 +118,13 @@ def plot_growth(rows, sweeps, folders):
     for method, line in (("pcg_pgs", "-"), ("pgs", "--")):
         for mode in (GLOBAL, SEPARATE):
             chosen = [r for r in rows if r["method"] == method and r["mode"] == mode]
-            left.plot([r["contacts"] for r in chosen], [1e3 * contact_seconds(r) for r in chosen], line, color=COLOR[mode], marker="o",
+            left.plot([r["contacts"] for r in chosen], [1e3 * contact_seconds(r) for r in chosen], line,
+                      color=COLOR[mode], marker="o",
                       markersize=4, label=f"{'all together' if mode == GLOBAL else 'by region'}, {method}")
     ends = [min(r["contacts"] for r in rows), max(r["contacts"] for r in rows)]
     first = min(contact_seconds(r) for r in rows if r["mode"] == SEPARATE and r["contacts"] == ends[0])
-    left.plot(ends, [1e3 * first * e / ends[0] / 1.6 for e in ends], color="#888888", linestyle=":", label="linear growth")
+    left.plot(ends, [1e3 * first * e / ends[0] / 1.6 for e in ends], color="#888888", linestyle=":",
+              label="linear growth")
     left.set(xscale="log", yscale="log", xlabel="contacts, in regions of 8", ylabel="separation and solution (ms)",
              title="time against contacts, regions of one size")
     left.legend()
@@ -124,7 +133,8 @@ def plot_growth(rows, sweeps, folders):
                label="separation (union-find)")
     right.plot(contacts, [1e9 * r["seconds_sweep"] / r["contacts"] for r in sweeps], color=style.OURS[3], marker="o",
                label="one Gauss-Seidel sweep")
-    right.set(xscale="log", ylim=(0, None), xlabel="contacts", ylabel="time (ns a contact)", title="what separation costs")
+    right.set(xscale="log", ylim=(0, None), xlabel="contacts", ylabel="time (ns a contact)",
+              title="what separation costs")
     right.legend()
     style.save(figure, folders, "separation_growth.png")
 
@@ -198,10 +208,12 @@ def plot_poor(rows, folders):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--figures", action="append", default=[], help="folder for the plots; may be given more than once")
+    parser.add_argument("--figures", action="append", default=[],
+                        help="folder for the plots; may be given more than once")
     arguments = parser.parse_args()
     folders = arguments.figures or [arguments.folder]
-    tables = {name: style.read_csv(arguments.folder / f"{name}.csv") for name in ("scenes", "dense", "growth", "sweep", "cone", "poor")
+    tables = {name: style.read_csv(arguments.folder / f"{name}.csv")
+              for name in ("scenes", "dense", "growth", "sweep", "cone", "poor")
               if (arguments.folder / f"{name}.csv").exists()}
     table = []
     if "scenes" in tables:
@@ -213,7 +225,8 @@ def main():
     if "growth" in tables and "sweep" in tables:
         report_growth(tables["growth"], table)
         for row in tables["sweep"]:
-            table.append([f"separation over one sweep, {row['contacts']:g} contacts ({1e9 * row['seconds_separate'] / row['contacts']:.0f} "
+            table.append([f"separation over one sweep, {row['contacts']:g} contacts "
+                          f"({1e9 * row['seconds_separate'] / row['contacts']:.0f} "
                           f"ns a contact)", f"{row['seconds_separate'] / row['seconds_sweep']:.2f}", "-"])
         plot_growth(tables["growth"], tables["sweep"], folders)
     if "cone" in tables and tables["cone"]:

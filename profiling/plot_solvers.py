@@ -42,16 +42,19 @@ class Runs:
 
 
 def print_problems(runs, tolerance):
-    print(f"Tolerance {tolerance:g}: {runs.default} (default) beside the variant of Siconos that is fastest on that very problem")
+    print(f"Tolerance {tolerance:g}: {runs.default} (default) beside the variant of Siconos that is fastest on that "
+          f"very problem")
     table = []
     for problem in runs.problems:
         own = runs.seconds[problem, runs.default, tolerance]
         best, best_name = runs.best(runs.ours, problem, tolerance)
         their, their_name = runs.best(runs.theirs, problem, tolerance)
         table.append([problem, runs.contacts[problem], style.seconds_text(own), style.seconds_text(best),
-                      best_name if best < math.inf else "-", style.seconds_text(their), their_name if their < math.inf else "-",
+                      best_name if best < math.inf else "-", style.seconds_text(their),
+                      their_name if their < math.inf else "-",
                       f"{their / own:.2f}" if own < math.inf and their < math.inf else "-"])
-    style.print_table(["problem", "contacts", runs.default, "our best", "method", "best Siconos", "variant", "Siconos/default"], table)
+    style.print_table(["problem", "contacts", runs.default, "our best", "method", "best Siconos", "variant",
+                       "Siconos/default"], table)
 
 
 def print_against_best(runs):
@@ -69,8 +72,10 @@ def print_against_best(runs):
         table.append([f"{tolerance:g}", f"{len(runs.solved(runs.default, tolerance))}/{len(runs.problems)}",
                       f"{by_siconos}/{len(runs.problems)}", len(both), f"{style.geometric_mean(ratios):.2f}",
                       f"{worst[0]:.2f}", worst[1], sum(r > 1 for r in ratios)])
-    print(f"{runs.default} against the best of Siconos on each problem of {SMALLEST} contacts or more (ratio above 1: ours is faster)")
-    style.print_table(["tolerance", "solved by us", "by some Siconos", "compared", "mean ratio", "worst ratio", "on", "faster on"], table)
+    print(f"{runs.default} against the best of Siconos on each problem of {SMALLEST} contacts or more (ratio above 1: "
+          f"ours is faster)")
+    style.print_table(["tolerance", "solved by us", "by some Siconos", "compared", "mean ratio", "worst ratio", "on",
+                       "faster on"], table)
 
 
 def print_lumped(runs):
@@ -87,7 +92,8 @@ def print_lumped(runs):
                               f"{their / own:.1f}" if their < math.inf else "-"])
         if table:
             print(f"Tolerance {tolerance:g}: contacts of lumped masses, as a step solves them")
-            style.print_table(["problem", "contacts", "lumped", "blocks", "best Siconos", "variant", "Siconos/lumped"], table)
+            style.print_table(["problem", "contacts", "lumped", "blocks", "best Siconos", "variant", "Siconos/lumped"],
+                              table)
 
 
 def print_methods(runs):
@@ -105,9 +111,11 @@ def print_methods(runs):
             table.append(row)
         if not table:
             continue
-        print(f"{title}: problems solved of {len(runs.problems)}; time over that of {runs.default}, geometric mean and smallest, "
+        print(f"{title}: problems solved of {len(runs.problems)}; time over that of {runs.default}, geometric mean and "
+              f"smallest, "
               f"{SMALLEST} contacts or more")
-        style.print_table(["method"] + [f"{t:g} {what}" for t in TOLERANCES for what in ("solved", "mean", "least")], table)
+        style.print_table(["method"] + [f"{t:g} {what}" for t in TOLERANCES for what in ("solved", "mean", "least")],
+                          table)
 
 
 def looks(runs, theirs):
@@ -119,9 +127,11 @@ def looks(runs, theirs):
 
 
 def strongest(runs, count):
-    """The fixed variants of Siconos that are slower than the best of them by the least, a problem missed counted as a thousand times."""
+    """The fixed variants of Siconos that are slower than the best of them by the least, a problem missed counted as a
+    thousand times."""
     def slower(name):
-        factors = [min(runs.seconds[p, name, t] / runs.best(runs.theirs, p, t)[0], 1e3) for t in TOLERANCES for p in runs.large()
+        factors = [min(runs.seconds[p, name, t] / runs.best(runs.theirs, p, t)[0], 1e3) for t in TOLERANCES
+                   for p in runs.large()
                    if runs.best(runs.theirs, p, t)[0] < math.inf]
         return style.geometric_mean(factors)
     return sorted(runs.theirs, key=slower)[:count]
@@ -141,11 +151,12 @@ def plot_error_against_time(runs, folders):
             # an error below 1e-12 is shown there: an exact hit would stretch the axis
             axis.plot([p[1] for p in points], [max(p[2], 1e-12) for p in points], marker="o", markersize=3,
                       label=name if runs.owner[name] == "skerry" else f"Siconos {name}", **look[name])
-        best = [(*runs.best(runs.theirs, problem, t), t) for t in sorted({r["tolerance"] for r in runs.rows}, reverse=True)]
+        best = [(*runs.best(runs.theirs, problem, t), t)
+                for t in sorted({r["tolerance"] for r in runs.rows}, reverse=True)]
         best = [b for b in best if b[0] < math.inf]
         if best:
-            axis.plot([b[0] for b in best], [max(runs.error[problem, b[1], b[2]], 1e-12) for b in best], color="black", linestyle=(0, (1, 1)), linewidth=1.6,
-                      label="best Siconos at each tolerance")
+            axis.plot([b[0] for b in best], [max(runs.error[problem, b[1], b[2]], 1e-12) for b in best], color="black",
+                      linestyle=(0, (1, 1)), linewidth=1.6, label="best Siconos at each tolerance")
         axis.set(xscale="log", yscale="log", title=f"{problem} ({runs.contacts[problem]})")
     for axis in axes.flat[len(problems):]:
         axis.set_visible(False)
@@ -158,20 +169,24 @@ def plot_error_against_time(runs, folders):
 
 
 def plot_performance_profiles(runs, folders):
-    """Dolan and More 2002: the share of problems that a method solves within tau times the time of the fastest method."""
+    """Dolan and More 2002: the share of problems that a method solves within tau times the time of the fastest
+    method."""
     figure, axes = plt.subplots(1, len(TOLERANCES), figsize=(14, 4.6), sharey=True)
     fixed = strongest(runs, 4)
     look = looks(runs, fixed)
     for axis, tolerance in zip(axes, TOLERANCES):
         problems = [p for p in runs.large() if runs.best(runs.ours + runs.theirs, p, tolerance)[0] < math.inf]
         for name in runs.ours + fixed:
-            ratios = sorted(runs.seconds[p, name, tolerance] / runs.best(runs.ours + runs.theirs, p, tolerance)[0] for p in problems)
+            ratios = sorted(runs.seconds[p, name, tolerance] / runs.best(runs.ours + runs.theirs, p, tolerance)[0]
+                            for p in problems)
             ratios = [r for r in ratios if r < math.inf]
             steps = [(r, (i + 1) / len(problems)) for i, r in enumerate(ratios)]
             start = sum(r <= 1 for r in ratios) / max(1, len(problems))
-            axis.step([1] + [s[0] for s in steps] + [1e4], [start] + [s[1] for s in steps] + [steps[-1][1] if steps else 0],
+            axis.step([1] + [s[0] for s in steps] + [1e4], [start] + [s[1] for s in steps]
+                      + [steps[-1][1] if steps else 0],
                       where="post", label=name if runs.owner[name] == "skerry" else f"Siconos {name}", **look[name])
-        axis.set(xscale="log", xlim=(1, 1e3), ylim=(0, 1.02), title=f"tolerance {tolerance:g}, {len(problems)} problems",
+        axis.set(xscale="log", xlim=(1, 1e3), ylim=(0, 1.02),
+                 title=f"tolerance {tolerance:g}, {len(problems)} problems",
                  xlabel="time over that of the fastest method")
     axes[0].set_ylabel("share of problems solved")
     style.legend_above(figure, axes[0], 6)
@@ -185,27 +200,32 @@ def plot_ratios(runs, folders):
     figure, axes = plt.subplots(1, len(TOLERANCES), figsize=(14, 0.3 * len(problems) + 1.6), sharey=True)
     for axis, tolerance in zip(axes, TOLERANCES):
         for place, problem in enumerate(problems):
-            own, (their, name) = runs.seconds[problem, runs.default, tolerance], runs.best(runs.theirs, problem, tolerance)
+            own = runs.seconds[problem, runs.default, tolerance]
+            their, name = runs.best(runs.theirs, problem, tolerance)
             if own == math.inf or their == math.inf:
-                axis.text(1, place, " not solved by " + ("either" if own == their else "us" if own == math.inf else "Siconos"),
+                missed_by = "either" if own == their else "us" if own == math.inf else "Siconos"
+                axis.text(1, place, " not solved by " + missed_by,
                           va="center", fontsize=8, color="#555555")
                 continue
             axis.barh(place, their / own - 1, left=1, color=style.OURS[0] if their > own else style.OURS[1], height=0.7)
-            axis.text(max(their / own, 1), place, f" {their / own:{'.0f' if their >= 10 * own else '.2g'}}  {name}", va="center", fontsize=8)
+            axis.text(max(their / own, 1), place, f" {their / own:{'.0f' if their >= 10 * own else '.2g'}}  {name}",
+                      va="center", fontsize=8)
         axis.axvline(1, color="black", linewidth=1)
         axis.set(xscale="log", title=f"tolerance {tolerance:g}", xlabel="time of the best Siconos variant over ours")
         low, high = axis.get_xlim()
         axis.set_xlim(min(low, 0.5), high * (high / low) ** 0.6)  # room for the names
         axis.grid(axis="y", visible=False)
     axes[0].set_yticks(range(len(problems)), [f"{p} ({runs.contacts[p]})" for p in problems])
-    figure.suptitle(f"{runs.default} beside the variant of Siconos that is fastest on that very problem: above 1 ours is faster", fontsize=11)
+    figure.suptitle(f"{runs.default} beside the variant of Siconos that is fastest on that very problem: above 1 ours "
+                    f"is faster", fontsize=11)
     style.save(figure, folders, "against_siconos.png")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("csv")
-    parser.add_argument("--figures", action="append", default=[], help="folder for the plots; may be given more than once")
+    parser.add_argument("--figures", action="append", default=[],
+                        help="folder for the plots; may be given more than once")
     parser.add_argument("--no-plots", action="store_true")
     arguments = parser.parse_args()
     runs = Runs(style.read_csv(arguments.csv))
@@ -216,7 +236,8 @@ def main():
         print_against_best(runs)
         print_lumped(runs)
     else:
-        print("Siconos is not part of this build. On Debian: apt-get install libsiconos-numerics-dev, then run this again.\n")
+        print("Siconos is not part of this build. On Debian: apt-get install libsiconos-numerics-dev, then run this "
+              "again.\n")
     if not arguments.no_plots:
         folders = arguments.figures or [str(style.pathlib.Path(arguments.csv).parent)]
         plot_error_against_time(runs, folders)

@@ -17,7 +17,8 @@ DASHES = ["-", "--", "-.", ":"]
 plt.rcParams.update({
     "figure.dpi": 110, "savefig.dpi": 130, "figure.constrained_layout.use": True,
     "font.size": 10, "axes.titlesize": 10.5, "axes.labelsize": 10, "legend.fontsize": 9,
-    "axes.grid": True, "axes.grid.which": "major", "grid.color": "#dddddd", "grid.linewidth": 0.7, "axes.axisbelow": True,
+    "axes.grid": True, "axes.grid.which": "major", "grid.color": "#dddddd", "grid.linewidth": 0.7,
+    "axes.axisbelow": True,
     "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.8, "legend.frameon": False,
 })
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tables and plots of what profile_work_precision measured: plot_work_precision.py FOLDER [--figures FOLDER ...] [--no-plots]"""
+"""Tables and plots of what profile_work_precision measured: plot_work_precision.py FOLDER [--figures FOLDER ...]
+[--no-plots]"""
 import argparse
 import collections
 import math
@@ -29,7 +30,8 @@ def curves(rows):
 def colours(keys):
     mark = {}
     for engine in ENGINES:
-        palette = style.OURS if engine == "Skerry" else style.THEIRS if engine == "Bullet" else ["#b8860b", "#d9a520", "#8a6508"]
+        golden = ["#b8860b", "#d9a520", "#8a6508"]
+        palette = style.OURS if engine == "Skerry" else style.THEIRS if engine == "Bullet" else golden
         for place, key in enumerate(k for k in keys if k[0] == engine):
             mark[key] = palette[place % len(palette)]
     return mark
@@ -38,7 +40,8 @@ def colours(keys):
 def front(rows, error):
     """The points (seconds, error) that no other one beats in both."""
     best, kept = math.inf, []
-    for seconds, value in sorted((r["seconds"], r[error]) for r in rows if r["finished"] == 1 and good(r[error]) and r[error] < WORST):
+    for seconds, value in sorted((r["seconds"], r[error]) for r in rows if r["finished"] == 1 and good(r[error])
+                                 and r[error] < WORST):
         if value < best:
             best = value
             kept.append((seconds, value))
@@ -46,7 +49,8 @@ def front(rows, error):
 
 
 def seconds_at(points, error):
-    """Time at which a front reaches an error: power laws between its points, the first point before it, none behind its end."""
+    """Time at which a front reaches an error: power laws between its points, the first point before it, none behind its
+    end."""
     for (s0, e0), (s1, e1) in zip(points, points[1:]):
         if e0 >= error >= e1:
             share = math.log(e0 / error) / math.log(e0 / e1)
@@ -62,7 +66,8 @@ def order(points):
 
 
 def print_time(rows):
-    print("Time step: where each peer ends by its own reference (its shortest step), and ours at that error. `ratio`: its time over ours; "
+    print("Time step: where each peer ends by its own reference (its shortest step), and ours at that error. `ratio`: "
+          "its time over ours; "
           "`smaller`: its smallest error over ours; `apart`: how far its smallest step is from our reference.")
     table = []
     for scene in scenes_of(rows):
@@ -80,19 +85,21 @@ def print_time(rows):
             apart = min((r["error"] for r in theirs if good(r["error"])), default=math.nan)
             table.append([scene, engine, f"{error:.1e}", style.seconds_text(seconds), style.seconds_text(ours),
                           f"{seconds / ours:.1f}" if ours < math.inf else "-", f"{coarse_error:.1e}",
-                          f"{coarse_seconds / seconds_at(own, coarse_error):.1f}", f"{own[-1][1]:.1e}", f"{error / own[-1][1]:.1f}",
-                          f"{floor:.1e}", f"{apart:.1e}"])
-    style.print_table(["scene", "peer", "ends at", "its time", "ours", "ratio", "starts at", "ratio", "our smallest", "smaller",
-                       "reference +-", "apart"], table)
+                          f"{coarse_seconds / seconds_at(own, coarse_error):.1f}", f"{own[-1][1]:.1e}",
+                          f"{error / own[-1][1]:.1f}", f"{floor:.1e}", f"{apart:.1e}"])
+    style.print_table(["scene", "peer", "ends at", "its time", "ours", "ratio", "starts at", "ratio", "our smallest",
+                       "smaller", "reference +-", "apart"], table)
     print("Order in the step (last two halvings), and microseconds a step")
     table = []
     for scene in scenes_of(rows):
         for (engine, variant), found in curves([r for r in rows if r["scene"] == scene]).items():
             error = "error" if engine == "Skerry" else "error_own"
-            points = [(r["step"], r[error]) for r in found if r["finished"] == 1 and good(r[error]) and r[error] < WORST]
+            points = [(r["step"], r[error]) for r in found if r["finished"] == 1 and good(r[error])
+                      and r[error] < WORST]
             steps = [r for r in found if r["finished"] == 1 and r["steps"] > 0]
             if len(points) >= 3:
-                table.append([scene, engine, variant, f"{order(points):.2f}", f"{1e6 * steps[-1]['seconds'] / steps[-1]['steps']:.1f}"])
+                table.append([scene, engine, variant, f"{order(points):.2f}",
+                              f"{1e6 * steps[-1]['seconds'] / steps[-1]['steps']:.1f}"])
     style.print_table(["scene", "engine", "variant", "order", "us/step"], table)
 
 
@@ -106,11 +113,14 @@ def draw(axis, rows, mark, both):
         kept = [r for r in found if r["finished"] == 1 and good(r["error"]) and r["error"] < WORST]
         points = sorted((r["seconds"], r["error"]) for r in kept)
         single = len(points) == 1
-        axis.plot([p[0] for p in points], [p[1] for p in points], LOOK[engine] if not single else "", marker="*" if single else "o",
+        axis.plot([p[0] for p in points], [p[1] for p in points], LOOK[engine] if not single else "",
+                  marker="*" if single else "o",
                   markersize=11 if single else 3.5, color=mark[key], label=f"{engine} {variant}")
         if both and engine != "Skerry":
-            own = sorted((r["seconds"], r["error_own"]) for r in kept if good(r["error_own"]) and r["error_own"] < WORST)
-            axis.plot([p[0] for p in own], [p[1] for p in own], ":", marker="o", markersize=3.5, markerfacecolor="none", color=mark[key])
+            own = sorted((r["seconds"], r["error_own"]) for r in kept if good(r["error_own"])
+                         and r["error_own"] < WORST)
+            axis.plot([p[0] for p in own], [p[1] for p in own], ":", marker="o", markersize=3.5, markerfacecolor="none",
+                      color=mark[key])
     axis.set(xscale="log", yscale="log")
     floor = rows[0]["reference_error"]
     if good(floor):
@@ -131,7 +141,8 @@ def plot_axis(rows, axis_name, title, folders, file, both=False):
     for axis, scene in zip(axes.flat, scenes):
         here = [r for r in rows if r["scene"] == scene]
         draw(axis, here, mark, both)
-        axis.set_title(f"{scene}, {here[0]['simulated']:.3g} s" + (f", {int(here[0]['tetrahedra'])} tetrahedra" if axis_name != "mesh" else ""))
+        axis.set_title(f"{scene}, {here[0]['simulated']:.3g} s"
+                       + (f", {int(here[0]['tetrahedra'])} tetrahedra" if axis_name != "mesh" else ""))
     for axis in axes.flat[len(scenes):]:
         axis.set_visible(False)
     for axis in axes[:, 0]:
@@ -152,9 +163,11 @@ def print_creep(rows):
         mine = {r["fraction"]: r for r in rows if (r["engine"], r["variant"], r["step"]) == key}
         if any(f not in mine for f in fractions):
             continue
-        table.append([key[0], key[1], f"1/{1 / key[2]:.0f}"] + [f"{mine[f]['creep']:.1e}" if mine[f]["finished"] == 1 else "-" for f in fractions] +
+        table.append([key[0], key[1], f"1/{1 / key[2]:.0f}"]
+                     + [f"{mine[f]['creep']:.1e}" if mine[f]["finished"] == 1 else "-" for f in fractions] +
                      [style.seconds_text(mine[fractions[0]]["seconds"])])
-    style.print_table(["engine", "variant", "step (s)"] + [f"{100 * f:.0f} % of mu N" for f in fractions] + ["CPU time"], table)
+    style.print_table(["engine", "variant", "step (s)"] + [f"{100 * f:.0f} % of mu N" for f in fractions]
+                      + ["CPU time"], table)
 
 
 def largest_gap(a, b):
@@ -173,7 +186,8 @@ def pile_groups(rows):
 
 
 def print_pile(rows):
-    print("Pile: mean and standard deviation over the runs; KS against the reference ensemble (centre of mass), and its 1 % limit")
+    print("Pile: mean and standard deviation over the runs; KS against the reference ensemble (centre of mass), and "
+          "its 1 % limit")
     groups = pile_groups(rows)
     reference = [r["height"] for r in rows if r["variant"] == "reference"]
     table = []
@@ -186,9 +200,11 @@ def print_pile(rows):
             values = [factor * r[key] for r in kept]
             return f"{statistics.mean(values):.2f} +- {statistics.stdev(values):.2f}"
         gap, limit = largest_gap([r["height"] for r in kept], reference)
-        table.append([engine, name, f"{len(kept)}/{len(found)}", text("height", 1e3), text("top", 1e3), text("kinetic", 1e3),
+        table.append([engine, name, f"{len(kept)}/{len(found)}", text("height", 1e3), text("top", 1e3),
+                      text("kinetic", 1e3),
                       f"{gap:.2f}", f"{limit:.2f}", style.seconds_text(statistics.median(r["seconds"] for r in kept))])
-    style.print_table(["engine", "variant", "runs", "centre (mm)", "top (mm)", "kinetic (mJ)", "KS", "limit", "CPU time"], table)
+    style.print_table(["engine", "variant", "runs", "centre (mm)", "top (mm)", "kinetic (mJ)", "KS", "limit",
+                       "CPU time"], table)
 
 
 def plot_pile(rows, folders):
@@ -196,12 +212,13 @@ def plot_pile(rows, folders):
     groups = {k: found for k, found in groups.items() if found}
     figure, axes = plt.subplots(1, 3, figsize=(14, 4.2))
     mark = colours(list(groups))
-    for axis, (key, label, factor) in zip(axes, (("height", "centre of mass (mm)", 1e3), ("top", "top (mm)", 1e3), ("kinetic", "kinetic energy (mJ)", 1e3))):
+    for axis, (key, label, factor) in zip(axes, (("height", "centre of mass (mm)", 1e3), ("top", "top (mm)", 1e3),
+                                                 ("kinetic", "kinetic energy (mJ)", 1e3))):
         for group, found in groups.items():
             values = [factor * r[key] for r in found]
             seconds = statistics.median(r["seconds"] for r in found)
-            axis.errorbar(seconds, statistics.mean(values), yerr=statistics.stdev(values) if len(values) > 1 else 0, fmt="o", capsize=3,
-                          color=mark[group], label=f"{group[0]} {group[1]}")
+            axis.errorbar(seconds, statistics.mean(values), yerr=statistics.stdev(values) if len(values) > 1 else 0,
+                          fmt="o", capsize=3, color=mark[group], label=f"{group[0]} {group[1]}")
         axis.set(xscale="log", xlabel="CPU time of a run (s)", ylabel=label)
     axes[2].set_yscale("log")
     style.legend_above(figure, axes[0], 4)
@@ -211,11 +228,13 @@ def plot_pile(rows, folders):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--figures", action="append", default=[], help="folder for the plots; may be given more than once")
+    parser.add_argument("--figures", action="append", default=[],
+                        help="folder for the plots; may be given more than once")
     parser.add_argument("--no-plots", action="store_true")
     arguments = parser.parse_args()
     rows = style.read_csv(arguments.folder / "work_precision.csv")
-    read = {name: style.read_csv(arguments.folder / f"{name}.csv") if (arguments.folder / f"{name}.csv").exists() else [] for name in ("pile", "creep")}
+    files = {name: arguments.folder / f"{name}.csv" for name in ("pile", "creep")}
+    read = {name: style.read_csv(file) if file.exists() else [] for name, file in files.items()}
     steps = [r for r in rows if r["axis"] == "time"]
     if steps:
         print_time(steps)
@@ -224,14 +243,18 @@ def main():
     if read["creep"]:
         print_creep(read["creep"])
     if {r["engine"] for r in rows} == {"Skerry"}:
-        print("No peer is part of this build. On Debian: apt-get install libbullet-dev; for MuJoCo: pip install mujoco. Then run this again.\n")
+        print("No peer is part of this build. On Debian: apt-get install libbullet-dev; for MuJoCo: pip install "
+              "mujoco. Then run this again.\n")
     if arguments.no_plots:
         return
     folders = arguments.figures or [str(arguments.folder)]
-    plot_axis(rows, "time", "star: settings as delivered; dotted: the peer against its own shortest step; grey: error of our reference", folders,
+    plot_axis(rows, "time", "star: settings as delivered; dotted: the peer against its own shortest step; grey: error "
+                            "of our reference", folders,
               "work_precision_time.png", both=True)
-    plot_axis(rows, "solver", "one step, tolerances 1e-1 to 1e-10; grey: two methods at 1e-12 differ by this", folders, "work_precision_solver.png")
-    plot_axis(rows, "mesh", "meshes from coarse to fine; grey: the two finest differ by this", folders, "work_precision_mesh.png")
+    plot_axis(rows, "solver", "one step, tolerances 1e-1 to 1e-10; grey: two methods at 1e-12 differ by this", folders,
+              "work_precision_solver.png")
+    plot_axis(rows, "mesh", "meshes from coarse to fine; grey: the two finest differ by this", folders,
+              "work_precision_mesh.png")
     if read["pile"]:
         plot_pile(read["pile"], folders)
 

@@ -1,5 +1,5 @@
-// profile_separation: what the paper reports of region separation and of its solver, measured again. profiling/plot_separation.py reads the
-// tables.
+// profile_separation: what the paper reports of region separation and of its solver, measured again.
+// profiling/plot_separation.py reads the tables.
 #include "profiling/separation.h"
 
 #include <CLI/CLI.hpp>
@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
     SeparationOptions options;
     std::string only;
     app.add_option("--out", options.out, "Folder for the tables")->capture_default_str();
-    app.add_option("--only", only, "One part: scenes, growth or methods")->check(CLI::IsMember({"scenes", "growth", "methods"}));
+    app.add_option("--only", only, "One part: scenes, growth or methods")
+        ->check(CLI::IsMember({"scenes", "growth", "methods"}));
     app.add_flag("--quick", options.quick, "Fewer and smaller cases: under a minute");
     CLI11_PARSE(app, argc, argv);
     try {

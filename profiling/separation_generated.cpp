@@ -13,7 +13,8 @@ namespace {
 LumpedContacts make_piles(Index piles) {
     constexpr int kinds = 16;  // different piles; then they repeat
     std::vector<LumpedContacts> kind;
-    for (int k = 0; k < kinds; ++k) kind.push_back(generate_sheets({.nodes = 4, .seed = static_cast<std::uint64_t>(k + 1)}));
+    for (int k = 0; k < kinds; ++k)
+        kind.push_back(generate_sheets({.nodes = 4, .seed = static_cast<std::uint64_t>(k + 1)}));
     LumpedContacts all;
     for (Index p = 0; p < piles; ++p) {
         const LumpedContacts& pile = kind[static_cast<std::size_t>(p % kinds)];
@@ -65,8 +66,8 @@ void profile_regions_of_one_size(const SeparationOptions& options) {
                     separate.push_back(stages.separate(mode));
                     solve.push_back(stages.solve(settings));
                 }
-                csv << count << ',' << name_of(mode) << ',' << name_of(method) << ',' << median(separate) << ',' << median(solve) << ','
-                    << stages.solver.most_iterations() << '\n';
+                csv << count << ',' << name_of(mode) << ',' << name_of(method) << ',' << median(separate) << ','
+                    << median(solve) << ',' << stages.solver.most_iterations() << '\n';
             }
     }
 }

@@ -15,11 +15,13 @@ struct Case {
 
 std::vector<Case> gather_cases(const std::vector<StepProblem>& steps, int seeds) {
     std::vector<Case> cases;
-    for (const StepProblem& step : steps) cases.push_back({step.problem.name.substr(0, step.problem.name.find('-')), step.problem});
+    for (const StepProblem& step : steps)
+        cases.push_back({step.problem.name.substr(0, step.problem.name.find('-')), step.problem});
     for (int seed = 1; seed <= seeds; ++seed) {
         const std::uint64_t number = static_cast<std::uint64_t>(seed);
         const auto add = [&](const char* kind, const SheetSettings& settings) {
-            cases.push_back({kind, assemble_problem(generate_sheets(settings), kind + std::string("-") + std::to_string(seed))});
+            cases.push_back(
+                {kind, assemble_problem(generate_sheets(settings), kind + std::string("-") + std::to_string(seed))});
         };
         add("patch of 8", {.nodes = 4, .seed = number});
         add("patch of 72", {.nodes = 8, .seed = number});
@@ -39,13 +41,15 @@ void profile_cone(const SeparationOptions& options, const std::vector<StepProble
     for (const Case& one : cases)
         for (const SolverMethod method : {SolverMethod::pgs, SolverMethod::pcg_pgs})
             for (const Real tolerance : {1e-3, 1e-6}) {
-                ProblemSettings settings{.method = method, .friction = Friction::cone, .tolerance = tolerance, .max_iterations = 3000};
+                ProblemSettings settings{
+                    .method = method, .friction = Friction::cone, .tolerance = tolerance, .max_iterations = 3000};
                 const ProblemSolution cone = solve_problem(one.problem, settings);
                 settings.friction = Friction::pyramid;
                 const ProblemSolution pyramid = solve_problem(one.problem, settings);
                 if (!cone.converged || !pyramid.converged || cone.iterations < 2) continue;  // nothing to compare
-                csv << one.kind << ',' << one.problem.name << ',' << one.problem.contacts() << ',' << name_of(method) << ',' << tolerance
-                    << ',' << cone.iterations << ',' << pyramid.iterations << ',' << cone.seconds << ',' << pyramid.seconds << '\n';
+                csv << one.kind << ',' << one.problem.name << ',' << one.problem.contacts() << ',' << name_of(method)
+                    << ',' << tolerance << ',' << cone.iterations << ',' << pyramid.iterations << ',' << cone.seconds
+                    << ',' << pyramid.seconds << '\n';
             }
 }
 
@@ -58,9 +62,10 @@ void profile_poor_cases(const SeparationOptions& options, const std::vector<Step
         for (const Index limit : {50, 200})
             for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
                 if (needs_frictionless(method)) continue;
-                const ProblemSolution solution = solve_problem(one.problem, {.method = method, .tolerance = 1e-6, .max_iterations = limit});
-                csv << one.kind << ',' << one.problem.name << ',' << one.problem.contacts() << ',' << name << ',' << limit << ','
-                    << solution.error << '\n';
+                const ProblemSolution solution =
+                    solve_problem(one.problem, {.method = method, .tolerance = 1e-6, .max_iterations = limit});
+                csv << one.kind << ',' << one.problem.name << ',' << one.problem.contacts() << ',' << name << ','
+                    << limit << ',' << solution.error << '\n';
             }
 }
 

@@ -11,7 +11,8 @@
 namespace skerry::profiling {
 namespace {
 
-/// How the contacts of a run are handled. The paper: its combined solver, cold, since it keeps nothing from one step to the next.
+/// How the contacts of a run are handled. The paper: its combined solver, cold, since it keeps nothing from one step to
+/// the next.
 struct Handling {
     const char* name;
     SolverMethod method;
@@ -34,29 +35,34 @@ Settings settings_of(const Handling& handling, ContactRegions mode) {
 
 World balls_in_bucket(const Settings& settings, int balls) {
     World world(settings);
-    const auto rubber = world.add_material({.young_modulus = 5e4, .poisson_ratio = 0.35, .density = 500, .friction = 0.5, .damping = 8});
+    const auto rubber = world.add_material(
+        {.young_modulus = 5e4, .poisson_ratio = 0.35, .density = 500, .friction = 0.5, .damping = 8});
     world.add_collider(Bucket{.radius = 0.3, .height = 0.5, .thickness = 0.05}, {.friction = 0.5});
     const Mesh ball = mesh::ball(0.05, 4);
     for (int i = 0; i < balls; ++i) {
         // layers of four by four, each turned a little so that no ball stands on the top of another
         const int layer = i / 16, row = i / 4 % 4, column = i % 4;
         const Real shift = 0.02 * (layer % 2) - 0.165;
-        world.add_body(ball, {.material = rubber, .position = {0.11 * column + shift, 0.11 * row + shift, 0.055 + 0.1 * layer}});
+        world.add_body(
+            ball, {.material = rubber, .position = {0.11 * column + shift, 0.11 * row + shift, 0.055 + 0.1 * layer}});
     }
     return world;
 }
 
 World ball_and_skittles(const Settings& settings) {
     World world(settings);
-    const auto wood = world.add_material({.young_modulus = 6e4, .poisson_ratio = 0.35, .density = 300, .friction = 0.4, .damping = 4});
-    const auto rubber = world.add_material({.young_modulus = 8e4, .poisson_ratio = 0.4, .density = 900, .friction = 0.4, .damping = 2});
+    const auto wood = world.add_material(
+        {.young_modulus = 6e4, .poisson_ratio = 0.35, .density = 300, .friction = 0.4, .damping = 4});
+    const auto rubber =
+        world.add_material({.young_modulus = 8e4, .poisson_ratio = 0.4, .density = 900, .friction = 0.4, .damping = 2});
     world.add_collider(Plane{}, {.friction = 0.4});
     const Mesh skittle = mesh::skittle(0.38, 4);
     for (int row = 0; row < 4; ++row)
         for (int k = 0; k <= row; ++k)
             world.add_body(skittle, {.material = wood, .position = {0.1645 * row, 0.19 * (k - 0.5 * row), 0.001}});
-    world.add_body(mesh::ball(0.12, 7),
-                   {.material = rubber, .position = {-0.6, 0.02, 0.121}, .velocity = {4, 0, 0}, .angular_velocity = {0, 33.3, 0}});
+    world.add_body(
+        mesh::ball(0.12, 7),
+        {.material = rubber, .position = {-0.6, 0.02, 0.121}, .velocity = {4, 0, 0}, .angular_velocity = {0, 33.3, 0}});
     return world;
 }
 
@@ -74,11 +80,14 @@ void measure_frame(World& world, Real frame, const std::string& labels, std::ofs
     const WorldReport after = world.report();
     const double steps = static_cast<double>(after.steps - before.steps);
     const auto mean = [&](double sum_after, double sum_before) { return (sum_after - sum_before) / steps; };
-    const auto seconds = [&](const char* stage) { return mean(stage_seconds(after, stage), stage_seconds(before, stage)); };
+    const auto seconds = [&](const char* stage) {
+        return mean(stage_seconds(after, stage), stage_seconds(before, stage));
+    };
     const double after_steps = static_cast<double>(after.steps), before_steps = static_cast<double>(before.steps);
-    csv << labels << ',' << after.time << ',' << mean(after.mean_contacts * after_steps, before.mean_contacts * before_steps) << ','
-        << mean(after.mean_regions * after_steps, before.mean_regions * before_steps) << ',' << step.largest_region << ','
-        << seconds("contact/separate_regions") << ',' << seconds("solver/solve_regions") << '\n';
+    csv << labels << ',' << after.time << ','
+        << mean(after.mean_contacts * after_steps, before.mean_contacts * before_steps) << ','
+        << mean(after.mean_regions * after_steps, before.mean_regions * before_steps) << ',' << step.largest_region
+        << ',' << seconds("contact/separate_regions") << ',' << seconds("solver/solve_regions") << '\n';
 }
 
 /// Two worlds that differ in nothing but how contacts are grouped, in turns.
@@ -92,13 +101,16 @@ void compare(const std::string& scene, int bodies, Real settle, Real seconds, Re
             if (settle > 0) world.advance(settle);
         for (Real time = 0; time < seconds - frame / 2; time += frame)
             for (std::size_t m = 0; m < worlds.size(); ++m)
-                measure_frame(worlds[m], frame,
-                              scene + ',' + std::to_string(bodies) + ',' + handling.name + ',' + std::string(name_of(modes[m])), csv);
+                measure_frame(
+                    worlds[m], frame,
+                    scene + ',' + std::to_string(bodies) + ',' + handling.name + ',' + std::string(name_of(modes[m])),
+                    csv);
     }
 }
 
 /// Adds the contact problems of some steps of a scene, after `settle`.
-void take_problems(World world, Real settle, Real seconds, std::uint64_t every, const std::string& name, std::vector<StepProblem>& steps) {
+void take_problems(World world, Real settle, Real seconds, std::uint64_t every, const std::string& name,
+                   std::vector<StepProblem>& steps) {
     if (settle > 0) world.advance(settle);
     world.watch_contact_problems(
         [&](const StepProblem& step) {
@@ -122,8 +134,8 @@ ContactProblem filled(const ContactProblem& problem) {
         for (Index j = 0; j < contacts; ++j) full.column.push_back(j);
         full.row_offset.push_back(static_cast<Index>(full.column.size()));
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
-            full.block[static_cast<std::size_t>(i) * static_cast<std::size_t>(contacts) + static_cast<std::size_t>(problem.column[k])] =
-                problem.block[k];
+            full.block[static_cast<std::size_t>(i) * static_cast<std::size_t>(contacts) +
+                       static_cast<std::size_t>(problem.column[k])] = problem.block[k];
     }
     return full;
 }
@@ -141,14 +153,15 @@ std::vector<ContactProblem> filled_regions(const StepProblem& step) {
 std::vector<StepProblem> profile_scenes(const SeparationOptions& options) {
     std::ofstream csv(options.out / "scenes.csv");
     csv << "scene,bodies,handling,mode,time,contacts,regions,largest_region,seconds_separate,seconds_solve\n";
-    const std::vector<int> counts =
-        options.quick ? std::vector<int>{1, 2, 6, 16} : std::vector<int>{1, 2, 3, 4, 6, 8, 12, 16, 18, 20, 24, 32, 48, 64};
+    const std::vector<int> counts = options.quick ? std::vector<int>{1, 2, 6, 16}
+                                                  : std::vector<int>{1, 2, 3, 4, 6, 8, 12, 16, 18, 20, 24, 32, 48, 64};
     const Real settle = options.quick ? 0.15 : 0.3;  // s
     std::vector<StepProblem> steps;
     for (const int balls : counts) {
         const auto build = [&](const Settings& settings) { return balls_in_bucket(settings, balls); };
         compare("bucket", balls, settle, options.quick ? 0.05 : 0.1, 0.01, build, csv);
-        take_problems(build(settings_of(handlings[1], ContactRegions::separate)), settle, 0.05, options.quick ? 100 : 25, "bucket", steps);
+        take_problems(build(settings_of(handlings[1], ContactRegions::separate)), settle, 0.05,
+                      options.quick ? 100 : 25, "bucket", steps);
     }
     compare("skittles", 11, 0, options.quick ? 0.4 : 1.2, 1.0 / 120, ball_and_skittles, csv);
     take_problems(ball_and_skittles(settings_of(handlings[1], ContactRegions::separate)), 0, options.quick ? 0.4 : 0.8,
@@ -167,8 +180,9 @@ void profile_dense(const SeparationOptions& options, const std::vector<StepProbl
         const std::vector<ContactProblem> regions = filled_regions(step);
         double separate = 0;
         for (const ContactProblem& region : regions) separate += solve_problem(region, settings).seconds;
-        csv << step.problem.name.substr(0, step.problem.name.find('-')) << ',' << step.problem.name << ',' << step.problem.contacts() << ','
-            << regions.size() << ',' << solve_problem(filled(step.problem), settings).seconds << ',' << separate << ','
+        csv << step.problem.name.substr(0, step.problem.name.find('-')) << ',' << step.problem.name << ','
+            << step.problem.contacts() << ',' << regions.size() << ','
+            << solve_problem(filled(step.problem), settings).seconds << ',' << separate << ','
             << solve_problem(step.problem, settings).seconds << '\n';
     }
 }

@@ -28,7 +28,8 @@ struct Choice {
     int solver;
     Storage storage = Storage::blocks;
     int local_solver = 0;  // of Gauss-Seidel; 0: the default, a Newton method with a projection before it
-    int full_error = 0;    // measure the whole error every so many sweeps; 0: the default, the change of a sweep and a full test at the end
+    // measure the whole error every so many sweeps; 0: the default, the change of a sweep and a full test at the end
+    int full_error = 0;
     double relaxation = 0;  // of Gauss-Seidel: PSOR
     int freezing = 0;       // sweeps for which contacts at rest are left out
     int hybrid = -1;        // of the nonsmooth Newton method
@@ -53,7 +54,11 @@ constexpr Choice choices[] = {
     {.name = "nsgs_hybrid_full1", .solver = gauss_seidel, .local_solver = hybrid, .full_error = 1},
     {.name = "nsgs_hybrid_full5", .solver = gauss_seidel, .local_solver = hybrid, .full_error = 5},
     {.name = "nsgs_freeze", .solver = gauss_seidel, .local_solver = damped, .freezing = 10},
-    {.name = "psor_1.4_nsngp_full5", .solver = gauss_seidel, .local_solver = damped, .full_error = 5, .relaxation = 1.4},
+    {.name = "psor_1.4_nsngp_full5",
+     .solver = gauss_seidel,
+     .local_solver = damped,
+     .full_error = 5,
+     .relaxation = 1.4},
     {.name = "nsn_ac_dense",
      .solver = SICONOS_FRICTION_3D_NSN_AC,
      .storage = Storage::dense,
@@ -130,7 +135,8 @@ private:
 };
 
 /// Siconos leaves a failed call by a jump: nothing with a destructor may live in here.
-[[gnu::noinline]] int call_driver(FrictionContactProblem* problem, double* reaction, double* velocity, SolverOptions* options) {
+[[gnu::noinline]] int call_driver(FrictionContactProblem* problem, double* reaction, double* velocity,
+                                  SolverOptions* options) {
     if (SN_SETJMP_EXTERNAL_START != 0) return -1;
     const int status = fc3d_driver(problem, reaction, velocity, options);
     SN_SETJMP_EXTERNAL_STOP
@@ -140,7 +146,8 @@ private:
 }  // namespace
 
 struct SiconosProblem::Data {
-    explicit Data(const ContactProblem& source) : problem(source), q(3 * problem.q.size()), mu(problem.mu), block(problem.block) {
+    explicit Data(const ContactProblem& source)
+        : problem(source), q(3 * problem.q.size()), mu(problem.mu), block(problem.block) {
         for (std::size_t i = 0; i < problem.q.size(); ++i) std::copy_n(problem.q[i].data(), 3, q.data() + 3 * i);
         reaction.resize(q.size());
         velocity.resize(q.size());
@@ -211,7 +218,8 @@ SiconosProblem::SiconosProblem(const ContactProblem& problem) : data_(std::make_
     numerics_set_verbose(0);
     // one thread, as ours; Siconos is linked to whatever BLAS the system chose
     using SetThreads = void (*)(int);
-    if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set_threads(1);
+    if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
+        set_threads(1);
 }
 SiconosProblem::~SiconosProblem() = default;
 
@@ -247,7 +255,8 @@ SiconosSolution SiconosProblem::solve(std::size_t variant, Real tolerance, Index
 const std::vector<SiconosVariant>& siconos_variants() {
     static const std::vector<SiconosVariant> variants = [] {
         std::vector<SiconosVariant> all;
-        for (const Choice& choice : choices) all.push_back({choice.name, choice.most_contacts, choice.first_iterations});
+        for (const Choice& choice : choices)
+            all.push_back({choice.name, choice.most_contacts, choice.first_iterations});
         return all;
     }();
     return variants;

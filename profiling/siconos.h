@@ -22,8 +22,8 @@ public:
     explicit SiconosProblem(const ContactProblem& problem);
     ~SiconosProblem();
 
-    /// Solves from r = 0 with the variant of this number (siconos_variants), repeated and timed as `timed` does it. The options of a solver
-    /// are made anew for each run, outside of the timing.
+    /// Solves from r = 0 with the variant of this number (siconos_variants), repeated and timed as `timed` does it. The
+    /// options of a solver are made anew for each run, outside of the timing.
     SiconosSolution solve(std::size_t variant, Real tolerance, Index max_iterations);
 
 private:

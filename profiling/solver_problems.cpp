@@ -16,7 +16,7 @@ std::vector<std::filesystem::path> problem_files(const std::vector<std::string>&
     std::vector<std::filesystem::path> files;
     for (const std::filesystem::path input : inputs) {
         if (!std::filesystem::is_directory(input)) {
-            if (std::filesystem::exists(input)) files.push_back(input);
+            files.push_back(input);
             continue;
         }
         std::vector<std::filesystem::path> inside;
@@ -34,7 +34,8 @@ std::set<std::uint64_t> read_steps(const std::string& text, const std::string& a
     for (std::string step; std::getline(stream, step, ',');) {
         std::size_t used = 0;
         const std::uint64_t number = step.empty() ? 0 : std::stoull(step, &used);
-        if (number == 0 || used != step.size()) throw std::invalid_argument("'" + step + "' in '" + all + "' is no step");
+        if (number == 0 || used != step.size())
+            throw std::invalid_argument("'" + step + "' in '" + all + "' is no step");
         steps.insert(number);
     }
     return steps;
@@ -52,7 +53,8 @@ void read_problems(const std::vector<std::string>& inputs, const TakeProblem& ta
 
 void step_problems(const std::string& scene_and_steps, const TakeProblem& take) {
     const std::size_t colon = scene_and_steps.rfind(':');
-    if (colon == std::string::npos) throw std::invalid_argument("'" + scene_and_steps + "' is not of the form SCENE.json:STEP,STEP");
+    if (colon == std::string::npos)
+        throw std::invalid_argument("'" + scene_and_steps + "' is not of the form SCENE.json:STEP,STEP");
     const std::filesystem::path file = scene_and_steps.substr(0, colon);
     std::set<std::uint64_t> wanted = read_steps(scene_and_steps.substr(colon + 1), scene_and_steps);
     Scene scene = load_scene(file, {.threads = 1, .backend = Backend::serial});
@@ -74,7 +76,8 @@ void step_problems(const std::string& scene_and_steps, const TakeProblem& take) 
 }
 
 void generated_problems(bool quick, const TakeProblem& take) {
-    for (const NamedContacts& one : generate_problems(quick)) take({"generated", assemble_problem(one.contacts, one.name), one.contacts});
+    for (const NamedContacts& one : generate_problems(quick))
+        take({"generated", assemble_problem(one.contacts, one.name), one.contacts});
 }
 
 }  // namespace skerry::profiling

@@ -19,7 +19,7 @@ struct SolverProblem {
 
 using TakeProblem = std::function<void(const SolverProblem&)>;
 
-/// Files, and files in folders, in the order of their names. What does not exist is left out.
+/// Files, and files in folders, in the order of their names.
 void read_problems(const std::vector<std::string>& inputs, const TakeProblem& take);
 
 /// Of a scene "FILE:STEP,STEP...", the contact problems of those steps, tolerance and solver as the scene has them.

@@ -1,10 +1,11 @@
-// profile_solvers: every method on every contact problem, beside Siconos where it is installed: a table of seconds, iterations and errors for
-// several tolerances (CSV). profiling/plot_solvers.py reads it.
+// profile_solvers: every method on every contact problem, beside Siconos where it is installed: a table of seconds,
+// iterations and errors for several tolerances (CSV). profiling/plot_solvers.py reads it.
 //
-// Contacts of lumped masses are solved twice by ours: as general blocks, as Siconos gets them, and as a step solves them ("METHOD, lumped").
-// Ours and theirs run in the same process and in turns, on one thread, each from r = 0 until its own test says that the tolerance is reached.
-// The error in the table is measured apart, by problem_error, for both. Where Siconos ends short of the tolerance by that measure, it is
-// asked for less, so that a laxer test of its own does not count against it.
+// Contacts of lumped masses are solved twice by ours: as general blocks, as Siconos gets them, and as a step solves
+// them ("METHOD, lumped"). Ours and theirs run in the same process and in turns, on one thread, each from r = 0 until
+// its own test says that the tolerance is reached. The error in the table is measured apart, by problem_error, for
+// both. Where Siconos ends short of the tolerance by that measure, it is asked for less, so that a laxer test of its
+// own does not count against it.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -30,7 +31,7 @@ using namespace skerry::profiling;
 namespace {
 
 struct Options {
-    std::vector<std::string> inputs{"../shared/data/friction_problems"};
+    std::vector<std::string> inputs;
     std::vector<std::string> scenes{"scenes/skittles.json:393,524", "scenes/bucket.json:172,688"};
     std::string csv = "out/profiling/solvers/solvers.csv";
     std::vector<Real> tolerances{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
@@ -69,8 +70,10 @@ std::vector<Contestant> make_contestants(const Options& options) {
         for (const Owner owner : {Owner::skerry, Owner::skerry_lumped}) {
             const std::string full = std::string(name) + (owner == Owner::skerry_lumped ? ", lumped" : "");
             // Newton steps need a matrix; the lumped operator makes one only to be checked against
-            const bool sensible = !needs_frictionless(method) && !(owner == Owner::skerry_lumped && method == SolverMethod::newton);
-            if (sensible && (wanted(full) || wanted(std::string(name)))) all.push_back({.name = full, .owner = owner, .method = method});
+            const bool sensible =
+                !needs_frictionless(method) && !(owner == Owner::skerry_lumped && method == SolverMethod::newton);
+            if (sensible && (wanted(full) || wanted(std::string(name))))
+                all.push_back({.name = full, .owner = owner, .method = method});
         }
     if (options.no_siconos) return all;
     const std::vector<SiconosVariant>& variants = siconos_variants();
@@ -98,14 +101,16 @@ struct Forms {
 };
 
 Result solve_lumped(Forms& forms, SolverMethod method, Real tolerance, Index max_iterations) {
-    const SolverSettings settings{.method = method, .warm_start = WarmStart::off, .tolerance = tolerance, .max_iterations = max_iterations};
+    const SolverSettings settings{
+        .method = method, .warm_start = WarmStart::off, .tolerance = tolerance, .max_iterations = max_iterations};
     const double seconds = timed([&] { forms.lumped->reset(); },
                                  [&] {
                                      forms.lumped->separate();
                                      forms.lumped->solve(settings);
                                  });
     const RegionTable& regions = forms.lumped->regions();
-    const bool finished = std::ranges::none_of(regions.status, [](RegionStatus s) { return s == RegionStatus::iteration_limit; });
+    const bool finished =
+        std::ranges::none_of(regions.status, [](RegionStatus s) { return s == RegionStatus::iteration_limit; });
     const std::vector<Vec3> reaction = in_contact_frames(forms.contacts, forms.lumped->impulse());
     return {seconds, forms.lumped->most_iterations(), problem_error(forms.blocks, reaction).relative, finished};
 }
@@ -113,7 +118,8 @@ Result solve_lumped(Forms& forms, SolverMethod method, Real tolerance, Index max
 Result solve(Forms& forms, const Contestant& who, Real tolerance, Index max_iterations) {
     if (who.owner == Owner::siconos) {
         const SiconosSolution solution = forms.siconos.solve(who.variant, tolerance, max_iterations);
-        return {solution.seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative, solution.finished};
+        return {solution.seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative,
+                solution.finished};
     }
     if (who.owner == Owner::skerry_lumped) return solve_lumped(forms, who.method, tolerance, max_iterations);
     ProblemSettings settings;
@@ -152,8 +158,8 @@ Result solve_to(Forms& forms, const Contestant& who, Real tolerance, Standing& s
 }
 
 /// Writes rows of the table. `running` is the contestant whose turn it is.
-void profile(const SolverProblem& given, const std::vector<Contestant>& contestants, const Options& options, volatile std::size_t& running,
-             std::ostream& rows) {
+void profile(const SolverProblem& given, const std::vector<Contestant>& contestants, const Options& options,
+             volatile std::size_t& running, std::ostream& rows) {
     const ContactProblem& problem = given.problem;
     Forms forms(given);
     std::vector<Standing> standing(contestants.size());
@@ -169,7 +175,9 @@ void profile(const SolverProblem& given, const std::vector<Contestant>& contesta
         for (int round = 0; round < options.rounds; ++round)
             for (std::size_t c = 0; c < contestants.size(); ++c) {
                 // a solve of a tenth of the cap is long enough to be measured once
-                if (standing[c].out || (round > 0 && (!(last[c].error <= tolerance) || last[c].seconds > options.cap / 10))) continue;
+                if (standing[c].out ||
+                    (round > 0 && (!(last[c].error <= tolerance) || last[c].seconds > options.cap / 10)))
+                    continue;
                 running = c;
                 last[c] = solve_to(forms, contestants[c], tolerance, standing[c]);
                 seconds[c].push_back(last[c].seconds);
@@ -178,18 +186,21 @@ void profile(const SolverProblem& given, const std::vector<Contestant>& contesta
         for (std::size_t c = 0; c < contestants.size(); ++c) {
             if (seconds[c].empty()) continue;
             const bool solved = last[c].error <= tolerance;
-            const bool is_default = contestants[c].owner == Owner::skerry && contestants[c].method == ProblemSettings{}.method;
-            rows << problem.name << ',' << given.origin << ',' << problem.contacts() << ',' << names[static_cast<int>(contestants[c].owner)]
-                 << ",\"" << contestants[c].name << '"' << ',' << is_default << ',' << tolerance << ',' << median(seconds[c]) << ','
-                 << last[c].iterations << ',' << last[c].error << ',' << solved << ',' << last[c].finished << '\n';
+            const bool is_default =
+                contestants[c].owner == Owner::skerry && contestants[c].method == ProblemSettings{}.method;
+            rows << problem.name << ',' << given.origin << ',' << problem.contacts() << ','
+                 << names[static_cast<int>(contestants[c].owner)] << ",\"" << contestants[c].name << '"' << ','
+                 << is_default << ',' << tolerance << ',' << median(seconds[c]) << ',' << last[c].iterations << ','
+                 << last[c].error << ',' << solved << ',' << last[c].finished << '\n';
             standing[c].out = !solved;
         }
     }
 }
 
-/// The same in a process of its own: some of Siconos' solvers end the process on some problems. Whoever did is left out, and the problem
-/// is done again.
-void profile_apart(const SolverProblem& problem, std::vector<Contestant> contestants, const Options& options, std::ofstream& csv) {
+/// The same in a process of its own: some of Siconos' solvers end the process on some problems. Whoever did is left
+/// out, and the problem is done again.
+void profile_apart(const SolverProblem& problem, std::vector<Contestant> contestants, const Options& options,
+                   std::ofstream& csv) {
     void* shared = mmap(nullptr, sizeof(std::size_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED) throw std::runtime_error("no shared memory");
     volatile std::size_t& running = *static_cast<std::size_t*>(shared);
@@ -206,8 +217,8 @@ void profile_apart(const SolverProblem& problem, std::vector<Contestant> contest
         int status = 0;
         waitpid(child, &status, 0);
         if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
-        std::fprintf(stderr, "\r\033[K%s ended the process on %s and is left out there\n", contestants[running].name.c_str(),
-                     problem.problem.name.c_str());
+        std::fprintf(stderr, "\r\033[K%s ended the process on %s and is left out there\n",
+                     contestants[running].name.c_str(), problem.problem.name.c_str());
         contestants.erase(contestants.begin() + static_cast<std::ptrdiff_t>(running));
     }
     munmap(shared, sizeof(std::size_t));
@@ -235,16 +246,24 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Times every method on contact problems for several tolerances, beside Siconos where it is installed. Writes a CSV."};
+    CLI::App app{
+        "Times every method on contact problems for several tolerances, beside Siconos where it is installed. Writes a "
+        "CSV."};
     Options options;
-    app.add_option("inputs", options.inputs, "FCLIB files, and folders of them")->capture_default_str();
+    app.add_option("inputs", options.inputs,
+                   "FCLIB files, and folders of them (the FCLIB collection of the Siconos project; skerry run "
+                   "--export-problems); beside these, problems that this program makes itself")
+        ->check(CLI::ExistingPath);
     app.add_option("--scenes", options.scenes, "Steps of scenes, each SCENE.json:STEP,STEP...")->capture_default_str();
     app.add_option("--csv", options.csv, "Where to write")->capture_default_str();
-    app.add_option("--tolerances", options.tolerances, "From large to small; a method that misses one is not asked for the next")
+    app.add_option("--tolerances", options.tolerances,
+                   "From large to small; a method that misses one is not asked for the next")
         ->delimiter(',')
         ->capture_default_str();
     app.add_option("--methods", options.methods, "Only these, ours and Siconos' alike")->delimiter(',');
-    app.add_option("--cap", options.cap, "Seconds that a solve may take")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("--cap", options.cap, "Seconds that a solve may take")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     app.add_option("--rounds", options.rounds, "Rounds of all methods in turn; medians are written")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();

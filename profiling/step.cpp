@@ -1,5 +1,5 @@
-// profile_step: what a step of each scene costs: nanoseconds per tetrahedron and per contact, the share of each stage, CPU seconds per
-// simulated second, and two threads against one, taken in turns.
+// profile_step: what a step of each scene costs: nanoseconds per tetrahedron and per contact, the share of each stage,
+// CPU seconds per simulated second, and two threads against one, taken in turns.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -66,16 +66,21 @@ nlohmann::json print_scene(const std::string& name, const std::map<int, std::vec
     const double steps = static_cast<double>(report.steps), elements = static_cast<double>(report.elements);
     const double contacts = report.mean_contacts * steps;
     const auto per_tet = [&](const Run& r) {
-        return 1e9 * stage_seconds(r.report, {"dynamics/compute_element_forces", "dynamics/predict_velocity"}) / (steps * elements);
+        return 1e9 * stage_seconds(r.report, {"dynamics/compute_element_forces", "dynamics/predict_velocity"}) /
+               (steps * elements);
     };
     const auto per_contact = [&](const Run& r) {
         return contacts > 0 ? 1e9 * stage_seconds(r.report, {"collision/", "contact/", "solver/"}) / contacts : 0.0;
     };
-    std::printf("\n%s: %zu tetrahedra, %zu bodies, %llu steps of %.3g s, %.1f contacts and %.1f regions a step, largest region %d\n",
-                name.c_str(), report.elements, report.bodies, static_cast<unsigned long long>(report.steps), report.time / steps,
-                report.mean_contacts, report.mean_regions, report.largest_region);
-    std::printf("  one thread: %.1f ns per tetrahedron and step, %.0f ns per contact and step (detection, separation and solve)\n",
-                median_of(single, per_tet), median_of(single, per_contact));
+    std::printf(
+        "\n%s: %zu tetrahedra, %zu bodies, %llu steps of %.3g s, %.1f contacts and %.1f regions a step, largest region "
+        "%d\n",
+        name.c_str(), report.elements, report.bodies, static_cast<unsigned long long>(report.steps),
+        report.time / steps, report.mean_contacts, report.mean_regions, report.largest_region);
+    std::printf(
+        "  one thread: %.1f ns per tetrahedron and step, %.0f ns per contact and step (detection, separation and "
+        "solve)\n",
+        median_of(single, per_tet), median_of(single, per_contact));
     nlohmann::json json{{"scene", name},
                         {"elements", report.elements},
                         {"steps", report.steps},
@@ -91,12 +96,14 @@ nlohmann::json print_scene(const std::string& name, const std::map<int, std::vec
         const double wall = median_of(list, [](const Run& r) { return r.wall; }) / report.time;
         const double cpu = median_of(list, [](const Run& r) { return r.cpu; }) / report.time;
         const double speedup = median_of(single, [](const Run& r) { return r.wall; }) / report.time / wall;
-        std::printf("  %d thread%s: %.3f s wall and %.3f s CPU per simulated second (%.2f x)\n", threads, threads == 1 ? "" : "s", wall,
-                    cpu, speedup);
-        json["threads"][std::to_string(threads)] = {{"wall_per_second", wall}, {"cpu_per_second", cpu}, {"speedup", speedup}};
+        std::printf("  %d thread%s: %.3f s wall and %.3f s CPU per simulated second (%.2f x)\n", threads,
+                    threads == 1 ? "" : "s", wall, cpu, speedup);
+        json["threads"][std::to_string(threads)] = {
+            {"wall_per_second", wall}, {"cpu_per_second", cpu}, {"speedup", speedup}};
     }
     std::printf(
-        "  overlap of surfaces at most %.3g mm, into the contact shell %.3g mm, smallest element volume ratio now %.3f, worst region error "
+        "  overlap of surfaces at most %.3g mm, into the contact shell %.3g mm, smallest element volume ratio now "
+        "%.3f, worst region error "
         "%.2g, "
         "%llu of %llu regions not converged\n",
         1e3 * report.max_penetration, 1e3 * report.max_gap_violation, report.worst_volume_ratio, report.worst_error,
@@ -105,10 +112,11 @@ nlohmann::json print_scene(const std::string& name, const std::map<int, std::vec
     for (const StageReport& stage : report.stages) all += stage.seconds;
     for (const StageReport& stage : report.stages) {
         if (stage.seconds < 0.002 * all) continue;
-        std::printf(
-            "    %5.1f %%  %-34s %8.2f us a run, %5.1f %% of runs skipped\n", 100 * stage.seconds / all, stage.name.c_str(),
-            1e6 * stage.seconds / static_cast<double>(std::max<std::uint64_t>(stage.runs, 1)),
-            100.0 * static_cast<double>(stage.skipped) / static_cast<double>(std::max<std::uint64_t>(stage.runs + stage.skipped, 1)));
+        std::printf("    %5.1f %%  %-34s %8.2f us a run, %5.1f %% of runs skipped\n", 100 * stage.seconds / all,
+                    stage.name.c_str(),
+                    1e6 * stage.seconds / static_cast<double>(std::max<std::uint64_t>(stage.runs, 1)),
+                    100.0 * static_cast<double>(stage.skipped) /
+                        static_cast<double>(std::max<std::uint64_t>(stage.runs + stage.skipped, 1)));
         json["stages"][stage.name] = {{"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}};
     }
     return json;

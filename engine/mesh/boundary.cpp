@@ -19,8 +19,8 @@ SurfaceMesh boundary(const Mesh& mesh) {
     }
     surface.triangles.reserve(triangles.size());
     for (const BoundaryTriangle& t : triangles)
-        surface.triangles.push_back(
-            {row[static_cast<std::size_t>(t.node[0])], row[static_cast<std::size_t>(t.node[1])], row[static_cast<std::size_t>(t.node[2])]});
+        surface.triangles.push_back({row[static_cast<std::size_t>(t.node[0])], row[static_cast<std::size_t>(t.node[1])],
+                                     row[static_cast<std::size_t>(t.node[2])]});
     return surface;
 }
 

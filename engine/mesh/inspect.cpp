@@ -56,7 +56,8 @@ bool is_closed_manifold(const std::vector<BoundaryTriangle>& triangles) {
     std::sort(edges.begin(), edges.end());
     for (std::size_t first = 0; first < edges.size();) {
         const auto last = static_cast<std::size_t>(
-            std::upper_bound(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end(), edges[first]) - edges.begin());
+            std::upper_bound(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end(), edges[first]) -
+            edges.begin());
         if (last - first != 2) return false;
         first = last;
     }

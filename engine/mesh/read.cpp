@@ -21,7 +21,8 @@ std::string lower_extension(const std::string& path) {
 RawMesh read_raw(const std::string& path, bool surface) {
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele") return read_tetgen(path);
-    const bool known = extension == ".msh" || extension == ".vtk" || (surface && (extension == ".obj" || extension == ".stl"));
+    const bool known =
+        extension == ".msh" || extension == ".vtk" || (surface && (extension == ".obj" || extension == ".stl"));
     if (!known)
         Complaint{path,
                   {},
@@ -57,8 +58,8 @@ Mesh take_tetrahedra(RawMesh& raw) {
     Mesh mesh;
     mesh.nodes = drop_unused(raw.nodes, raw.tetrahedra);
     mesh.tetrahedra = std::move(raw.tetrahedra);
-    // Some programs count the other way round. A file in which nothing is positive and something negative is one of theirs; where both occur, something
-    // is wrong with the mesh, and turning tetrahedra over would hide it.
+    // Some programs count the other way round. A file in which nothing is positive and something negative is one of
+    // theirs; where both occur, something is wrong with the mesh, and turning tetrahedra over would hide it.
     bool any_positive = false, any_inverted = false;
     for (const std::array<Index, 4>& t : mesh.tetrahedra) {
         const Orientation side = orientation(mesh, t);
@@ -80,7 +81,8 @@ Mesh read(const std::string& path) {
                   {},
                   "no tetrahedra",
                   "at least one",
-                  "it has " + std::to_string(raw.triangles.size()) + " triangles and " + std::to_string(raw.others) + " other elements"}
+                  "it has " + std::to_string(raw.triangles.size()) + " triangles and " + std::to_string(raw.others) +
+                      " other elements"}
             .raise();
     return take_tetrahedra(raw);
 }
@@ -89,10 +91,17 @@ SurfaceMesh read_surface(const std::string& path) {
     RawMesh raw = read_raw(path, true);
     if (!raw.tetrahedra.empty()) return boundary(take_tetrahedra(raw));
     if (raw.curved_triangles > 0)
-        Complaint{path, {}, {}, std::to_string(raw.curved_triangles) + " triangles of second or higher order", "linear triangles", {}}
+        Complaint{path,
+                  {},
+                  {},
+                  std::to_string(raw.curved_triangles) + " triangles of second or higher order",
+                  "linear triangles",
+                  {}}
             .raise();
     if (raw.triangles.empty())
-        Complaint{path, {}, {}, "no triangles", "at least one", "it has " + std::to_string(raw.others) + " other elements"}.raise();
+        Complaint{
+            path, {}, {}, "no triangles", "at least one", "it has " + std::to_string(raw.others) + " other elements"}
+            .raise();
     SurfaceMesh surface;
     surface.nodes = drop_unused(raw.nodes, raw.triangles);
     surface.triangles = std::move(raw.triangles);

@@ -23,7 +23,8 @@ void require_positive(const Mesh& mesh, const std::string& what) {
     std::ostringstream object, found, hint;
     object << "tetrahedron " << first << " (nodes " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << ')';
     found << six_volumes(mesh, t) / 6 << " m^3";
-    hint << "of " << mesh.tetrahedra.size() << " tetrahedra " << inverted << " are inverted and " << flat << " flat; counted from 0";
+    hint << "of " << mesh.tetrahedra.size() << " tetrahedra " << inverted << " are inverted and " << flat
+         << " flat; counted from 0";
     Complaint{what, object.str(), "rest volume", found.str(), "a positive volume", hint.str()}.raise();
 }
 

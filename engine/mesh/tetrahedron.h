@@ -19,11 +19,12 @@ Real largest_face_squared(const Mesh& mesh, const std::array<Index, 4>& tetrahed
 
 enum class Orientation { positive, flat, inverted };
 
-/// Flat: six volumes are at most 1e-12 of the cube of the longest edge, which is what rounding of the coordinates leaves of none.
+/// Flat: six volumes are at most 1e-12 of the cube of the longest edge, which is what rounding of the coordinates
+/// leaves of none.
 Orientation orientation(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
-/// Throws SceneError unless every tetrahedron names four different nodes that exist and every node is finite. `what` is the file or the
-/// body that is complained about.
+/// Throws SceneError unless every tetrahedron names four different nodes that exist and every node is finite. `what` is
+/// the file or the body that is complained about.
 void require_valid(const Mesh& mesh, const std::string& what);
 
 }  // namespace skerry::mesh

@@ -4,7 +4,8 @@ namespace skerry {
 
 Frame FrameCollector::collect(const World& world) {
     const WorldReport report = world.report();
-    if (report.steps > steps_prev_) step_size_ = (report.time - time_prev_) / static_cast<Real>(report.steps - steps_prev_);
+    if (report.steps > steps_prev_)
+        step_size_ = (report.time - time_prev_) / static_cast<Real>(report.steps - steps_prev_);
     time_prev_ = report.time;
     steps_prev_ = report.steps;
 
@@ -24,8 +25,10 @@ Frame FrameCollector::collect(const World& world) {
                                 .tetrahedra = world.tetrahedra(body),
                                 .von_mises = world.von_mises_stress(body)});
     for (const ColliderHandle collider : world.colliders())
-        frame.colliders.push_back(
-            {.handle = collider, .name = world.name(collider), .shape = &world.shape(collider), .pose = world.pose(collider)});
+        frame.colliders.push_back({.handle = collider,
+                                   .name = world.name(collider),
+                                   .shape = &world.shape(collider),
+                                   .pose = world.pose(collider)});
     return frame;
 }
 

@@ -8,8 +8,9 @@
 
 namespace skerry {
 
-/// Collects frames of one run. Remembers only when the last one was, because contacts carry impulses and a force needs the step size: it
-/// is the mean of the steps since the frame before, which is exact when one call of advance lies between two frames.
+/// Collects frames of one run. Remembers only when the last one was, because contacts carry impulses and a force needs
+/// the step size: it is the mean of the steps since the frame before, which is exact when one call of advance lies
+/// between two frames.
 class FrameCollector {
 public:
     Frame collect(const World& world);

@@ -1,4 +1,5 @@
-// One frame of output as plain data: what the writers format. Collected from a World in collect_frame.cpp and nowhere else.
+// One frame of output as plain data: what the writers format. Collected from a World in collect_frame.cpp and nowhere
+// else.
 #pragma once
 
 #include <array>
@@ -39,7 +40,9 @@ struct Frame {
     std::span<const Contact> contacts;
 
     /// N, on the first body. Zero when no step was made, because then there is no time that the impulse acted for.
-    Vec3 force(const Contact& contact) const { return step_size > 0 ? Vec3(contact.impulse / step_size) : Vec3(Vec3::Zero()); }
+    Vec3 force(const Contact& contact) const {
+        return step_size > 0 ? Vec3(contact.impulse / step_size) : Vec3(Vec3::Zero());
+    }
 };
 
 /// Regions are numbered by row, so the last number counts them; -1 marks contacts without a moving node.

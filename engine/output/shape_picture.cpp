@@ -30,7 +30,8 @@ void add_arc(Profile& profile, Real radius, Real z, Real from, Real to) {
     }
 }
 
-/// Turns a profile about z. Profiles run upwards on the outside, so triangles come out counter-clockwise seen from there.
+/// Turns a profile about z. Profiles run upwards on the outside, so triangles come out counter-clockwise seen from
+/// there.
 void revolve(const Profile& profile, SurfaceMesh& mesh) {
     const Index first = static_cast<Index>(mesh.nodes.size());
     for (const auto& [radius, z] : profile)
@@ -110,7 +111,8 @@ struct Picture {
     }
     SurfaceMesh operator()(const Bucket& bucket) const {
         SurfaceMesh mesh;
-        const Real inner = bucket.radius, outer = bucket.radius + bucket.thickness, top = bucket.height, bottom = -bucket.thickness;
+        const Real inner = bucket.radius, outer = bucket.radius + bucket.thickness, top = bucket.height,
+                   bottom = -bucket.thickness;
         revolve({{0, bottom}, {outer, bottom}}, mesh);
         revolve({{outer, bottom}, {outer, top}}, mesh);
         revolve({{outer, top}, {inner, top}}, mesh);

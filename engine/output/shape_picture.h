@@ -11,8 +11,8 @@ struct PlanePatch {
     Real half_size = 1;          // m
 };
 
-/// Triangles of a shape in its own frame, seen from outside counter-clockwise. Curved shapes have 48 facets around. Vertices are doubled
-/// along sharp edges, so that averaged normals shade it right.
+/// Triangles of a shape in its own frame, seen from outside counter-clockwise. Curved shapes have 48 facets around.
+/// Vertices are doubled along sharp edges, so that averaged normals shade it right.
 SurfaceMesh shape_picture(const Shape& shape, const PlanePatch& patch);
 
 /// The place in the world of a point of a shape.

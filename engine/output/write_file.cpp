@@ -14,7 +14,8 @@ std::string what(int error) {
 }
 
 [[noreturn]] void complain(const std::filesystem::path& place, const std::string& found, const std::string& expected) {
-    Complaint{.file = place.string(), .object = "output", .field = {}, .found = found, .expected = expected, .hint = {}}.raise();
+    Complaint{.file = place.string(), .object = "output", .field = {}, .found = found, .expected = expected, .hint = {}}
+        .raise();
 }
 
 /// Takes the unfinished file away again, also when its writer throws.
@@ -33,7 +34,8 @@ void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (std::filesystem::is_directory(folder)) return;
-    complain(folder, error ? "\"" + error.message() + "\"" : "something that is no folder", "a folder that exists or can be made");
+    complain(folder, error ? "\"" + error.message() + "\"" : "something that is no folder",
+             "a folder that exists or can be made");
 }
 
 void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write) {

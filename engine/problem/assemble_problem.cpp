@@ -28,7 +28,8 @@ std::vector<Touch> list_touches(const LumpedContacts& contacts) {
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = contacts.node[i][a];
             const Real weight = contacts.weight[i][a];
-            if (weight != 0 && contacts.inverse_mass[node] > 0) touches.push_back({node, static_cast<Index>(i), weight});
+            if (weight != 0 && contacts.inverse_mass[node] > 0)
+                touches.push_back({node, static_cast<Index>(i), weight});
         }
     std::stable_sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& b) { return a.node < b.node; });
     return touches;
@@ -55,9 +56,12 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = touches[a].contact, j = touches[b].contact;
-                // S_ij of methods.md 0.1, symmetric to the last bit; a block of the diagonal is the same in every frame
+                // S_ij of docs/methods/contact.md 2.1, symmetric to the last bit; a block of the diagonal is the same
+                // in every frame
                 const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
-                parts.push_back({i, j, i == j ? Mat3(coupling * Mat3::Identity()) : Mat3(coupling * (frame[i].transpose() * frame[j]))});
+                parts.push_back(
+                    {i, j,
+                     i == j ? Mat3(coupling * Mat3::Identity()) : Mat3(coupling * (frame[i].transpose() * frame[j]))});
             }
     }
     gather_blocks(std::move(parts), problem);
@@ -66,7 +70,8 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
 
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors) {
     std::vector<Vec3> turned;
-    for (std::size_t i = 0; i < vectors.size(); ++i) turned.push_back(frame_of(contacts.normal[i]).transpose() * vectors[i]);
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        turned.push_back(frame_of(contacts.normal[i]).transpose() * vectors[i]);
     return turned;
 }
 

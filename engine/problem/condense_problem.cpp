@@ -3,8 +3,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "components/union_find.h"
 #include "engine/problem/gather_blocks.h"
 
 namespace skerry {
@@ -20,29 +20,16 @@ struct MassParts {
 };
 
 MassParts separate(const MatrixEntries& mass) {
-    std::vector<Index> root(static_cast<std::size_t>(mass.rows));
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](Index i) {
-        while (root[i] != i) i = root[i] = root[root[i]];
-        return i;
-    };
-    for (const MatrixEntry& e : mass.entry) {
-        if (e.value == 0) continue;
-        const Index a = find(e.row), b = find(e.column);
-        root[std::max(a, b)] = std::min(a, b);
-    }
+    UnionFind joined;
+    joined.start(static_cast<std::size_t>(mass.rows));
+    for (const MatrixEntry& e : mass.entry)
+        if (e.value != 0) joined.join(e.row, e.column);
     MassParts parts;
-    parts.part.resize(root.size());
-    parts.place.resize(root.size());
-    for (std::size_t i = 0; i < root.size(); ++i) {
-        const Index r = find(static_cast<Index>(i));
-        if (r == static_cast<Index>(i)) {
-            parts.part[i] = static_cast<Index>(parts.size.size());
-            parts.size.push_back(0);
-        } else {
-            parts.part[i] = parts.part[r];  // roots are smaller than what they stand for
-        }
-        parts.place[i] = parts.size[parts.part[i]]++;
+    for (Index i = 0; i < mass.rows; ++i) {
+        const Index part = joined.number(i);
+        parts.size.resize(static_cast<std::size_t>(joined.number_count));
+        parts.part.push_back(part);
+        parts.place.push_back(parts.size[part]++);
     }
     return parts;
 }
@@ -76,8 +63,8 @@ MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass
     for (Index column = 0; column < difference.outerSize(); ++column)
         for (SparseMatrix::InnerIterator it(difference, column); it; ++it)
             if (it.value() * it.value() > rounding * rounding * std::abs(diagonal[it.row()] * diagonal[column]))
-                return {"a matrix that is not symmetric at " + freedom_text(parts, part, static_cast<Index>(it.row())) + " and " +
-                            freedom_text(parts, part, column),
+                return {"a matrix that is not symmetric at " + freedom_text(parts, part, static_cast<Index>(it.row())) +
+                            " and " + freedom_text(parts, part, column),
                         "a symmetric matrix, both halves of it"};
     return {};
 }
@@ -87,7 +74,8 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
     const char* const expected = "a positive definite matrix";
     const Eigen::VectorXd diagonal = mass.diagonal();
     for (Index i = 0; i < diagonal.size(); ++i)
-        if (!(diagonal[i] > 0)) return {std::to_string(diagonal[i]) + " on the diagonal of " + freedom_text(parts, part, i), expected};
+        if (!(diagonal[i] > 0))
+            return {std::to_string(diagonal[i]) + " on the diagonal of " + freedom_text(parts, part, i), expected};
     factors.compute(mass);
     // a pivot that is nothing but rounding belongs to a singular matrix
     constexpr Real rounding = 1e-14;
@@ -95,12 +83,14 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
     bool definite = factors.info() == Eigen::Success;
     if (definite) definite = (factors.vectorD().array() > rounding * in_order.array()).all();
     if (definite) return {};
-    return {"a matrix that is not positive definite among the freedoms joined to " + freedom_text(parts, part, 0), expected};
+    return {"a matrix that is not positive definite among the freedoms joined to " + freedom_text(parts, part, 0),
+            expected};
 }
 
 /// What one part of M adds to W and q.
-void condense_part(const MassParts& parts, Index part, const Factors& factors, const std::vector<MatrixEntry>& directions,
-                   const std::vector<Real>& force, std::vector<BlockPart>& blocks, ContactProblem& problem) {
+void condense_part(const MassParts& parts, Index part, const Factors& factors,
+                   const std::vector<MatrixEntry>& directions, const std::vector<Real>& force,
+                   std::vector<BlockPart>& blocks, ContactProblem& problem) {
     std::vector<Index> contact;  // that move this part, ascending
     for (const MatrixEntry& e : directions) contact.push_back(e.column / 3);
     std::sort(contact.begin(), contact.end());
@@ -158,14 +148,17 @@ void drop_rounding(ContactProblem& problem) {
 
 MassFault condense_problem(const GlobalProblem& global, ContactProblem& problem) {
     const MassParts parts = separate(global.mass);
-    const std::vector<std::vector<MatrixEntry>> mass = by_part(parts, global.mass), directions = by_part(parts, global.directions);
+    const std::vector<std::vector<MatrixEntry>> mass = by_part(parts, global.mass),
+                                                directions = by_part(parts, global.directions);
     std::vector<std::vector<Real>> force(parts.size.size());
     for (std::size_t i = 0; i < global.force.size(); ++i) force[parts.part[i]].push_back(global.force[i]);
     std::vector<BlockPart> blocks;
     for (Index part = 0; part < static_cast<Index>(parts.size.size()); ++part) {
         Factors factors;
-        if (MassFault fault = factorise(parts, part, assemble(parts, part, mass[part]), factors); !fault.found.empty()) return fault;
-        if (!directions[part].empty()) condense_part(parts, part, factors, directions[part], force[part], blocks, problem);
+        if (MassFault fault = factorise(parts, part, assemble(parts, part, mass[part]), factors); !fault.found.empty())
+            return fault;
+        if (!directions[part].empty())
+            condense_part(parts, part, factors, directions[part], force[part], blocks, problem);
     }
     problem.freedoms = global.mass.rows;
     gather_blocks(std::move(blocks), problem);

@@ -21,8 +21,9 @@ struct MassFault {
     std::string found, expected;
 };
 
-/// Fills blocks, q and freedoms of `problem`, whose q holds w. M falls into parts that no entry joins (the bodies): each is factorised on
-/// its own, so that only contacts on the same part are coupled. Blocks that rounding alone keeps from being zero are left out.
+/// Fills blocks, q and freedoms of `problem`, whose q holds w. M falls into parts that no entry joins (the bodies):
+/// each is factorised on its own, so that only contacts on the same part are coupled. Blocks that rounding alone keeps
+/// from being zero are left out.
 MassFault condense_problem(const GlobalProblem& global, ContactProblem& problem);
 
 }  // namespace skerry

@@ -6,7 +6,8 @@ namespace skerry {
 namespace {
 
 void expect_index(const Hdf5File& file, const std::string& path, Index index, Index size) {
-    if (index < 0 || index >= size) file.complain(path, "index " + std::to_string(index), "0 to " + std::to_string(size - 1));
+    if (index < 0 || index >= size)
+        file.complain(path, "index " + std::to_string(index), "0 to " + std::to_string(size - 1));
 }
 
 /// Compressed columns (nz = -1) or rows (nz = -2): lines from p, places in them from i.
@@ -16,7 +17,8 @@ void read_compressed(const Hdf5File& file, const std::string& group, bool by_row
     const std::vector<Real> value = file.reals(group + "/x");
     const Index nzmax = file.integer(group + "/nzmax");
     if (nzmax < 0) file.complain(group + "/nzmax", std::to_string(nzmax), "a size");
-    expect_size(file, group + "/p", begin.size(), static_cast<std::size_t>(lines) + 1, by_rows ? "rows + 1" : "columns + 1");
+    expect_size(file, group + "/p", begin.size(), static_cast<std::size_t>(lines) + 1,
+                by_rows ? "rows + 1" : "columns + 1");
     expect_size(file, group + "/i", place.size(), static_cast<std::size_t>(nzmax), "nzmax");
     expect_size(file, group + "/x", value.size(), static_cast<std::size_t>(nzmax), "nzmax");
     if (begin.front() != 0 || begin.back() > nzmax || !std::is_sorted(begin.begin(), begin.end()))
@@ -25,18 +27,21 @@ void read_compressed(const Hdf5File& file, const std::string& group, bool by_row
     for (Index line = 0; line < lines; ++line)
         for (Index k = begin[line]; k < begin[line + 1]; ++k) {
             expect_index(file, group + "/i", place[k], places);
-            matrix.entry.push_back(by_rows ? MatrixEntry{line, place[k], value[k]} : MatrixEntry{place[k], line, value[k]});
+            matrix.entry.push_back(by_rows ? MatrixEntry{line, place[k], value[k]}
+                                           : MatrixEntry{place[k], line, value[k]});
         }
 }
 
-/// Triplets: nz of them, p columns and i rows, as in CSparse, whose arrays Siconos writes. (Comments in fclib.h name them the other way
-/// round; for the symmetric W and M it is the same.)
+/// Triplets: nz of them, p columns and i rows, as in CSparse, whose arrays Siconos writes. (Comments in fclib.h name
+/// them the other way round; for the symmetric W and M it is the same.)
 void read_triplets(const Hdf5File& file, const std::string& group, Index nz, MatrixEntries& matrix) {
     const std::vector<Index> column = file.integers(group + "/p"), row = file.integers(group + "/i");
     const std::vector<Real> value = file.reals(group + "/x");
     const std::size_t count = static_cast<std::size_t>(nz);
     for (const auto& [field, found] : {std::pair{"/p", column.size()}, {"/i", row.size()}, {"/x", value.size()}})
-        if (found < count) file.complain(group + field, std::to_string(found) + " values", "at least " + std::to_string(count) + " (nz)");
+        if (found < count)
+            file.complain(group + field, std::to_string(found) + " values",
+                          "at least " + std::to_string(count) + " (nz)");
     matrix.entry.reserve(count);
     for (std::size_t k = 0; k < count; ++k) {
         expect_index(file, group + "/i", row[k], matrix.rows);
@@ -47,8 +52,10 @@ void read_triplets(const Hdf5File& file, const std::string& group, Index nz, Mat
 
 }  // namespace
 
-void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected, const std::string& of) {
-    if (found != expected) file.complain(path, std::to_string(found) + " values", std::to_string(expected) + " (" + of + ")");
+void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
+                 const std::string& of) {
+    if (found != expected)
+        file.complain(path, std::to_string(found) + " values", std::to_string(expected) + " (" + of + ")");
 }
 
 MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group) {

@@ -25,11 +25,12 @@ struct MatrixSize {
 };
 MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group);
 
-/// All entries, in whichever storage the group has them: compressed columns (nz = -1), compressed rows (nz = -2), or nz triplets. Throws
-/// SceneError.
+/// All entries, in whichever storage the group has them: compressed columns (nz = -1), compressed rows (nz = -2), or nz
+/// triplets. Throws SceneError.
 MatrixEntries read_matrix(const Hdf5File& file, const std::string& group);
 
 /// Complains unless `found` is `expected`, which `of` explains.
-void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected, const std::string& of);
+void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
+                 const std::string& of);
 
 }  // namespace skerry

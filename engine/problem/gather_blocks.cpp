@@ -10,7 +10,8 @@ void gather_blocks(std::vector<BlockPart> parts, ContactProblem& problem) {
     const Index contacts = problem.contacts();
     for (Index i = 0; i < contacts; ++i) parts.push_back({i, i, Mat3::Zero()});
     const auto place = [](const BlockPart& part) { return std::pair(part.row, part.column); };
-    std::stable_sort(parts.begin(), parts.end(), [&](const BlockPart& a, const BlockPart& b) { return place(a) < place(b); });
+    std::stable_sort(parts.begin(), parts.end(),
+                     [&](const BlockPart& a, const BlockPart& b) { return place(a) < place(b); });
     problem.row_offset.assign(static_cast<std::size_t>(contacts) + 1, 0);
     problem.column.clear();
     problem.block.clear();

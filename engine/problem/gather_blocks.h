@@ -13,8 +13,8 @@ struct BlockPart {
     Mat3 value;
 };
 
-/// Fills row_offset, column and block of a problem whose q says how many contacts it has. A block of exact zeros couples nothing and is left
-/// out; the diagonal is always there.
+/// Fills row_offset, column and block of a problem whose q says how many contacts it has. A block of exact zeros
+/// couples nothing and is left out; the diagonal is always there.
 void gather_blocks(std::vector<BlockPart> parts, ContactProblem& problem);
 
 }  // namespace skerry

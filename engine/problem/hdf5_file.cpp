@@ -9,7 +9,12 @@ namespace {
 
 hid_t open_file(const std::filesystem::path& path) {
     const auto refuse = [&](const std::string& found) {
-        Complaint{.file = path.string(), .object = {}, .field = {}, .found = found, .expected = "an FCLIB problem (HDF5)", .hint = {}}
+        Complaint{.file = path.string(),
+                  .object = {},
+                  .field = {},
+                  .found = found,
+                  .expected = "an FCLIB problem (HDF5)",
+                  .hint = {}}
             .raise();
     };
     std::error_code ignored;
@@ -31,10 +36,17 @@ bool Hdf5File::can_hold(hsize_t bytes) const {
     return H5Fget_filesize(file_.id(), &size) >= 0 && bytes / largest_ratio <= size;
 }
 
-void Hdf5File::complain(const std::string& path, const std::string& found, const std::string& expected, const std::string& hint) const {
+void Hdf5File::complain(const std::string& path, const std::string& found, const std::string& expected,
+                        const std::string& hint) const {
     const std::size_t slash = path.rfind('/');
     const std::string object = slash == 0 ? "" : path.substr(0, slash);
-    Complaint{.file = name_, .object = object, .field = path.substr(slash + 1), .found = found, .expected = expected, .hint = hint}.raise();
+    Complaint{.file = name_,
+              .object = object,
+              .field = path.substr(slash + 1),
+              .found = found,
+              .expected = expected,
+              .hint = hint}
+        .raise();
 }
 
 bool Hdf5File::has(const std::string& path) const {
@@ -53,8 +65,8 @@ void Hdf5File::expect_group(const std::string& path, const std::string& hint) co
 
 namespace {
 
-/// Whether as many bytes are stored as the values take; libhdf5 reads on behind the end of a compact data set that has fewer. Chunks may be
-/// compressed and tell nothing.
+/// Whether as many bytes are stored as the values take; libhdf5 reads on behind the end of a compact data set that has
+/// fewer. Chunks may be compressed and tell nothing.
 bool all_stored(const Hdf5Handle& data, const Hdf5Handle& type, hssize_t count) {
     const Hdf5Handle creation(H5Dget_create_plist(data.id()), H5Pclose);
     const H5D_layout_t layout = H5Pget_layout(creation.id());
@@ -65,7 +77,8 @@ bool all_stored(const Hdf5Handle& data, const Hdf5Handle& type, hssize_t count) 
 }  // namespace
 
 template <class T>
-std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const {
+std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_t memory_type,
+                                 const char* expected) const {
     if (!has(path)) complain(path, "nothing", expected);
     const Hdf5Handle data(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
     if (!data.ok()) complain(path, "something that is not a data set", expected);
@@ -74,15 +87,19 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     if (!type.ok() || !space.ok()) complain(path, "a data set that cannot be read", expected);
     const H5T_class_t found = H5Tget_class(type.id());
     // whole numbers may stand for reals
-    if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER)) complain(path, "values of another type", expected);
+    if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER))
+        complain(path, "values of another type", expected);
     // no number is longer than a long double; libhdf5 would convert ones of any length, with as much memory
     constexpr std::size_t longest_number = 16;  // bytes
-    if (H5Tget_size(type.id()) > longest_number) complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes", expected);
+    if (H5Tget_size(type.id()) > longest_number)
+        complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes", expected);
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
-    if (count < 0 || count > std::numeric_limits<Index>::max()) complain(path, std::to_string(count) + " values", expected);
+    if (count < 0 || count > std::numeric_limits<Index>::max())
+        complain(path, std::to_string(count) + " values", expected);
     if (!can_hold(static_cast<hsize_t>(count) * sizeof(T)))
         complain(path, std::to_string(count) + " values", "values that the file can hold");
-    if (!all_stored(data, type, count)) complain(path, "fewer bytes than " + std::to_string(count) + " values take", expected);
+    if (!all_stored(data, type, count))
+        complain(path, "fewer bytes than " + std::to_string(count) + " values take", expected);
     std::vector<T> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
         complain(path, "values that cannot be read", expected);
@@ -102,7 +119,8 @@ std::vector<Index> Hdf5File::integers(const std::string& path) const {
 std::vector<Real> Hdf5File::reals(const std::string& path) const {
     std::vector<Real> values = numbers<Real>(path, H5T_FLOAT, H5T_NATIVE_DOUBLE, "numbers");
     const auto bad = std::find_if(values.begin(), values.end(), [](Real value) { return !std::isfinite(value); });
-    if (bad != values.end()) complain(path, std::to_string(*bad) + " at entry " + std::to_string(bad - values.begin()), "finite numbers");
+    if (bad != values.end())
+        complain(path, std::to_string(*bad) + " at entry " + std::to_string(bad - values.begin()), "finite numbers");
     return values;
 }
 
@@ -112,7 +130,9 @@ std::string Hdf5File::text_or_nothing(const std::string& path) const {
     if (!data.ok()) return {};
     const Hdf5Handle type(H5Dget_type(data.id()), H5Tclose);
     const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
-    if (!type.ok() || !space.ok() || H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1) return {};
+    if (!type.ok() || !space.ok() || H5Tget_class(type.id()) != H5T_STRING ||
+        H5Sget_simple_extent_npoints(space.id()) != 1)
+        return {};
     if (H5Tis_variable_str(type.id()) > 0) {
         char* text = nullptr;
         if (H5Dread(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) < 0 || !text) return {};

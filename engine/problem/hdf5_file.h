@@ -1,5 +1,5 @@
-// Reads named numbers from an HDF5 file, with complaints that say which. Nothing is printed: HDF5's own messages are switched off while it
-// is read.
+// Reads named numbers from an HDF5 file, with complaints that say which. Nothing is printed: HDF5's own messages are
+// switched off while it is read.
 #pragma once
 
 #include <hdf5.h>
@@ -47,7 +47,8 @@ private:
     void* data_ = nullptr;
 };
 
-/// An open file. Paths are absolute, "/group/field". All reading throws SceneError on what is missing or of another kind.
+/// An open file. Paths are absolute, "/group/field". All reading throws SceneError on what is missing or of another
+/// kind.
 class Hdf5File {
 public:
     explicit Hdf5File(const std::filesystem::path& path);

@@ -21,7 +21,12 @@ Hdf5Image::Hdf5Image(std::string name) : name_(std::move(name)), file_(make_file
 
 void Hdf5Image::expect(bool good, const std::string& path) const {
     if (!good)
-        Complaint{.file = name_, .object = {}, .field = path, .found = "no room for it", .expected = "memory for the file", .hint = {}}
+        Complaint{.file = name_,
+                  .object = {},
+                  .field = path,
+                  .found = "no room for it",
+                  .expected = "memory for the file",
+                  .hint = {}}
             .raise();
 }
 
@@ -36,7 +41,8 @@ void Hdf5Image::put(const std::string& path, hid_t type, const Hdf5Handle& space
     }
     const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.id(), 0);
-    const Hdf5Handle data(H5Dcreate2(file_.id(), path.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle data(
+        H5Dcreate2(file_.id(), path.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
     expect(data.ok() && H5Dwrite(data.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, path);
 }
 

@@ -1,4 +1,5 @@
-// An HDF5 file made in memory, with the kinds of data that FCLIB's own writer makes: numbers in one dimension, texts of fixed length.
+// An HDF5 file made in memory, with the kinds of data that FCLIB's own writer makes: numbers in one dimension, texts of
+// fixed length.
 #pragma once
 
 #include <hdf5.h>
@@ -12,8 +13,8 @@
 
 namespace skerry {
 
-/// Paths are absolute, "/group/field"; groups are made on the way. The same calls give the same bytes. Throws SceneError that names the
-/// file it is meant for.
+/// Paths are absolute, "/group/field"; groups are made on the way. The same calls give the same bytes. Throws
+/// SceneError that names the file it is meant for.
 class Hdf5Image {
 public:
     explicit Hdf5Image(std::string name);

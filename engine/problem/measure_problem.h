@@ -1,4 +1,4 @@
-// How far reactions are from solving a problem (methods.md 2.1).
+// How far reactions are from solving a problem (docs/methods/errors.md 3).
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// The two forms of FCLIB (fclib.h of the FCLIB library). Local: group fclib_local with spacedim, the matrix W, and the vectors q and mu.
-// Global: group fclib_global with spacedim, the matrices M and H, and the vectors f, w and mu.
+// The two forms of FCLIB (fclib.h of the FCLIB library). Local: group fclib_local with spacedim, the matrix W, and the
+// vectors q and mu. Global: group fclib_global with spacedim, the matrices M and H, and the vectors f, w and mu.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -16,7 +16,8 @@ namespace {
 /// One part a block from scalar entries.
 std::vector<BlockPart> blocks_of(std::vector<MatrixEntry> entries) {
     const auto place = [](const MatrixEntry& e) { return std::pair(e.row / 3, e.column / 3); };
-    std::stable_sort(entries.begin(), entries.end(), [&](const MatrixEntry& a, const MatrixEntry& b) { return place(a) < place(b); });
+    std::stable_sort(entries.begin(), entries.end(),
+                     [&](const MatrixEntry& a, const MatrixEntry& b) { return place(a) < place(b); });
     std::vector<BlockPart> parts;
     for (const MatrixEntry& e : entries) {
         if (parts.empty() || std::pair(parts.back().row, parts.back().column) != place(e))
@@ -52,10 +53,12 @@ void read_local(const Hdf5File& file, ContactProblem& problem) {
     expect_three_dimensions(file, root);
     for (const char* part : {"/V", "/R"})
         if (file.has(root + part))
-            file.complain(root + part, "equality constraints", "contacts alone", "problems with equality constraints are not solved here");
+            file.complain(root + part, "equality constraints", "contacts alone",
+                          "problems with equality constraints are not solved here");
     const auto [rows, columns] = read_matrix_size(file, root + "/W");
     if (rows < 3 || rows % 3 != 0) file.complain(root + "/W/m", std::to_string(rows), "a positive multiple of 3");
-    if (columns != rows) file.complain(root + "/W/n", std::to_string(columns), std::to_string(rows) + " (square, as m)");
+    if (columns != rows)
+        file.complain(root + "/W/n", std::to_string(columns), std::to_string(rows) + " (square, as m)");
     MatrixEntries w = read_matrix(file, root + "/W");
     file.expect_group(root + "/vectors");
     problem.q = read_vectors3(file, root + "/vectors/q", rows, "rows of W");
@@ -68,13 +71,16 @@ void read_global(const Hdf5File& file, ContactProblem& problem) {
     const std::string root = "/fclib_global";
     expect_three_dimensions(file, root);
     if (file.has(root + "/G") && read_matrix_size(file, root + "/G").columns > 0)
-        file.complain(root + "/G", "equality constraints", "contacts alone", "problems with equality constraints are not solved here");
+        file.complain(root + "/G", "equality constraints", "contacts alone",
+                      "problems with equality constraints are not solved here");
     const auto [rows, columns] = read_matrix_size(file, root + "/M");
     const auto [freedoms, relative] = read_matrix_size(file, root + "/H");
     if (rows < 1) file.complain(root + "/M/m", std::to_string(rows), "freedoms");
-    if (columns != rows) file.complain(root + "/M/n", std::to_string(columns), std::to_string(rows) + " (square, as m)");
+    if (columns != rows)
+        file.complain(root + "/M/n", std::to_string(columns), std::to_string(rows) + " (square, as m)");
     if (freedoms != rows) file.complain(root + "/H/m", std::to_string(freedoms), std::to_string(rows) + " (rows of M)");
-    if (relative < 3 || relative % 3 != 0) file.complain(root + "/H/n", std::to_string(relative), "a positive multiple of 3");
+    if (relative < 3 || relative % 3 != 0)
+        file.complain(root + "/H/n", std::to_string(relative), "a positive multiple of 3");
     GlobalProblem global;
     global.mass = read_matrix(file, root + "/M");
     global.directions = read_matrix(file, root + "/H");

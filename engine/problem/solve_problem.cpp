@@ -4,6 +4,7 @@
 #include <numeric>
 #include <string>
 
+#include "components/union_find.h"
 #include "engine/problem/check_arrays.h"
 #include "engine/problem/measure_problem.h"
 #include "skerry/error.h"
@@ -18,10 +19,10 @@ BlockSystem view(const ContactProblem& problem) {
     return {problem.row_offset, problem.column, problem.block, problem.q, problem.mu};
 }
 
-/// Contacts by region: joined by a block. The smaller number wins, so that regions are numbered by their first contact.
+/// Contacts by region: joined by a block. Regions are numbered by their first contact.
 struct ProblemRegions {
     std::vector<Index> offset, contact;
-    std::vector<Index> root;
+    UnionFind joined;  // contacts
 
     Index size() const { return static_cast<Index>(offset.size()) - 1; }
     std::span<const Index> operator[](Index region) const {
@@ -31,27 +32,22 @@ struct ProblemRegions {
 
 void separate(const ContactProblem& problem, ProblemRegions& regions) {
     const std::size_t count = problem.q.size();
-    std::vector<Index>& root = regions.root;
-    root.resize(count);
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](Index i) {
-        while (root[i] != i) i = root[i] = root[root[i]];
-        return i;
-    };
+    UnionFind& joined = regions.joined;
+    joined.start(count);
     for (std::size_t i = 0; i < count; ++i)
-        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k) {
-            const Index a = find(static_cast<Index>(i)), b = find(problem.column[k]);
-            root[std::max(a, b)] = std::min(a, b);
-        }
-    // roots are smaller than what they stand for: one pass numbers the regions, one sorts the contacts by them
-    Index region_count = 0;
-    for (std::size_t i = 0; i < count; ++i) root[i] = root[i] == static_cast<Index>(i) ? region_count++ : root[root[i]];
-    regions.offset.assign(static_cast<std::size_t>(region_count) + 1, 0);
-    for (const Index region : root) ++regions.offset[region + 1];
+        for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
+            joined.join(static_cast<Index>(i), problem.column[k]);
+    // one pass numbers the regions and counts their contacts, one sorts the contacts by them
+    regions.offset.assign(1, 0);
+    for (Index i = 0; i < static_cast<Index>(count); ++i) {
+        const Index region = joined.number(i);
+        regions.offset.resize(static_cast<std::size_t>(joined.number_count) + 1);
+        ++regions.offset[region + 1];
+    }
     std::partial_sum(regions.offset.begin(), regions.offset.end(), regions.offset.begin());
     regions.contact.resize(count);
-    for (std::size_t i = 0; i < count; ++i) regions.contact[regions.offset[root[i]]++] = static_cast<Index>(i);
-    for (Index r = region_count; r > 0; --r) regions.offset[r] = regions.offset[r - 1];
+    for (Index i = 0; i < static_cast<Index>(count); ++i) regions.contact[regions.offset[joined.number(i)]++] = i;
+    for (Index r = regions.size(); r > 0; --r) regions.offset[r] = regions.offset[r - 1];
     regions.offset[0] = 0;
 }
 
@@ -62,8 +58,9 @@ struct Work {
     std::vector<Index> used;  // iterations by region
 };
 
-/// Solves all regions. The error is one of all regions together, so none is asked for more than its share of it; since the sizes that it
-/// is measured against are known at the end only, the regions may have to go on from where they are, asked for half.
+/// Solves all regions. The error is one of all regions together, so none is asked for more than its share of it; since
+/// the sizes that it is measured against are known at the end only, the regions may have to go on from where they are,
+/// asked for half.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, Work& work) {
     const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);
@@ -78,7 +75,8 @@ void solve_once(const ContactProblem& problem, const ProblemSettings& settings, 
     for (int round = 0; round < round_limit; ++round) {
         for (Index region = 0; region < regions.size(); ++region) {
             const Index begin = regions.offset[region], end = regions.offset[region + 1];
-            const Real share = whole.measured_size() * std::sqrt(static_cast<Real>(end - begin) / static_cast<Real>(problem.contacts()));
+            const Real share = whole.measured_size() *
+                               std::sqrt(static_cast<Real>(end - begin) / static_cast<Real>(problem.contacts()));
             BlockOperator op(work.memory, begin, end, settings.friction, share);
             limits.max_iterations = settings.max_iterations - work.used[region];
             if (limits.max_iterations <= 0 || (round > 0 && op.error() <= limits.tolerance)) continue;
@@ -92,7 +90,8 @@ void solve_once(const ContactProblem& problem, const ProblemSettings& settings, 
 /// The impulses in the order of the problem.
 std::vector<Vec3> reactions(const Work& work) {
     std::vector<Vec3> reaction(work.regions.contact.size());
-    for (std::size_t i = 0; i < reaction.size(); ++i) reaction[work.regions.contact[i]] = work.memory.impulse[i].head<3>();
+    for (std::size_t i = 0; i < reaction.size(); ++i)
+        reaction[work.regions.contact[i]] = work.memory.impulse[i].head<3>();
     return reaction;
 }
 
@@ -104,12 +103,18 @@ double seconds_of(const ContactProblem& problem, const ProblemSettings& settings
 
 void check(const ContactProblem& problem, const ProblemSettings& settings) {
     const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
-        Complaint{.file = {}, .object = "problem " + problem.name, .field = field, .found = found, .expected = expected, .hint = {}}
+        Complaint{.file = {},
+                  .object = "problem " + problem.name,
+                  .field = field,
+                  .found = found,
+                  .expected = expected,
+                  .hint = {}}
             .raise();
     };
     if (!(settings.tolerance >= 0)) refuse("tolerance", std::to_string(settings.tolerance), ">= 0");
     if (settings.max_iterations < 1) refuse("max_iterations", std::to_string(settings.max_iterations), ">= 1");
-    if (!(settings.relaxation > 0 && settings.relaxation < 2)) refuse("relaxation", std::to_string(settings.relaxation), "> 0 and < 2");
+    if (!(settings.relaxation > 0 && settings.relaxation < 2))
+        refuse("relaxation", std::to_string(settings.relaxation), "> 0 and < 2");
     const auto rough = std::ranges::find_if(problem.mu, [](Real mu) { return mu != 0; });
     if (needs_frictionless(settings.method) && rough != problem.mu.end())
         refuse("method", std::string(name_of(settings.method)) + " and mu = " + std::to_string(*rough),
@@ -126,7 +131,8 @@ ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettin
     // a short solve is repeated: the first pays for memory and cold caches, and the clock is coarse
     constexpr double long_enough = 5e-3, budget = 20e-3;
     std::vector<double> seconds{first};
-    while (first < long_enough && seconds.size() < 1001 && std::accumulate(seconds.begin(), seconds.end(), 0.0) < budget)
+    while (first < long_enough && seconds.size() < 1001 &&
+           std::accumulate(seconds.begin(), seconds.end(), 0.0) < budget)
         seconds.push_back(seconds_of(problem, settings, work));
     std::nth_element(seconds.begin(), seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2), seconds.end());
 

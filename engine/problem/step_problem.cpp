@@ -1,6 +1,6 @@
 #include "engine/problem/step_problem.h"
 
-#include "systems/solver/operators/lumped_operator.h"
+#include "systems/solver/local/load_contact.h"
 
 namespace skerry {
 namespace {
@@ -11,9 +11,13 @@ std::string description_of(const StepContacts& step, const SolverSettings& setti
     for (std::size_t i = 0; i < step.contacts.static_friction.size(); ++i)
         two_coefficients |= step.contacts.static_friction[i] != step.contacts.dynamic_friction[i];
     if (two_coefficients)
-        text += "; static friction differs from dynamic friction, and mu is the dynamic one, so the solution is not one of this problem";
-    if (settings.friction == Friction::pyramid) text += "; the solution is that of the friction pyramid, not of the cone";
-    if (settings.friction == Friction::cone_convex) text += "; the solution is that of the associated law, not of Coulomb's";
+        text +=
+            "; static friction differs from dynamic friction, and mu is the dynamic one, so the solution is not one of "
+            "this problem";
+    if (settings.friction == Friction::pyramid)
+        text += "; the solution is that of the friction pyramid, not of the cone";
+    if (settings.friction == Friction::cone_convex)
+        text += "; the solution is that of the associated law, not of Coulomb's";
     return text;
 }
 
@@ -26,14 +30,14 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     lumped.velocity.assign(step.free_velocity.begin(), step.free_velocity.end());
     std::vector<Vec3> impulse;
     for (std::size_t row = 0; row < step.contacts.stencil.size(); ++row) {
-        const LumpedContact contact =
-            load_contact(step.contacts, static_cast<Index>(row), step.free_velocity, settings, h, [](Index node) { return node; });
+        const LumpedContact contact = load_contact(step.contacts, static_cast<Index>(row), step.free_velocity, settings,
+                                                   h, [](Index node) { return node; });
         if (contact.node_count == 0) continue;
         lumped.node.push_back(step.contacts.stencil[row].node);
         lumped.weight.push_back(step.contacts.stencil[row].weight);
         lumped.normal.push_back(step.contacts.normal[row]);
         lumped.offset.push_back(contact.bias * step.contacts.normal[row] - step.contacts.surface_velocity[row] -
-                                half_turn(step.contacts, static_cast<Index>(row), step.free_velocity));
+                                midpoint_slip(step.contacts, static_cast<Index>(row), step.free_velocity));
         lumped.friction.push_back(contact.friction.slide);
         impulse.push_back(step.impulse[row]);
         result.contact.push_back(static_cast<Index>(row));

@@ -4,7 +4,8 @@
 #include <span>
 
 #include "skerry/problem.h"
-#include "systems/solver/solve_regions.h"
+#include "systems/solver/inputs/region_inputs.h"
+#include "systems/solver/inputs/solver_settings.h"
 
 namespace skerry {
 
@@ -16,9 +17,9 @@ struct StepContacts {
     std::span<const Index> region;        // by contact
 };
 
-/// W from stencils and inverse masses, q from the predicted velocity and the bias of the gap, both in contact frames: what solve_regions
-/// solves, but for friction coefficients that differ (mu is the dynamic one). Fills problem (but for its name and the start of its
-/// description), impulse, contact and region of the result.
+/// W from stencils and inverse masses, q from the predicted velocity and the bias of the gap, both in contact frames:
+/// what solve_regions solves, but for friction coefficients that differ (mu is the dynamic one). Fills problem (but for
+/// its name and the start of its description), impulse, contact and region of the result.
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h);
 
 }  // namespace skerry

@@ -28,7 +28,8 @@ CompressedColumns compress(const ContactProblem& problem) {
                 for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
                     for (int b = 0; b < 3; ++b)
                         if (const Real value = problem.block[k](a, b); value != 0)
-                            visit(static_cast<Index>(3 * i) + a, static_cast<std::size_t>(3 * problem.column[k] + b), value);
+                            visit(static_cast<Index>(3 * i) + a, static_cast<std::size_t>(3 * problem.column[k] + b),
+                                  value);
     };
     for_each_entry([&](Index, std::size_t column, Real) { ++w.begin[column + 1]; });
     for (std::size_t c = 0; c < 3 * contacts; ++c) w.begin[c + 1] += w.begin[c];
@@ -73,8 +74,12 @@ void put_solution(const ContactProblem& problem, std::span<const Vec3> reaction,
 void write_problem(const ContactProblem& problem, const std::filesystem::path& file, std::span<const Vec3> reaction) {
     check_arrays(problem);
     const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
-        Complaint{
-            .file = file.string(), .object = "problem " + problem.name, .field = field, .found = found, .expected = expected, .hint = {}}
+        Complaint{.file = file.string(),
+                  .object = "problem " + problem.name,
+                  .field = field,
+                  .found = found,
+                  .expected = expected,
+                  .hint = {}}
             .raise();
     };
     if (problem.q.empty()) refuse("q", "no contacts", "one at least");
@@ -87,8 +92,9 @@ void write_problem(const ContactProblem& problem, const std::filesystem::path& f
     image.put("/fclib_local/vectors/mu", problem.mu);
     image.put_text("/fclib_local/info/title", problem.name);
     image.put_text("/fclib_local/info/description", problem.description);
-    image.put_text("/fclib_local/info/math_info",
-                   "u = W r + q; by contact: normal, tangent 1, tangent 2; u in m/s, r in N s, W in 1/kg; Coulomb's law");
+    image.put_text(
+        "/fclib_local/info/math_info",
+        "u = W r + q; by contact: normal, tangent 1, tangent 2; u in m/s, r in N s, W in 1/kg; Coulomb's law");
     if (!reaction.empty()) put_solution(problem, reaction, image);
     const std::vector<char> bytes = image.bytes();
     write_file(file, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });

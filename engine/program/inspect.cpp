@@ -65,14 +65,15 @@ int inspect_mesh(const InspectOptions& options) {
         return exit_ok;
     }
     const Vec3 size = report.upper - report.lower;
-    std::cout << options.file.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, " << grouped(report.nodes) << " nodes, "
-              << grouped(report.boundary_triangles) << " boundary triangles\n"
-              << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x " << short_number(size.z())
-              << " m, volume " << short_number(report.volume) << " m^3\n"
-              << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m") << " to "
-              << with_unit(report.max_edge, "m") << "; smallest altitude " << with_unit(report.min_altitude, "m") << "\n"
-              << "  quality       mean " << short_number(report.mean_quality) << ", worst " << short_number(report.min_quality)
-              << " (1 is regular)\n"
+    std::cout << options.file.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, " << grouped(report.nodes)
+              << " nodes, " << grouped(report.boundary_triangles) << " boundary triangles\n"
+              << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
+              << short_number(size.z()) << " m, volume " << short_number(report.volume) << " m^3\n"
+              << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
+              << " to " << with_unit(report.max_edge, "m") << "; smallest altitude "
+              << with_unit(report.min_altitude, "m") << "\n"
+              << "  quality       mean " << short_number(report.mean_quality) << ", worst "
+              << short_number(report.min_quality) << " (1 is regular)\n"
               << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
               << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
     print_problems(problems);
@@ -133,12 +134,15 @@ SceneCost try_steps(World& world) {
 Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneCost& cost) {
     Problems problems;
     for (const BodyKindReport& kind : kinds)
-        for (const std::string& problem : problems_of(kind.mesh)) problems.push_back("body \"" + kind.first_name + "\": " + problem);
+        for (const std::string& problem : problems_of(kind.mesh))
+            problems.push_back("body \"" + kind.first_name + "\": " + problem);
     std::vector<BodyKindReport> by_step = kinds;
-    std::sort(by_step.begin(), by_step.end(), [](const auto& a, const auto& b) { return a.stable_step < b.stable_step; });
+    std::sort(by_step.begin(), by_step.end(),
+              [](const auto& a, const auto& b) { return a.stable_step < b.stable_step; });
     if (by_step.size() > 1 && by_step[1].stable_step > expensive_step_ratio * by_step[0].stable_step)
         problems.push_back("body \"" + by_step[0].first_name + "\" makes all steps " +
-                           short_number(by_step[1].stable_step / by_step[0].stable_step) + " times shorter than the others need");
+                           short_number(by_step[1].stable_step / by_step[0].stable_step) +
+                           " times shorter than the others need");
     if (cost.overlap > 0) problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " at the start");
     if (!cost.failure.empty()) problems.push_back("the first steps fail: " + cost.failure);
     return problems;
@@ -155,8 +159,10 @@ int inspect_scene(const InspectOptions& options) {
     if (options.json) {
         Json bodies = Json::array();
         for (const BodyKindReport& kind : kinds)
-            bodies.push_back(
-                {{"name", kind.first_name}, {"count", kind.count}, {"stable_dt", kind.stable_step}, {"mesh", mesh_json(kind.mesh)}});
+            bodies.push_back({{"name", kind.first_name},
+                              {"count", kind.count},
+                              {"stable_dt", kind.stable_step},
+                              {"mesh", mesh_json(kind.mesh)}});
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
                            {"description", scene.description},
@@ -176,16 +182,19 @@ int inspect_scene(const InspectOptions& options) {
         return exit_ok;
     }
     std::cout << scene.name << ": " << scene.description << "\n"
-              << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, " << grouped(report.elements)
-              << " tetrahedra, " << grouped(report.colliders) << " colliders\n"
+              << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
+              << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders\n"
               << "  step          " << with_unit(stable_step, "s") << " (" << report.stable_step_body << "), "
-              << grouped(static_cast<std::uint64_t>(scene.seconds / stable_step)) << " steps for " << short_number(scene.seconds) << " s\n"
-              << "  cost          about " << with_unit(cost.seconds_per_second, "s") << " a simulated second, as it starts\n"
+              << grouped(static_cast<std::uint64_t>(scene.seconds / stable_step)) << " steps for "
+              << short_number(scene.seconds) << " s\n"
+              << "  cost          about " << with_unit(cost.seconds_per_second, "s")
+              << " a simulated second, as it starts\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const BodyKindReport& kind : kinds)
-        std::cout << "  body          " << kind.first_name << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
-                  << grouped(kind.mesh.tetrahedra) << " tetrahedra, mean edge " << with_unit(kind.mesh.mean_edge, "m") << ", stable step "
-                  << with_unit(kind.stable_step, "s") << "\n";
+        std::cout << "  body          " << kind.first_name
+                  << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
+                  << grouped(kind.mesh.tetrahedra) << " tetrahedra, mean edge " << with_unit(kind.mesh.mean_edge, "m")
+                  << ", stable step " << with_unit(kind.stable_step, "s") << "\n";
     print_problems(problems);
     return exit_ok;
 }

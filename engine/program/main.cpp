@@ -28,7 +28,7 @@ const char* const run_examples = R"(Examples:
   skerry run scenes/bucket.json --contact-regions global --stats global.json     one region instead of many, to compare
   skerry run scenes/table.json --page table.html --frames-per-second 30
   skerry run scenes/bucket.json --export-problems problems --export-every 100    then: skerry solve problems/FILE
-  skerry run drop_27.json --threads 1 --quiet --stats drop.json                  a drop file is a scene, too)";
+  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      figures alone)";
 
 /// Numbers that make sense as a length, a time or a tolerance.
 const CLI::Validator positive_number(
@@ -56,7 +56,8 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target, const st
 }
 
 /// An option that stays unset unless given.
-CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Real>& target, const std::string& meaning) {
+CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Real>& target,
+                        const std::string& meaning) {
     return app
         .add_option_function<Real>(
             flag, [&target](const Real& value) { target = value; }, meaning)
@@ -70,46 +71,55 @@ void add_run(CLI::App& app, RunOptions& options) {
     add_number(command, "--seconds", options.seconds, "simulated time [s]; by default what the scene says");
     command
         .add_option_function<int>(
-            "--threads", [&options](const int& count) { options.overrides.threads = count; }, "worker threads; 0: as many as there are")
+            "--threads", [&options](const int& count) { options.overrides.threads = count; },
+            "worker threads; 0: as many as there are")
         ->check(CLI::Range(0, 1024));
     command.add_option("--out", options.out, "folder for ParaView frames (SCENE.pvd)");
     command.add_option("--page", options.page, "HTML file that plays the run in a browser, offline");
     command.add_option("--stats", options.stats, "JSON file with the figures of the run");
     command.add_option("--trace", options.trace, "file with what every thread did, for Perfetto or chrome://tracing");
-    command.add_option("--export-problems", options.problems, "folder for contact problems of steps, in FCLIB's HDF5 form (local)");
+    command.add_option("--export-problems", options.problems,
+                       "folder for contact problems of steps, in FCLIB's HDF5 form (local)");
     command
         .add_option_function<int>(
             "--export-every", [&options](const int& steps) { options.problems_every = steps; },
             "export every N-th step, if it has contacts; by default a 20th of the steps of the run")
         ->check(CLI::Range(1, 2147483647));
-    add_choice<ProblemsOf>(command, "--export-problems-of", options.problems_of, "a file holds a step (default), or one region of it");
+    add_choice<ProblemsOf>(command, "--export-problems-of", options.problems_of,
+                           "a file holds a step (default), or one region of it");
     add_number(command, "--frames-per-second", options.frames_per_second, "frames of output in a simulated second");
     add_choice<Backend>(command, "--backend", options.overrides.backend, "what runs the threads");
     add_number(command, "--step", options.overrides.step_size, "step size [s]; by default the stable step");
     add_choice<SolverMethod>(command, "--method", options.overrides.method, "contact solver");
     add_choice<Friction>(command, "--friction", options.overrides.friction, "friction law");
     add_number(command, "--tolerance", options.overrides.tolerance, "relative error of a region");
-    add_number(command, "--relaxation", options.overrides.relaxation, "of the sweeps, below 2; above 1 is over-relaxation");
-    add_choice<ContactRegions>(command, "--contact-regions", options.overrides.contact_regions, "how contacts are grouped");
+    add_number(command, "--relaxation", options.overrides.relaxation,
+               "of the sweeps, below 2; above 1 is over-relaxation");
+    add_choice<ContactRegions>(command, "--contact-regions", options.overrides.contact_regions,
+                               "how contacts are grouped");
     command.add_flag("--quiet", options.quiet, "no progress, no summary");
 }
 
 void add_solve(CLI::App& app, SolveOptions& options) {
     CLI::App& command = *app.add_subcommand("solve", "Solve a frictional contact problem on its own");
     command.footer("Example:\n  skerry solve Box_Stacks.hdf5 --tolerance 1e-8 --json --reactions reactions.txt");
-    command.add_option("PROBLEM", options.problem, "a problem in FCLIB's HDF5 form; a global one is condensed first")->required();
+    command.add_option("PROBLEM", options.problem, "a problem in FCLIB's HDF5 form; a global one is condensed first")
+        ->required();
     add_choice<SolverMethod>(command, "--method", options.settings.method, "contact solver");
     add_choice<Friction>(command, "--friction", options.settings.friction, "friction law");
-    command.add_option("--tolerance", options.settings.tolerance, "on the relative error, as FCLIB and Siconos measure it")
+    command
+        .add_option("--tolerance", options.settings.tolerance, "on the relative error, as FCLIB and Siconos measure it")
         ->check(positive_number)
         ->capture_default_str();
-    command.add_option("--relaxation", options.settings.relaxation, "of the sweeps, below 2; above 1 is over-relaxation")
+    command
+        .add_option("--relaxation", options.settings.relaxation, "of the sweeps, below 2; above 1 is over-relaxation")
         ->check(positive_number)
         ->capture_default_str();
     command.add_option("--max-iterations", options.settings.max_iterations, "sweeps of a region")
         ->check(CLI::Range(1, 2147483647))
         ->capture_default_str();
-    command.add_option("--reactions", options.reactions, "file for the reactions: one contact a line, normal and two tangents, 17 digits");
+    command.add_option("--reactions", options.reactions,
+                       "file for the reactions: one contact a line, normal and two tangents, 17 digits");
     command.add_flag("--json", options.json, "print JSON");
 }
 

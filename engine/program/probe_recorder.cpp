@@ -14,7 +14,8 @@ struct Sample {
 /// Whether one of the nodes that a contact presses on is inside.
 bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& inside) {
     for (std::size_t a = 0; a < 4; ++a) {
-        const bool ours = (contact.weight[a] > 0 && contact.first == body) || (contact.weight[a] < 0 && contact.second == body);
+        const bool ours =
+            (contact.weight[a] > 0 && contact.first == body) || (contact.weight[a] < 0 && contact.second == body);
         if (ours && inside[static_cast<std::size_t>(contact.node[a])] != 0) return true;
     }
     return false;
@@ -48,8 +49,11 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         const State state = closed == 0 ? State::open : (2 * sample.sliding >= closed ? State::slide : State::stick);
         states.push_back(state);
 
-        (state == State::open ? record.open_time : state == State::slide ? record.slide_time : record.stick_time) += seconds;
-        if (state != State::open && tracked.last_closed != State::open && state != tracked.last_closed) ++record.changes;
+        (state == State::open    ? record.open_time
+         : state == State::slide ? record.slide_time
+                                 : record.stick_time) += seconds;
+        if (state != State::open && tracked.last_closed != State::open && state != tracked.last_closed)
+            ++record.changes;
         if (state != State::open) tracked.last_closed = state;
         record.max_slip = std::max(record.max_slip, sample.slip);
         record.slip_distance += sample.slip * seconds;
@@ -59,19 +63,21 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         record.slip.push_back(sample.slip);
     }
     if (std::count(states.begin(), states.end(), State::slide) == 1)
-        records_[static_cast<std::size_t>(std::find(states.begin(), states.end(), State::slide) - states.begin())].slide_alone_time +=
-            seconds;
+        records_[static_cast<std::size_t>(std::find(states.begin(), states.end(), State::slide) - states.begin())]
+            .slide_alone_time += seconds;
 }
 
 Json to_json(const ProbeRecord& record) {
-    return {{"stick_time", record.stick_time},
-            {"slide_time", record.slide_time},
-            {"open_time", record.open_time},
-            {"slide_alone_time", record.slide_alone_time},
-            {"changes", record.changes},
-            {"max_slip", record.max_slip},
-            {"slip_distance", record.slip_distance},
-            {"series", {{"time", record.time}, {"sticking", record.sticking}, {"sliding", record.sliding}, {"slip", record.slip}}}};
+    return {
+        {"stick_time", record.stick_time},
+        {"slide_time", record.slide_time},
+        {"open_time", record.open_time},
+        {"slide_alone_time", record.slide_alone_time},
+        {"changes", record.changes},
+        {"max_slip", record.max_slip},
+        {"slip_distance", record.slip_distance},
+        {"series",
+         {{"time", record.time}, {"sticking", record.sticking}, {"sliding", record.sliding}, {"slip", record.slip}}}};
 }
 
 }  // namespace skerry

@@ -22,12 +22,14 @@ std::string numbered(const char* what, int digits, std::int64_t number) {
 /// Every how many of the steps about `file_count` of them come out.
 std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
-    return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));  // a run may be without end
+    // a run may be without end
+    return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 
 }  // namespace
 
-ProblemExport::ProblemExport(const RunOptions& options, std::string scene) : options_(options), scene_(std::move(scene)) {
+ProblemExport::ProblemExport(const RunOptions& options, std::string scene)
+    : options_(options), scene_(std::move(scene)) {
     if (!options.problems.empty() && (scene_.empty() || scene_.find_first_of("/\\") != std::string::npos))
         Complaint{.file = options.scene.string(),
                   .object = {},
@@ -62,7 +64,8 @@ void ProblemExport::write_step(const StepProblem& step) {
                 impulse.push_back(step.impulse[order[end].second]);
             }
             write(part_of(step.problem, contacts), step,
-                  name + numbered("contacts", 1, static_cast<std::int64_t>(contacts.size())) + numbered("region", 4, order[begin].first),
+                  name + numbered("contacts", 1, static_cast<std::int64_t>(contacts.size())) +
+                      numbered("region", 4, order[begin].first),
                   impulse);
         }
     }
@@ -70,10 +73,11 @@ void ProblemExport::write_step(const StepProblem& step) {
     seconds_ += watch.seconds();
 }
 
-void ProblemExport::write(ContactProblem problem, const StepProblem& step, const std::string& name, std::span<const Vec3> impulse) {
+void ProblemExport::write(ContactProblem problem, const StepProblem& step, const std::string& name,
+                          std::span<const Vec3> impulse) {
     char about[160];
-    std::snprintf(about, sizeof about, "step %llu at %.9g s, %.9g s long; ", static_cast<unsigned long long>(step.step), step.time,
-                  step.step_size);
+    std::snprintf(about, sizeof about, "step %llu at %.9g s, %.9g s long; ", static_cast<unsigned long long>(step.step),
+                  step.time, step.step_size);
     problem.name = name;
     problem.description = scene_ + ": " + about + problem.description;
     write_problem(problem, options_.problems / (name + ".hdf5"), impulse);

@@ -15,8 +15,8 @@ public:
     /// Throws SceneError when the scene's name is no file name.
     ProblemExport(const RunOptions& options, std::string scene);
 
-    /// Writes from now on, while the world advances; this must outlive that. Unless the options say so, every how many steps follows from
-    /// how many are to come.
+    /// Writes from now on, while the world advances; this must outlive that. Unless the options say so, every how many
+    /// steps follows from how many are to come.
     void watch(World& world, double steps_to_come);
     long files() const { return files_; }
     long steps() const { return steps_; }

@@ -27,10 +27,11 @@ void Progress::show(double time) {
     last_ = wall;
     const double share = time < seconds_ ? time / seconds_ : 1;
     const int filled = static_cast<int>(share * bar_width);
-    const std::string bar =
-        std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(bar_width - filled), '.');
+    const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                            std::string(static_cast<std::size_t>(bar_width - filled), '.');
     std::fprintf(stderr, "\r\033[K[%s] %3.0f %%  %.2f of %.4g s", bar.c_str(), 100 * share, time, seconds_);
-    if (share > 0 && wall > 0) std::fprintf(stderr, "  %.2f x real time  %.0f s left", time / wall, wall * (1 - share) / share);
+    if (share > 0 && wall > 0)
+        std::fprintf(stderr, "  %.2f x real time  %.0f s left", time / wall, wall * (1 - share) / share);
     std::fflush(stderr);
 }
 

@@ -41,7 +41,8 @@ private:
     struct sigaction old_interrupt_, old_terminate_;
 };
 
-const char* const advice = "on the command line: a smaller --step; `skerry inspect` shows the stable step of every body and what overlaps";
+const char* const advice =
+    "on the command line: a smaller --step; `skerry inspect` shows the stable step of every body and what overlaps";
 
 /// What is written while a run goes on.
 class FrameOutput {
@@ -81,7 +82,8 @@ struct Course {
 Course course_of(const RunOptions& options, const Scene& scene) {
     Course course{options.seconds.value_or(scene.seconds), scene.frame_step, 1};
     if (options.frames_per_second) course.frame_step = 1 / *options.frames_per_second;
-    if (!scene.probes.empty()) course.samples = std::max(1, static_cast<int>(std::lround(course.frame_step / scene.probe_step)));
+    if (!scene.probes.empty())
+        course.samples = std::max(1, static_cast<int>(std::lround(course.frame_step / scene.probe_step)));
     return course;
 }
 
@@ -125,16 +127,18 @@ void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool sh
     result.probes = probes.records();
 }
 
-void write_results(const RunOptions& options, const RunResult& result, const ProblemExport& problems, const World& world) {
-    if (!options.stats.empty()) write_file(options.stats, [&](std::ostream& out) { out << statistics_of(result).dump(1) << "\n"; });
+void write_results(const RunOptions& options, const RunResult& result, const ProblemExport& problems,
+                   const World& world) {
+    if (!options.stats.empty())
+        write_file(options.stats, [&](std::ostream& out) { out << statistics_of(result).dump(1) << "\n"; });
     if (!options.trace.empty()) write_file(options.trace, [&](std::ostream& out) { world.write_trace(out); });
     if (!options.quiet) {
         std::cout << summary_of(result);
         for (const auto* file : {&options.out, &options.page, &options.stats, &options.trace})
             if (!file->empty()) std::cout << "  wrote         " << file->string() << "\n";
         if (!options.problems.empty())
-            std::cout << "  wrote         " << problems.files() << " contact problems of " << problems.steps() << " steps to "
-                      << options.problems.string() << "\n";
+            std::cout << "  wrote         " << problems.files() << " contact problems of " << problems.steps()
+                      << " steps to " << options.problems.string() << "\n";
         std::cout.flush();
     }
 }
@@ -151,7 +155,8 @@ int run(const RunOptions& options) {
     result.scene_file = options.scene.string();
     result.settings = world.settings();
     result.threads = make_executor(world.settings().backend, world.settings().threads)->worker_count();
-    for (const BodyHandle body : world.bodies()) result.mean_edge += world.mean_edge(body) / static_cast<Real>(world.bodies().size());
+    for (const BodyHandle body : world.bodies())
+        result.mean_edge += world.mean_edge(body) / static_cast<Real>(world.bodies().size());
 
     for (const auto* folder : {&options.out, &options.problems})
         if (!folder->empty()) require_writable_folder(*folder);

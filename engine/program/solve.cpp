@@ -51,11 +51,14 @@ void print(const SolveOptions& options, const ContactProblem& problem, const Pro
     std::cout << problem.name << ": " << count(problem.contacts()) << " contacts in " << count(solution.regions)
               << " regions, the largest of " << count(solution.largest_region) << " contacts\n";
     if (problem.freedoms > 0)
-        std::cout << "  condensed     from a global problem of " << count(problem.freedoms) << " freedoms to its contacts\n";
-    std::cout << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction) << "\n"
+        std::cout << "  condensed     from a global problem of " << count(problem.freedoms)
+                  << " freedoms to its contacts\n";
+    std::cout << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction)
+              << "\n"
               << "  iterations    " << count(solution.iterations) << " in " << with_unit(solution.seconds, "s") << "\n"
-              << "  error         " << short_number(solution.error) << " of " << short_number(options.settings.tolerance) << " (absolute "
-              << short_number(solution.error_absolute) << ", over |q| " << short_number(solution.error_over_q) << ")\n"
+              << "  error         " << short_number(solution.error) << " of "
+              << short_number(options.settings.tolerance) << " (absolute " << short_number(solution.error_absolute)
+              << ", over |q| " << short_number(solution.error_over_q) << ")\n"
               << "  energy gap    " << with_unit(solution.energy_gap, "J") << "\n";
     if (!solution.converged) std::cout << "  not converged in " << count(solution.unconverged) << " regions\n";
 }

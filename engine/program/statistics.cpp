@@ -27,11 +27,13 @@ Json number_or_null(double value) {
 Json trust_of(const RunResult& result) {
     const WorldReport& r = result.report;
     return {
-        {"solver", {{"worst_error", r.worst_error}, {"tolerance", result.settings.tolerance}, {"unconverged", r.unconverged}}},
+        {"solver",
+         {{"worst_error", r.worst_error}, {"tolerance", result.settings.tolerance}, {"unconverged", r.unconverged}}},
         {"energy", {{"error", r.energy_error}, {"share", r.energy_error_share}, {"steps", r.balanced_steps}}},
         {"momentum", {{"error", number_or_null(r.momentum_error)}, {"share", number_or_null(r.momentum_error_share)}}},
         {"penetration",
-         {{"largest", r.max_penetration}, {"of_mean_edge", result.mean_edge > 0 ? r.max_penetration / result.mean_edge : 0}}},
+         {{"largest", r.max_penetration},
+          {"of_mean_edge", result.mean_edge > 0 ? r.max_penetration / result.mean_edge : 0}}},
         {"elements",
          {{"smallest_volume_ratio", r.worst_volume_ratio},
           {"body", r.worst_volume_body},
@@ -50,25 +52,28 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     std::vector<std::string> doubts;
     constexpr double small_share = 0.05;  // of the energy: quick scenes at the stable step stay below it
     if (r.unconverged > 0)
-        doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) + " contact regions ended above the tolerance, the worst at " +
-                         short_number(r.worst_error) + ": raise max_iterations");
+        doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
+                         " contact regions ended above the tolerance, the worst at " + short_number(r.worst_error) +
+                         ": raise max_iterations");
     if (r.energy_error_share > small_share)
-        doubts.push_back("energy does not add up by " + short_number(100 * r.energy_error_share) + " %: shorten the step (step_safety)");
+        doubts.push_back("energy does not add up by " + short_number(100 * r.energy_error_share) +
+                         " %: shorten the step (step_safety)");
     constexpr double rounding = 1e-9;  // sums of millions of terms stay far below
     if (r.momentum_error_share > rounding)
         doubts.push_back("momentum does not add up by " + short_number(100 * r.momentum_error_share) + " %");
     if (r.crossed > 0) doubts.push_back(grouped(r.crossed) + " features went through each other");
     constexpr double visible = 0.05;
     if (result.mean_edge > 0 && r.max_penetration > visible * result.mean_edge)
-        doubts.push_back("surfaces overlapped by " + short_number(100 * r.max_penetration / result.mean_edge) + " % of the mean edge");
+        doubts.push_back("surfaces overlapped by " + short_number(100 * r.max_penetration / result.mean_edge) +
+                         " % of the mean edge");
     if (r.inverted > 0)
-        doubts.push_back(std::to_string(r.inverted) + " elements are inverted, the worst in " + r.worst_volume_body + ", element " +
-                         std::to_string(r.worst_volume_element));
+        doubts.push_back(std::to_string(r.inverted) + " elements are inverted, the worst in " + r.worst_volume_body +
+                         ", element " + std::to_string(r.worst_volume_element));
     else if (r.inversions > 0)
         doubts.push_back(grouped(r.inversions) + " times an element was inverted for some steps");
     else if (r.near_inversion > 0)
-        doubts.push_back(std::to_string(r.near_inversion) + " elements are near inversion, the worst in " + r.worst_volume_body +
-                         ", element " + std::to_string(r.worst_volume_element));
+        doubts.push_back(std::to_string(r.near_inversion) + " elements are near inversion, the worst in " +
+                         r.worst_volume_body + ", element " + std::to_string(r.worst_volume_element));
     return doubts;
 }
 

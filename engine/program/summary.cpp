@@ -22,19 +22,24 @@ std::string percent(double share) {
 
 std::string solver_lines(const RunResult& result) {
     const WorldReport& r = result.report;
-    const std::string method = std::string(name_of(result.settings.method)) + ", " + std::string(name_of(result.settings.friction)) + ", " +
+    const std::string method = std::string(name_of(result.settings.method)) + ", " +
+                               std::string(name_of(result.settings.friction)) + ", " +
                                std::string(name_of(result.settings.contact_regions)) + " regions";
-    std::string text =
-        line("contacts", "mean " + short_number(r.mean_contacts, 4) + ", most " + grouped(static_cast<std::uint64_t>(r.max_contacts)));
-    text += line("regions", "mean " + short_number(r.mean_regions, 4) + ", most " + grouped(static_cast<std::uint64_t>(r.max_regions)) +
-                                ", the largest of " + grouped(static_cast<std::uint64_t>(r.largest_region)) + " contacts");
+    std::string text = line("contacts", "mean " + short_number(r.mean_contacts, 4) + ", most " +
+                                            grouped(static_cast<std::uint64_t>(r.max_contacts)));
+    text += line("regions", "mean " + short_number(r.mean_regions, 4) + ", most " +
+                                grouped(static_cast<std::uint64_t>(r.max_regions)) + ", the largest of " +
+                                grouped(static_cast<std::uint64_t>(r.largest_region)) + " contacts");
     text += line("solver", method + ": " + short_number(r.mean_iterations) + " sweeps a region, worst error " +
-                               short_number(r.worst_error) + " (a region of " + grouped(static_cast<std::uint64_t>(r.worst_region)) +
-                               " contacts), " + grouped(r.unconverged) + " regions not converged");
+                               short_number(r.worst_error) + " (a region of " +
+                               grouped(static_cast<std::uint64_t>(r.worst_region)) + " contacts), " +
+                               grouped(r.unconverged) + " regions not converged");
     if (r.solved > 0)
         text += line("", grouped(r.solved) + " regions solved, " +
-                             percent(static_cast<double>(r.closed_form) / static_cast<double>(r.solved)) + " in closed form, " +
-                             percent(static_cast<double>(r.certified) / static_cast<double>(r.solved)) + " by the warm start alone");
+                             percent(static_cast<double>(r.closed_form) / static_cast<double>(r.solved)) +
+                             " in closed form, " +
+                             percent(static_cast<double>(r.certified) / static_cast<double>(r.solved)) +
+                             " by the warm start alone");
     return text;
 }
 
@@ -58,7 +63,8 @@ std::string stage_table(const RunResult& result) {
     for (const StageReport& stage : result.report.stages) {
         char numbers[96];
         std::snprintf(numbers, sizeof numbers, "%6.1f %%  %10s  %9" PRIu64 " runs  %9" PRIu64 " skipped",
-                      total > 0 ? 100 * stage.seconds / total : 0, with_unit(stage.seconds, "s").c_str(), stage.runs, stage.skipped);
+                      total > 0 ? 100 * stage.seconds / total : 0, with_unit(stage.seconds, "s").c_str(), stage.runs,
+                      stage.skipped);
         text += "    " + stage.name + std::string(width - stage.name.size() + 2, ' ') + numbers + "\n";
     }
     return text;
@@ -68,19 +74,21 @@ std::string probe_lines(const RunResult& result) {
     std::string text;
     for (const ProbeRecord& probe : result.probes)
         text += line(text.empty() ? "probes" : "",
-                     probe.name + ": sticks " + with_unit(probe.stick_time, "s") + ", slides " + with_unit(probe.slide_time, "s") + " (" +
-                         with_unit(probe.slide_alone_time, "s") + " of it alone), off " + with_unit(probe.open_time, "s") + ", changes " +
-                         std::to_string(probe.changes) + " times, slips " + with_unit(probe.slip_distance, "m") + ", at most " +
-                         with_unit(probe.max_slip, "m/s"));
+                     probe.name + ": sticks " + with_unit(probe.stick_time, "s") + ", slides " +
+                         with_unit(probe.slide_time, "s") + " (" + with_unit(probe.slide_alone_time, "s") +
+                         " of it alone), off " + with_unit(probe.open_time, "s") + ", changes " +
+                         std::to_string(probe.changes) + " times, slips " + with_unit(probe.slip_distance, "m") +
+                         ", at most " + with_unit(probe.max_slip, "m/s"));
     return text;
 }
 
 /// How far energy and momentum add up, and what speaks against relying on the run.
 std::string trust_lines(const RunResult& result) {
     const WorldReport& r = result.report;
-    std::string text = line("balance", "energy adds up to " + percent(r.energy_error_share) + " (" + with_unit(r.energy_error, "J") + ")" +
-                                           (std::isnan(r.momentum_error) ? ", momentum not known: a body that is damped is held"
-                                                                         : ", momentum to " + percent(r.momentum_error_share)));
+    std::string text = line(
+        "balance", "energy adds up to " + percent(r.energy_error_share) + " (" + with_unit(r.energy_error, "J") + ")" +
+                       (std::isnan(r.momentum_error) ? ", momentum not known: a body that is damped is held"
+                                                     : ", momentum to " + percent(r.momentum_error_share)));
     for (const std::string& doubt : doubts_of(result)) text += line("DOUBT", doubt);
     return text;
 }
@@ -90,28 +98,36 @@ std::string trust_lines(const RunResult& result) {
 std::string summary_of(const RunResult& result) {
     const WorldReport& r = result.report;
     const double wall = result.seconds_wall;
-    std::string text = result.scene + ": " + short_number(result.seconds_simulated, 4) + " s simulated in " + with_unit(wall, "s");
+    std::string text =
+        result.scene + ": " + short_number(result.seconds_simulated, 4) + " s simulated in " + with_unit(wall, "s");
     if (wall > 0) text += ", " + short_number(result.seconds_simulated / wall) + " times real time";
     text += "\n";
     text += line("status", result.status);
-    text += line("threads", std::to_string(result.threads) + " (" + std::string(name_of(result.settings.backend)) + ")");
-    text += line("bodies", grouped(r.bodies) + ", " + grouped(r.nodes) + " nodes, " + grouped(r.elements) + " tetrahedra, " +
-                               grouped(r.colliders) + " colliders" + (r.asleep > 0 ? ", " + grouped(r.asleep) + " at rest" : ""));
+    text +=
+        line("threads", std::to_string(result.threads) + " (" + std::string(name_of(result.settings.backend)) + ")");
+    text += line("bodies", grouped(r.bodies) + ", " + grouped(r.nodes) + " nodes, " + grouped(r.elements) +
+                               " tetrahedra, " + grouped(r.colliders) + " colliders" +
+                               (r.asleep > 0 ? ", " + grouped(r.asleep) + " at rest" : ""));
     if (r.steps > 0)
-        text += line("steps", grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
-                                  ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
-                                  (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : "") +
-                                  (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : "") +
-                                  (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long" : ""));
+        text +=
+            line("steps",
+                 grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
+                     ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
+                     (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : "") +
+                     (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : "") +
+                     (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long"
+                                    : ""));
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
-    text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " + with_unit(result.peak_kinetic_energy, "J") +
-                               "), elastic " + with_unit(r.energy.elastic, "J") + ", potential " + with_unit(r.energy.potential, "J") +
+    text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " +
+                               with_unit(result.peak_kinetic_energy, "J") + "), elastic " +
+                               with_unit(r.energy.elastic, "J") + ", potential " + with_unit(r.energy.potential, "J") +
                                ", dissipated " + with_unit(r.energy.dissipated, "J"));
-    text +=
-        line("penetration", short_number(1e3 * r.max_penetration) + " mm" +
-                                (result.mean_edge > 0 ? " (" + percent(r.max_penetration / result.mean_edge) + " of the mean edge)" : "") +
-                                ", into the contact shell " + short_number(1e3 * r.max_gap_violation) + " mm");
+    text += line(
+        "penetration",
+        short_number(1e3 * r.max_penetration) + " mm" +
+            (result.mean_edge > 0 ? " (" + percent(r.max_penetration / result.mean_edge) + " of the mean edge)" : "") +
+            ", into the contact shell " + short_number(1e3 * r.max_gap_violation) + " mm");
     text += line("elements", "smallest volume ratio " + short_number(r.worst_volume_ratio) +
                                  (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")"));
     text += trust_lines(result);

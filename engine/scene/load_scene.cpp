@@ -16,7 +16,8 @@ Scene build_scene(const ScenePlan& plan) {
 
     std::vector<MaterialHandle> materials;
     for (const auto& [name, material] : plan.materials)
-        materials.push_back(called_at(top.key("materials").key(name), [&, &settings = material] { return world.add_material(settings); }));
+        materials.push_back(called_at(top.key("materials").key(name),
+                                      [&, &settings = material] { return world.add_material(settings); }));
     std::vector<BodyHandle> bodies;
     for (const BodyPlan& body : plan.bodies) {
         BodySettings settings = body.settings;

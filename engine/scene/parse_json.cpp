@@ -30,7 +30,8 @@ public:
 
     bool key(string_t& name) override {
         if (open_.back().value->contains(name))
-            here().refuse("the key " + in_quotes(name) + " twice", "every key once", "which of the two counts would be a guess");
+            here().refuse("the key " + in_quotes(name) + " twice", "every key once",
+                          "which of the two counts would be a guess");
         open_.back().key = name;
         return true;
     }
@@ -41,7 +42,8 @@ public:
         std::string hint;
         if (token.find('/') != std::string::npos || token.find('#') != std::string::npos)
             hint = "comments are not JSON: scenes have \"description\" keys";
-        else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos || token.find("I") == token.size() - 1)
+        else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos ||
+                 token.find("I") == token.size() - 1)
             hint = "JSON has no NaN and no Infinity";
         throw SceneError(file_.string() + ": " + line_and_column(position) + ": not valid JSON: " + reason(what) +
                          (hint.empty() ? "" : " (" + hint + ")"));
@@ -80,7 +82,8 @@ private:
     bool open(Json value) {
         // scenes need fewer than ten; what walks values by recursion would use up the stack on a file of brackets
         constexpr std::size_t deepest = 100;
-        if (open_.size() == deepest) Place(file_).refuse("lists and objects more than " + std::to_string(deepest) + " deep", "a scene");
+        if (open_.size() == deepest)
+            Place(file_).refuse("lists and objects more than " + std::to_string(deepest) + " deep", "a scene");
         open_.push_back({put(std::move(value)), {}});
         return true;
     }
@@ -124,10 +127,13 @@ Json parse_json(const std::string& text, const std::filesystem::path& file) {
 
 Json read_json(const std::filesystem::path& file) {
     std::error_code error;
-    if (!std::filesystem::exists(file, error)) Complaint{file.string(), {}, {}, "no such file", "a scene in JSON", {}}.raise();
-    if (std::filesystem::is_directory(file, error)) Complaint{file.string(), {}, {}, "a folder", "a scene in JSON", {}}.raise();
+    if (!std::filesystem::exists(file, error))
+        Complaint{file.string(), {}, {}, "no such file", "a scene in JSON", {}}.raise();
+    if (std::filesystem::is_directory(file, error))
+        Complaint{file.string(), {}, {}, "a folder", "a scene in JSON", {}}.raise();
     // such as /dev/zero, which has no end; a pipe has one
-    if (std::filesystem::is_character_file(file, error)) Complaint{file.string(), {}, {}, "a device", "a scene in JSON", {}}.raise();
+    if (std::filesystem::is_character_file(file, error))
+        Complaint{file.string(), {}, {}, "a device", "a scene in JSON", {}}.raise();
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();

@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Parses plain JSON (RFC 8259): comments, trailing commas, keys given twice and numbers that are not finite are refused. Throws
-/// SceneError with line and column.
+/// Parses plain JSON (RFC 8259): comments, trailing commas, keys given twice and numbers that are not finite are
+/// refused. Throws SceneError with line and column.
 Json parse_json(const std::string& text, const std::filesystem::path& file);
 
 /// Reads and parses a file. Throws SceneError.

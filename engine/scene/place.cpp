@@ -17,7 +17,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
             const auto same = [](char x, char y) {
                 return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
             };
-            cost[i][j] = std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same(a[i - 1], b[j - 1]) ? 0u : 1u)});
+            cost[i][j] = std::min(
+                {cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same(a[i - 1], b[j - 1]) ? 0u : 1u)});
             if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
                 cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
         }
@@ -25,8 +26,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 bool is_plain_name(std::string_view name) {
-    return !name.empty() && std::all_of(name.begin(), name.end(),
-                                        [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; });
+    return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+    });
 }
 
 }  // namespace
@@ -74,8 +76,10 @@ std::string described(const Json& value) {
     constexpr std::size_t longest = 60;  // characters of a value that a message repeats
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (value.is_object())
-        return text.size() <= longest ? "the object " + text : "an object with " + std::to_string(value.size()) + " keys";
-    if (value.is_array()) return text.size() <= longest ? "the list " + text : "a list of " + std::to_string(value.size()) + " values";
+        return text.size() <= longest ? "the object " + text
+                                      : "an object with " + std::to_string(value.size()) + " keys";
+    if (value.is_array())
+        return text.size() <= longest ? "the list " + text : "a list of " + std::to_string(value.size()) + " values";
     const std::string shown = text.size() <= longest ? text : text.substr(0, longest) + "...";
     if (value.is_string()) return "the text " + shown;
     if (value.is_number()) return "the number " + shown;
@@ -83,8 +87,9 @@ std::string described(const Json& value) {
 }
 
 std::string nearest_name(std::string_view text, std::span<const std::string> names) {
-    const auto nearest = std::min_element(names.begin(), names.end(),
-                                          [&](const auto& a, const auto& b) { return edit_distance(text, a) < edit_distance(text, b); });
+    const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
+        return edit_distance(text, a) < edit_distance(text, b);
+    });
     return nearest == names.end() ? std::string() : *nearest;
 }
 

@@ -56,7 +56,8 @@ std::string in_quotes(std::string_view text);
 std::string listed(std::span<const std::string> names);
 /// A value as a message calls it: the text "x", the number 3, a list of 2 values, ...
 std::string described(const Json& value);
-/// The name that `text` was probably meant to be: the fewest changed, missing, added or swapped letters. Empty without names.
+/// The name that `text` was probably meant to be: the fewest changed, missing, added or swapped letters. Empty without
+/// names.
 std::string nearest_name(std::string_view text, std::span<const std::string> names);
 /// A hint with the nearest name, or nothing when there are no names.
 std::string nearest_hint(std::string_view text, std::span<const std::string> names);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "components/split_mix.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_plan.h"
 
@@ -11,7 +12,8 @@ namespace {
 Mesh make_shape(const MeshEntry& entry) {
     if (entry.box) return mesh::box(entry.box->size, entry.box->cells);
     if (entry.ball) return mesh::ball(entry.ball->radius, entry.ball->resolution);
-    if (entry.cylinder) return mesh::cylinder(entry.cylinder->radius, entry.cylinder->height, entry.cylinder->resolution);
+    if (entry.cylinder)
+        return mesh::cylinder(entry.cylinder->radius, entry.cylinder->height, entry.cylinder->resolution);
     if (entry.lathe) return mesh::lathe(entry.lathe->profile, entry.lathe->resolution);
     if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
     if (entry.table) return mesh::table(*entry.table);
@@ -52,7 +54,8 @@ std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Plac
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
         if ((mesh.nodes[i].array() >= box.lower.array()).all() && (mesh.nodes[i].array() <= box.upper.array()).all())
             inside.push_back(static_cast<Index>(i));
-    if (inside.empty()) place.key("box").refuse("a box without any node", "a box around nodes of the mesh, in the mesh's own frame");
+    if (inside.empty())
+        place.key("box").refuse("a box without any node", "a box around nodes of the mesh, in the mesh's own frame");
     return inside;
 }
 
@@ -66,7 +69,8 @@ PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
     for (std::size_t i = 0; i < entry.nodes.size(); ++i) {
         const Place place = entry.place.key("nodes").item(i);
         if (static_cast<std::size_t>(entry.nodes[i]) >= mesh.nodes.size())
-            place.refuse("node " + std::to_string(entry.nodes[i]), "a node number below " + std::to_string(mesh.nodes.size()));
+            place.refuse("node " + std::to_string(entry.nodes[i]),
+                         "a node number below " + std::to_string(mesh.nodes.size()));
         if (std::find(pin.nodes.begin(), pin.nodes.end(), entry.nodes[i]) != pin.nodes.end())
             place.refuse("node " + std::to_string(entry.nodes[i]) + " again", "every node once");
         pin.nodes.push_back(entry.nodes[i]);
@@ -74,39 +78,22 @@ PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
     return pin;
 }
 
-/// Numbers that are the same everywhere (splitmix64, Steele et al. 2014); std distributions differ between libraries.
-class Jitter {
-public:
-    explicit Jitter(int seed) : state_(static_cast<std::uint64_t>(seed)) {}
-    /// In [-1, 1).
-    Real next() {
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-        return static_cast<Real>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-    }
-
-private:
-    std::uint64_t state_;
-};
-
-std::vector<Placement> placements_of(const BodyEntry& entry) {
-    if (!entry.placements.empty()) return entry.placements;
-    std::vector<Placement> placements;
-    for (const Vec3& position : entry.positions) placements.push_back({position, entry.rotation});
+/// Where the copies of a body are put.
+std::vector<Vec3> positions_of(const BodyEntry& entry) {
+    std::vector<Vec3> positions = entry.positions;
     if (entry.repeat) {
         const RepeatEntry& grid = *entry.repeat;
-        Jitter jitter(grid.seed);
+        SplitMix random(static_cast<std::uint64_t>(grid.seed));
         for (int k = 0; k < grid.count[2]; ++k)
             for (int j = 0; j < grid.count[1]; ++j)
                 for (int i = 0; i < grid.count[0]; ++i) {
                     Vec3 position = entry.position + grid.spacing.cwiseProduct(Vec3(i, j, k));
-                    for (Index axis = 0; axis < 3; ++axis) position[axis] += grid.jitter * jitter.next();
-                    placements.push_back({position, entry.rotation});
+                    for (Index axis = 0; axis < 3; ++axis) position[axis] += grid.jitter * random.symmetric();
+                    positions.push_back(position);
                 }
     }
-    if (placements.empty()) placements.push_back({entry.position, entry.rotation});
-    return placements;
+    if (positions.empty()) positions.push_back(entry.position);
+    return positions;
 }
 
 std::size_t find_material(const ScenePlan& plan, const BodyEntry& entry) {
@@ -116,7 +103,8 @@ std::size_t find_material(const ScenePlan& plan, const BodyEntry& entry) {
     if (found == names.end())
         entry.place.key("material")
             .refuse(in_quotes(entry.material),
-                    names.empty() ? "one of the materials, but the scene has none" : "one of the materials " + listed(names),
+                    names.empty() ? "one of the materials, but the scene has none"
+                                  : "one of the materials " + listed(names),
                     nearest_hint(entry.material, names));
     return static_cast<std::size_t>(found - names.begin());
 }
@@ -128,12 +116,12 @@ void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
     for (const PinEntry& pin : entry.pin.items) pins.push_back(plan_pin(pin, mesh));
 
     const std::string name = entry.name.empty() ? "body_" + std::to_string(number) : entry.name;
-    const bool copies = entry.repeat || !entry.positions.empty() || !entry.placements.empty();
-    const std::vector<Placement> placements = placements_of(entry);
-    for (std::size_t copy = 0; copy < placements.size(); ++copy) {
+    const bool copies = entry.repeat || !entry.positions.empty();
+    const std::vector<Vec3> positions = positions_of(entry);
+    for (std::size_t copy = 0; copy < positions.size(); ++copy) {
         BodyPlan body;
-        body.settings.position = placements[copy].position;
-        body.settings.rotation = placements[copy].rotation.value;
+        body.settings.position = positions[copy];
+        body.settings.rotation = entry.rotation.value;
         body.settings.velocity = entry.velocity;
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
@@ -145,7 +133,8 @@ void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
         body.place = entry.place;
         for (const BodyPlan& other : plan.bodies)
             if (other.settings.name == body.settings.name)
-                entry.place.key("name").refuse(in_quotes(body.settings.name) + " again", "a name of its own for every body");
+                entry.place.key("name").refuse(in_quotes(body.settings.name) + " again",
+                                               "a name of its own for every body");
         plan.bodies.push_back(std::move(body));
     }
 }
@@ -170,9 +159,11 @@ ProbePlan plan_probe(const ProbeEntry& entry, const ScenePlan& plan) {
     std::vector<std::string> names;
     for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
     const auto found = std::find(names.begin(), names.end(), entry.body);
-    if (found == names.end()) entry.place.key("body").refuse(in_quotes(entry.body), "the name of a body", nearest_hint(entry.body, names));
+    if (found == names.end())
+        entry.place.key("body").refuse(in_quotes(entry.body), "the name of a body", nearest_hint(entry.body, names));
     for (const ProbePlan& other : plan.probes)
-        if (other.name == entry.name) entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a name of its own for every probe");
+        if (other.name == entry.name)
+            entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a name of its own for every probe");
     const auto body = static_cast<std::size_t>(found - names.begin());
     return {entry.name, body, nodes_inside(plan.meshes[plan.bodies[body].mesh], entry.box, entry.place)};
 }
@@ -203,7 +194,8 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, plan);
-    for (std::size_t i = 0; i < scene.colliders.size(); ++i) plan.colliders.push_back(plan_collider(scene.colliders[i], i));
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i)
+        plan.colliders.push_back(plan_collider(scene.colliders[i], i));
     for (const ProbeEntry& probe : scene.probes) plan.probes.push_back(plan_probe(probe, plan));
     return plan;
 }

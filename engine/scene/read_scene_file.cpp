@@ -1,5 +1,4 @@
 #include "engine/scene/parse_json.h"
-#include "engine/scene/peer_drop.h"
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {
@@ -10,7 +9,6 @@ namespace {
 void read_into(SceneFile& scene, const std::filesystem::path& file, std::vector<std::filesystem::path>& open) {
     const Json json = read_json(file);
     const Place place(file);
-    if (is_drop_file(json)) return read_drop_file(json, place, scene);
 
     // A first reading for what it includes; a second one on top of that.
     SceneFile own;

@@ -1,4 +1,5 @@
-// The keys of an object in a scene file, described once. Reading, the check for unknown keys and the schema all come from that description.
+// The keys of an object in a scene file, described once. Reading, the check for unknown keys and the schema all come
+// from that description.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +40,8 @@ struct KeyDoc {
 /// Definitions of a schema, by name, in the order met.
 using SchemaBook = Json;
 
-/// How a C++ type is read from JSON and described in a schema. Specialised in values.h; anything else is an object that has a Rule.
+/// How a C++ type is read from JSON and described in a schema. Specialised in values.h; anything else is an object that
+/// has a Rule.
 template <class T>
 struct Value;
 
@@ -58,10 +60,11 @@ public:
 
     template <class V>
     Rule& key(std::string name, V T::*member, KeyDoc doc) {
-        keys_.push_back(
-            {std::move(name), doc,
-             [member, doc](const Json& json, const Place& place, T& object) { Value<V>::read(json, place, doc, object.*member); },
-             [doc](SchemaBook& book) { return Value<V>::schema(book, doc); }});
+        keys_.push_back({std::move(name), doc,
+                         [member, doc](const Json& json, const Place& place, T& object) {
+                             Value<V>::read(json, place, doc, object.*member);
+                         },
+                         [doc](SchemaBook& book) { return Value<V>::schema(book, doc); }});
         return *this;
     }
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }
@@ -90,8 +93,9 @@ private:
         return *this;
     }
     const Key* find(const std::string& name) const {
-        const auto key = std::find_if(keys_.begin(), keys_.end(),
-                                      [&](const Key& k) { return k.name == name || (!k.doc.alias.empty() && k.doc.alias == name); });
+        const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const Key& k) {
+            return k.name == name || (!k.doc.alias.empty() && k.doc.alias == name);
+        });
         return key == keys_.end() ? nullptr : &*key;
     }
     std::vector<std::string> known_names() const {
@@ -130,7 +134,8 @@ void Rule<T>::read(const Json& json, const Place& outer, T& object) const {
             place.key(name).refuse("an unknown key", "one of " + listed(names), nearest_hint(name, names));
         }
         if (std::find(seen.begin(), seen.end(), key->name) != seen.end())
-            place.key(name).refuse("both " + in_quotes(key->name) + " and " + in_quotes(key->doc.alias), "one of them: they mean the same");
+            place.key(name).refuse("both " + in_quotes(key->name) + " and " + in_quotes(key->doc.alias),
+                                   "one of them: they mean the same");
         seen.push_back(key->name);
     }
     for (const Key& key : keys_)
@@ -156,8 +161,8 @@ Json Rule<T>::schema(SchemaBook& book) const {
         if (!key.doc.alias.empty()) {
             property["description"] = "The same as " + key.name + ".";
             properties[key.doc.alias] = property;
-            all.push_back(
-                group_schema({key.doc.required ? KeyGroup::Kind::exactly_one : KeyGroup::Kind::at_most_one, {key.name, key.doc.alias}}));
+            all.push_back(group_schema({key.doc.required ? KeyGroup::Kind::exactly_one : KeyGroup::Kind::at_most_one,
+                                        {key.name, key.doc.alias}}));
         } else if (key.doc.required) {
             required.push_back(key.name);
         }

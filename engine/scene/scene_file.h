@@ -73,11 +73,6 @@ struct RepeatEntry {
     Real jitter = 0;              // m
     int seed = 1;
 };
-/// Where one copy of a body is put.
-struct Placement {
-    Vec3 position = Vec3::Zero();
-    Rotation rotation;
-};
 struct BodyEntry {
     std::string name;
     MeshEntry mesh;
@@ -86,7 +81,6 @@ struct BodyEntry {
     Rotation rotation;
     std::vector<Vec3> positions;
     std::optional<RepeatEntry> repeat;
-    std::vector<Placement> placements;  // of a drop file
     Vec3 velocity = Vec3::Zero();
     Vec3 angular_velocity = Vec3::Zero();
     std::optional<Real> contact_distance;
@@ -136,7 +130,7 @@ struct SceneFile {
     std::optional<Real> probe_step;
 };
 
-/// Reads a scene file or a drop file, with all that it includes. Throws SceneError.
+/// Reads a scene file, with all that it includes. Throws SceneError.
 SceneFile read_scene_file(const std::filesystem::path& file);
 
 }  // namespace skerry

@@ -7,29 +7,36 @@ namespace skerry {
 
 template <>
 const Rule<PinEntry>& rule_of<PinEntry>() {
-    static const auto rule = Rule<PinEntry>("pin", "Nodes of a body that stand still or follow a motion.")
-                                 .key("box", &PinEntry::box, {.meaning = "the nodes inside, in the mesh's own frame"})
-                                 .key("nodes", &PinEntry::nodes, {.meaning = "node numbers, from 0", .limits = at_least(0)})
-                                 .key("motion", &PinEntry::motion, {.meaning = "how they move; by default they do not"})
-                                 .key("pivot", &PinEntry::pivot, {.meaning = "the point that the motion turns about", .unit = "m"})
-                                 .exactly_one({"box", "nodes"});
+    static const auto rule =
+        Rule<PinEntry>("pin", "Nodes of a body that stand still or follow a motion.")
+            .key("box", &PinEntry::box, {.meaning = "the nodes inside, in the mesh's own frame"})
+            .key("nodes", &PinEntry::nodes, {.meaning = "node numbers, from 0", .limits = at_least(0)})
+            .key("motion", &PinEntry::motion, {.meaning = "how they move; by default they do not"})
+            .key("pivot", &PinEntry::pivot, {.meaning = "the point that the motion turns about", .unit = "m"})
+            .exactly_one({"box", "nodes"});
     return rule;
 }
 
 template <>
 const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
     static const auto rule =
-        Rule<RepeatEntry>("repeat", "Copies in a grid that starts at the body's position; they are called NAME_0, NAME_1, ..., x first.")
-            .key("count", &RepeatEntry::count, {.meaning = "copies along x, y and z", .limits = within(1, 1000), .required = true})
+        Rule<RepeatEntry>(
+            "repeat",
+            "Copies in a grid that starts at the body's position; they are called NAME_0, NAME_1, ..., x first.")
+            .key("count", &RepeatEntry::count,
+                 {.meaning = "copies along x, y and z", .limits = within(1, 1000), .required = true})
             .key("spacing", &RepeatEntry::spacing, {.meaning = "between copies", .unit = "m", .required = true})
-            .key("jitter", &RepeatEntry::jitter, {.meaning = "largest random shift along each axis", .unit = "m", .limits = at_least(0)})
-            .key("seed", &RepeatEntry::seed, {.meaning = "of the shifts; the same seed gives the same scene", .limits = at_least(0)})
+            .key("jitter", &RepeatEntry::jitter,
+                 {.meaning = "largest random shift along each axis", .unit = "m", .limits = at_least(0)})
+            .key("seed", &RepeatEntry::seed,
+                 {.meaning = "of the shifts; the same seed gives the same scene", .limits = at_least(0)})
             .check([](const Place& place, const RepeatEntry& grid) {
                 // more would not fit into any memory; a typing mistake is likelier
                 constexpr std::int64_t most_copies = 1000000;
                 const std::int64_t copies = std::int64_t{1} * grid.count[0] * grid.count[1] * grid.count[2];
                 if (copies > most_copies)
-                    place.key("count").refuse(std::to_string(copies) + " copies", "at most " + std::to_string(most_copies) + " in all");
+                    place.key("count").refuse(std::to_string(copies) + " copies",
+                                              "at most " + std::to_string(most_copies) + " in all");
             });
     return rule;
 }
@@ -47,9 +54,12 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                  {.meaning = "several positions: one copy at each, called NAME_0, NAME_1, ...", .unit = "m"})
             .key("repeat", &BodyEntry::repeat, {.meaning = "copies in a grid"})
             .key("velocity", &BodyEntry::velocity, {.meaning = "at the start", .unit = "m/s"})
-            .key("angular_velocity", &BodyEntry::angular_velocity, {.meaning = "at the start, about the centre of mass", .unit = "rad/s"})
+            .key("angular_velocity", &BodyEntry::angular_velocity,
+                 {.meaning = "at the start, about the centre of mass", .unit = "rad/s"})
             .key("contact_distance", &BodyEntry::contact_distance,
-                 {.meaning = "thickness of the contact shell; by default 2 % of the mean surface edge", .unit = "m", .limits = at_least(0)})
+                 {.meaning = "thickness of the contact shell; by default 2 % of the mean surface edge",
+                  .unit = "m",
+                  .limits = at_least(0)})
             .key("self_contact", &BodyEntry::self_contact, {.meaning = "whether it touches itself; false by default"})
             .key("pin", &BodyEntry::pin, {.meaning = "nodes that are held"})
             .at_most_one({"position", "positions"})
@@ -68,9 +78,13 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
             .key("rotation", &Entry::rotation, {.meaning = "about the shape's origin"})
             .key("motion", &Entry::motion, {.meaning = "how it moves; by default it does not"})
             .key("friction", &Entry::friction,
-                 {.meaning = "by default the body's own; else the geometric mean of both counts", .alias = "mu", .limits = at_least(0)})
-            .key("static_friction", &Entry::static_friction, {.meaning = "friction of sticking contacts", .limits = at_least(0)})
-            .key("dynamic_friction", &Entry::dynamic_friction, {.meaning = "friction of sliding contacts", .limits = at_least(0)})
+                 {.meaning = "by default the body's own; else the geometric mean of both counts",
+                  .alias = "mu",
+                  .limits = at_least(0)})
+            .key("static_friction", &Entry::static_friction,
+                 {.meaning = "friction of sticking contacts", .limits = at_least(0)})
+            .key("dynamic_friction", &Entry::dynamic_friction,
+                 {.meaning = "friction of sliding contacts", .limits = at_least(0)})
             .key("restitution", &Entry::restitution,
                  {.meaning = "by default the body's own; else the larger of both counts", .limits = within(0, 1)})
             .key("contact_distance", &Entry::contact_distance,
@@ -81,7 +95,8 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
             .check([](const Place& place, const Entry& c) {
                 if (c.static_friction && *c.dynamic_friction > *c.static_friction)
                     place.key("dynamic_friction")
-                        .refuse(Json(*c.dynamic_friction).dump(), "at most static_friction, " + Json(*c.static_friction).dump());
+                        .refuse(Json(*c.dynamic_friction).dump(),
+                                "at most static_friction, " + Json(*c.static_friction).dump());
             });
     return rule;
 }
@@ -90,7 +105,8 @@ template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
     static const auto rule =
         Rule<ProbeEntry>("probe",
-                         "A part of a body whose contacts the report counts: sticking or sliding, how often it changes, how fast it slips.")
+                         "A part of a body whose contacts the report counts: sticking or sliding, how often it "
+                         "changes, how fast it slips.")
             .key("name", &ProbeEntry::name, {.meaning = "in the report", .required = true})
             .key("body", &ProbeEntry::body, {.meaning = "the name of a body", .required = true})
             .key("box", &ProbeEntry::box, {.meaning = "the nodes inside, in the mesh's own frame", .required = true});
@@ -102,17 +118,24 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
     using M = MaterialSettings;
     static const auto rule =
         Rule<M>("material", "An elastic material and its surface.")
-            .key("young_modulus", &M::young_modulus, {.meaning = "Young's modulus", .unit = "Pa", .alias = "E", .limits = above(0)})
+            .key("young_modulus", &M::young_modulus,
+                 {.meaning = "Young's modulus", .unit = "Pa", .alias = "E", .limits = above(0)})
             .key("poisson_ratio", &M::poisson_ratio,
-                 {.meaning = "Poisson's ratio", .alias = "nu", .limits = {.at_least = {}, .above = -1, .at_most = {}, .below = 0.5}})
+                 {.meaning = "Poisson's ratio",
+                  .alias = "nu",
+                  .limits = {.at_least = {}, .above = -1, .at_most = {}, .below = 0.5}})
             .key("density", &M::density, {.meaning = "density", .unit = "kg/m^3", .alias = "rho", .limits = above(0)})
             .key("friction", &M::friction, {.meaning = "Coulomb's coefficient", .alias = "mu", .limits = at_least(0)})
-            .key("static_friction", &M::static_friction, {.meaning = "friction of sticking contacts", .limits = at_least(0)})
-            .key("dynamic_friction", &M::dynamic_friction, {.meaning = "friction of sliding contacts", .limits = at_least(0)})
+            .key("static_friction", &M::static_friction,
+                 {.meaning = "friction of sticking contacts", .limits = at_least(0)})
+            .key("dynamic_friction", &M::dynamic_friction,
+                 {.meaning = "friction of sliding contacts", .limits = at_least(0)})
             .key("restitution", &M::restitution,
                  {.meaning = "of a surface point at an impact, not of the body as a whole", .limits = within(0, 1)})
             .key("damping", &M::damping,
-                 {.meaning = "decay rate of deformation velocities; momentum is kept", .unit = "1/s", .limits = at_least(0)})
+                 {.meaning = "decay rate of deformation velocities; momentum is kept",
+                  .unit = "1/s",
+                  .limits = at_least(0)})
             .key("model", &M::model, {.meaning = "the constitutive law"})
             .together({"static_friction", "dynamic_friction"})
             .at_most_one({"friction", "static_friction"})
@@ -120,7 +143,8 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
             .check([](const Place& place, const M& m) {
                 if (m.static_friction && *m.dynamic_friction > *m.static_friction)
                     place.key("dynamic_friction")
-                        .refuse(Json(*m.dynamic_friction).dump(), "at most static_friction, " + Json(*m.static_friction).dump());
+                        .refuse(Json(*m.dynamic_friction).dump(),
+                                "at most static_friction, " + Json(*m.static_friction).dump());
             });
     return rule;
 }
@@ -136,15 +160,18 @@ const Rule<Settings>& rule_of<Settings>() {
                   .unit = "s",
                   .limits = above(0)})
             .key("step_safety", &S::step_safety,
-                 {.meaning = "fraction of the stable step that is used", .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
-            .key("integrator", &S::integrator, {.meaning = "how velocities and positions are moved on; literal is for comparison only"})
+                 {.meaning = "fraction of the stable step that is used",
+                  .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
+            .key("integrator", &S::integrator,
+                 {.meaning = "how velocities and positions are moved on; forward_euler is for comparison only"})
             .key("multirate", &S::multirate, {.meaning = "elements that stand longer steps get impulses less often"})
             .key("backend", &S::backend, {.meaning = "what runs the threads"})
             .key("threads", &S::threads, {.meaning = "0: as many as there are", .limits = within(0, 1024)})
             .key("contact_regions", &S::contact_regions, {.meaning = "how contacts are grouped"})
             .key("method", &S::method, {.meaning = "the contact solver"})
             .key("friction", &S::friction, {.meaning = "the friction law"})
-            .key("warm_start", &S::warm_start, {.meaning = "whether contacts start from the impulses of the step before"})
+            .key("warm_start", &S::warm_start,
+                 {.meaning = "whether contacts start from the impulses of the step before"})
             .key("tolerance", &S::tolerance, {.meaning = "relative error of a region", .limits = above(0)})
             .key("max_iterations", &S::max_iterations, {.meaning = "sweeps of a region", .limits = at_least(1)})
             .key("fixed_iterations", &S::fixed_iterations, {.meaning = "do exactly max_iterations sweeps"})
@@ -152,28 +179,35 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "of the sweeps; above 1 they go further than each contact asks",
                   .limits = {.at_least = {}, .above = 0, .at_most = {}, .below = 2}})
             .key("restitution_speed", &S::restitution_speed,
-                 {.meaning = "slower impacts do not bounce, whatever the restitution", .unit = "m/s", .limits = at_least(0)})
+                 {.meaning = "slower impacts do not bounce, whatever the restitution",
+                  .unit = "m/s",
+                  .limits = at_least(0)})
             .key("recovery_speed", &S::recovery_speed,
                  {.meaning = "what overlaps, or lies within the contact distance, is pushed apart no faster",
                   .unit = "m/s",
                   .limits = above(0)})
             .key("max_strain_step", &S::max_strain_step,
-                 {.meaning = "a step that moves nodes by more than this fraction of an element is refused", .limits = above(0)})
+                 {.meaning = "a step that moves nodes by more than this fraction of an element is refused",
+                  .limits = above(0)})
             .key("sleep_speed", &S::sleep_speed,
-                 {.meaning =
-                      "bodies slower than this for sleep_time rest with all that they touch, until something presses on them; 0: never",
+                 {.meaning = "bodies slower than this for sleep_time rest with all that they touch, until something "
+                             "presses on them; 0: never",
                   .unit = "m/s",
                   .limits = at_least(0)})
             .key("sleep_time", &S::sleep_time,
                  {.meaning = "how long a body has to be slow to be put to rest", .unit = "s", .limits = at_least(0)})
-            .key("contact_budgets", &S::contact_budgets, {.meaning = "skip what cannot have come close; false searches everything"})
+            .key("contact_budgets", &S::contact_budgets,
+                 {.meaning = "skip what cannot have come close; false searches everything"})
             .key("continuous_collision", &S::continuous_collision,
-                 {.meaning = "a step in which surfaces would go through each other is tried again with what crossed as contacts"})
-            .key("certify_warm_start", &S::certify_warm_start, {.meaning = "no sweep where last step's impulses still solve a region"})
+                 {.meaning = "a step in which surfaces would go through each other is tried again with what crossed as "
+                             "contacts"})
+            .key("certify_warm_start", &S::certify_warm_start,
+                 {.meaning = "no sweep where last step's impulses still solve a region"})
             .key("skip_separating", &S::skip_separating, {.meaning = "no impulse where no contact of a region closes"})
             .key("frictionless_rows", &S::frictionless_rows,
                  {.meaning = "one row a contact instead of three where a region has no friction"})
-            .key("freeze_contacts", &S::freeze_contacts, {.meaning = "no work on contacts that have come to rest within a solve"})
+            .key("freeze_contacts", &S::freeze_contacts,
+                 {.meaning = "no work on contacts that have come to rest within a solve"})
             .key("small_regions_in_lanes", &S::small_regions_in_lanes,
                  {.meaning = "regions of 2 to 12 contacts are solved eight at a time"});
     return rule;
@@ -187,9 +221,10 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("name", &SceneFile::name, {.meaning = "of the scene; by default that of the file"})
             .key("description", &SceneFile::description, {.meaning = "what it shows"})
             .key("include", &SceneFile::include,
-                 {.meaning = "scene files, or drop files, that come first; their bodies, colliders and materials are added, single values "
-                             "are replaced by those here"})
-            .key("seconds", &SceneFile::seconds, {.meaning = "length of a run; 2 by default", .unit = "s", .limits = above(0)})
+                 {.meaning = "scene files that come first; their bodies, colliders and materials are added, single "
+                             "values are replaced by those here"})
+            .key("seconds", &SceneFile::seconds,
+                 {.meaning = "length of a run; 2 by default", .unit = "s", .limits = above(0)})
             .key("frame_step", &SceneFile::frame_step,
                  {.meaning = "between frames of output; 1/60 by default", .unit = "s", .limits = above(0)})
             .key("settings", &SceneFile::settings, {.meaning = "of the step"})
@@ -197,8 +232,9 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("bodies", &SceneFile::bodies, {.meaning = "deformable bodies"})
             .key("colliders", &SceneFile::colliders, {.meaning = "rigid shapes"})
             .key("probes", &SceneFile::probes, {.meaning = "parts of bodies whose contacts are reported"})
-            .key("probe_step", &SceneFile::probe_step,
-                 {.meaning = "between two looks at the probes; frame_step by default", .unit = "s", .limits = above(0)});
+            .key(
+                "probe_step", &SceneFile::probe_step,
+                {.meaning = "between two looks at the probes; frame_step by default", .unit = "s", .limits = above(0)});
     return rule;
 }
 

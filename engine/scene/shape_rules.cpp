@@ -21,25 +21,29 @@ const Rule<BoxMesh>& rule_of<BoxMesh>() {
         Rule<BoxMesh>("box_mesh", "A box, centred.")
             .key("size", &BoxMesh::size, {.meaning = "edge lengths", .unit = "m", .limits = positive, .required = true})
             .key("cells", &BoxMesh::cells,
-                 {.meaning = "cells along x, y and z, of five or six tetrahedra", .limits = cell_count, .required = true});
+                 {.meaning = "cells along x, y and z, of five or six tetrahedra",
+                  .limits = cell_count,
+                  .required = true});
     return rule;
 }
 
 template <>
 const Rule<BallMesh>& rule_of<BallMesh>() {
-    static const auto rule = Rule<BallMesh>("ball_mesh", "A ball, centred.")
-                                 .key("radius", &BallMesh::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
-                                 .key("resolution", &BallMesh::resolution, resolution_doc());
+    static const auto rule =
+        Rule<BallMesh>("ball_mesh", "A ball, centred.")
+            .key("radius", &BallMesh::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
+            .key("resolution", &BallMesh::resolution, resolution_doc());
     return rule;
 }
 
 template <>
 const Rule<CylinderMesh>& rule_of<CylinderMesh>() {
-    static const auto rule =
-        Rule<CylinderMesh>("cylinder_mesh", "A solid cylinder along z, centred.")
-            .key("radius", &CylinderMesh::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
-            .key("height", &CylinderMesh::height, {.meaning = "height", .unit = "m", .limits = positive, .required = true})
-            .key("resolution", &CylinderMesh::resolution, resolution_doc());
+    static const auto rule = Rule<CylinderMesh>("cylinder_mesh", "A solid cylinder along z, centred.")
+                                 .key("radius", &CylinderMesh::radius,
+                                      {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
+                                 .key("height", &CylinderMesh::height,
+                                      {.meaning = "height", .unit = "m", .limits = positive, .required = true})
+                                 .key("resolution", &CylinderMesh::resolution, resolution_doc());
     return rule;
 }
 
@@ -48,17 +52,19 @@ const Rule<LatheMesh>& rule_of<LatheMesh>() {
     static const auto rule =
         Rule<LatheMesh>("lathe_mesh", "A body of revolution about z.")
             .key("profile", &LatheMesh::profile,
-                 {.meaning = "[radius, z] from bottom to top: z ascending, radii positive, linear between", .unit = "m", .required = true})
+                 {.meaning = "[radius, z] from bottom to top: z ascending, radii positive, linear between",
+                  .unit = "m",
+                  .required = true})
             .key("resolution", &LatheMesh::resolution, resolution_doc());
     return rule;
 }
 
 template <>
 const Rule<SkittleMesh>& rule_of<SkittleMesh>() {
-    static const auto rule =
-        Rule<SkittleMesh>("skittle_mesh", "A skittle that stands on z = 0.")
-            .key("height", &SkittleMesh::height, {.meaning = "height", .unit = "m", .limits = positive, .required = true})
-            .key("resolution", &SkittleMesh::resolution, resolution_doc());
+    static const auto rule = Rule<SkittleMesh>("skittle_mesh", "A skittle that stands on z = 0.")
+                                 .key("height", &SkittleMesh::height,
+                                      {.meaning = "height", .unit = "m", .limits = positive, .required = true})
+                                 .key("resolution", &SkittleMesh::resolution, resolution_doc());
     return rule;
 }
 
@@ -69,7 +75,8 @@ const Rule<mesh::TableShape>& rule_of<mesh::TableShape>() {
         Rule<Table>("table_mesh", "A table on four legs that stands on z = 0.")
             .key("length", &Table::length, {.meaning = "of the top along x", .unit = "m", .limits = positive})
             .key("width", &Table::width, {.meaning = "of the top along y", .unit = "m", .limits = positive})
-            .key("height", &Table::height, {.meaning = "from the floor to the top's upper side", .unit = "m", .limits = positive})
+            .key("height", &Table::height,
+                 {.meaning = "from the floor to the top's upper side", .unit = "m", .limits = positive})
             .key("thickness", &Table::thickness, {.meaning = "of the top", .unit = "m", .limits = positive})
             .key("leg", &Table::leg, {.meaning = "edge of a leg", .unit = "m", .limits = positive})
             .key("cells_per_leg", &Table::cells_per_leg, {.meaning = "elements across a leg", .limits = within(1, 50)});
@@ -86,10 +93,9 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("lathe", &MeshEntry::lathe, {.meaning = "a body of revolution"})
             .key("skittle", &MeshEntry::skittle, {.meaning = "a skittle"})
             .key("table", &MeshEntry::table, {.meaning = "a table"})
-            .key(
-                "file", &MeshEntry::file,
-                {.meaning =
-                     "Gmsh .msh, legacy VTK .vtk or TetGen .node/.ele, from the folder of the scene on; colliders also take .obj and .stl"})
+            .key("file", &MeshEntry::file,
+                 {.meaning = "Gmsh .msh, legacy VTK .vtk or TetGen .node/.ele, from the folder of the scene on; "
+                             "colliders also take .obj and .stl"})
             .key("scale", &MeshEntry::scale, {.meaning = "factor on all coordinates; 1 by default", .limits = positive})
             .exactly_one({"box", "ball", "cylinder", "lathe", "skittle", "table", "file"});
     return rule;
@@ -97,20 +103,23 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
 
 template <>
 const Rule<RestBox>& rule_of<RestBox>() {
-    static const auto rule = Rule<RestBox>("rest_box", "A box in the mesh's own frame.")
-                                 .key("lower", &RestBox::lower, {.meaning = "lower corner", .unit = "m", .required = true})
-                                 .key("upper", &RestBox::upper, {.meaning = "upper corner", .unit = "m", .required = true})
-                                 .check([](const Place& place, const RestBox& box) {
-                                     if (!(box.lower.array() <= box.upper.array()).all())
-                                         place.refuse("a lower corner above the upper one", "lower <= upper");
-                                 });
+    static const auto rule =
+        Rule<RestBox>("rest_box", "A box in the mesh's own frame.")
+            .key("lower", &RestBox::lower, {.meaning = "lower corner", .unit = "m", .required = true})
+            .key("upper", &RestBox::upper, {.meaning = "upper corner", .unit = "m", .required = true})
+            .check([](const Place& place, const RestBox& box) {
+                if (!(box.lower.array() <= box.upper.array()).all())
+                    place.refuse("a lower corner above the upper one", "lower <= upper");
+            });
     return rule;
 }
 
 template <>
 const Rule<KeyEntry>& rule_of<KeyEntry>() {
     static const auto rule =
-        Rule<KeyEntry>("motion_key", "A pose at a time; between keys the position is linear and the rotation turns about a fixed axis.")
+        Rule<KeyEntry>(
+            "motion_key",
+            "A pose at a time; between keys the position is linear and the rotation turns about a fixed axis.")
             .key("time", &KeyEntry::time, {.meaning = "time", .unit = "s", .limits = at_least(0), .required = true})
             .key("position", &KeyEntry::position, {.meaning = "position", .unit = "m"})
             .key("rotation", &KeyEntry::rotation, {.meaning = "rotation"});
@@ -119,44 +128,48 @@ const Rule<KeyEntry>& rule_of<KeyEntry>() {
 
 template <>
 const Rule<MotionEntry>& rule_of<MotionEntry>() {
-    static const auto rule = Rule<MotionEntry>("motion", "A scripted motion: constant velocities, or keys.")
-                                 .key("velocity", &MotionEntry::velocity, {.meaning = "velocity", .unit = "m/s"})
-                                 .key("angular_velocity", &MotionEntry::angular_velocity, {.meaning = "angular velocity", .unit = "rad/s"})
-                                 .key("keys", &MotionEntry::keys, {.meaning = "poses by ascending time"})
-                                 .at_most_one({"velocity", "keys"})
-                                 .at_most_one({"angular_velocity", "keys"})
-                                 .check([](const Place& place, const MotionEntry& motion) {
-                                     for (std::size_t i = 1; i < motion.keys.size(); ++i)
-                                         if (!(motion.keys[i].time > motion.keys[i - 1].time))
-                                             place.key("keys").item(i).key("time").refuse(
-                                                 Json(motion.keys[i].time).dump(),
-                                                 "a time after that of the key before, " + Json(motion.keys[i - 1].time).dump());
-                                 });
+    static const auto rule =
+        Rule<MotionEntry>("motion", "A scripted motion: constant velocities, or keys.")
+            .key("velocity", &MotionEntry::velocity, {.meaning = "velocity", .unit = "m/s"})
+            .key("angular_velocity", &MotionEntry::angular_velocity, {.meaning = "angular velocity", .unit = "rad/s"})
+            .key("keys", &MotionEntry::keys, {.meaning = "poses by ascending time"})
+            .at_most_one({"velocity", "keys"})
+            .at_most_one({"angular_velocity", "keys"})
+            .check([](const Place& place, const MotionEntry& motion) {
+                for (std::size_t i = 1; i < motion.keys.size(); ++i)
+                    if (!(motion.keys[i].time > motion.keys[i - 1].time))
+                        place.key("keys").item(i).key("time").refuse(
+                            Json(motion.keys[i].time).dump(),
+                            "a time after that of the key before, " + Json(motion.keys[i - 1].time).dump());
+            });
     return rule;
 }
 
 template <>
 const Rule<Plane>& rule_of<Plane>() {
-    static const auto rule = Rule<Plane>("plane", "A half space.")
-                                 .key("normal", &Plane::normal, {.meaning = "out of the ground, of any length but zero; +z by default"})
-                                 .key("point", &Plane::point, {.meaning = "a point of the plane; the origin by default", .unit = "m"})
-                                 .check([](const Place& place, const Plane& plane) {
-                                     if (!(plane.normal.norm() > 0)) place.key("normal").refuse("a vector of length 0", "a direction");
-                                 });
+    static const auto rule =
+        Rule<Plane>("plane", "A half space.")
+            .key("normal", &Plane::normal, {.meaning = "out of the ground, of any length but zero; +z by default"})
+            .key("point", &Plane::point, {.meaning = "a point of the plane; the origin by default", .unit = "m"})
+            .check([](const Place& place, const Plane& plane) {
+                if (!(plane.normal.norm() > 0)) place.key("normal").refuse("a vector of length 0", "a direction");
+            });
     return rule;
 }
 
 template <>
 const Rule<Sphere>& rule_of<Sphere>() {
-    static const auto rule = Rule<Sphere>("sphere", "A solid sphere, centred.")
-                                 .key("radius", &Sphere::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true});
+    static const auto rule =
+        Rule<Sphere>("sphere", "A solid sphere, centred.")
+            .key("radius", &Sphere::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true});
     return rule;
 }
 
 template <>
 const Rule<Box>& rule_of<Box>() {
-    static const auto rule = Rule<Box>("box", "A solid box, centred.")
-                                 .key("size", &Box::size, {.meaning = "edge lengths", .unit = "m", .limits = positive, .required = true});
+    static const auto rule =
+        Rule<Box>("box", "A solid box, centred.")
+            .key("size", &Box::size, {.meaning = "edge lengths", .unit = "m", .limits = positive, .required = true});
     return rule;
 }
 
@@ -165,7 +178,8 @@ const Rule<Capsule>& rule_of<Capsule>() {
     static const auto rule =
         Rule<Capsule>("capsule", "A cylinder along z with round ends, centred.")
             .key("radius", &Capsule::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
-            .key("length", &Capsule::length, {.meaning = "of the straight part", .unit = "m", .limits = positive, .required = true});
+            .key("length", &Capsule::length,
+                 {.meaning = "of the straight part", .unit = "m", .limits = positive, .required = true});
     return rule;
 }
 
@@ -182,8 +196,10 @@ template <>
 const Rule<Bucket>& rule_of<Bucket>() {
     static const auto rule =
         Rule<Bucket>("bucket", "An open cylinder to put things into; its floor is at z = 0 of its frame.")
-            .key("radius", &Bucket::radius, {.meaning = "inner radius", .unit = "m", .limits = positive, .required = true})
-            .key("height", &Bucket::height, {.meaning = "inner height", .unit = "m", .limits = positive, .required = true})
+            .key("radius", &Bucket::radius,
+                 {.meaning = "inner radius", .unit = "m", .limits = positive, .required = true})
+            .key("height", &Bucket::height,
+                 {.meaning = "inner height", .unit = "m", .limits = positive, .required = true})
             .key("thickness", &Bucket::thickness, {.meaning = "of wall and floor", .unit = "m", .limits = positive});
     return rule;
 }

@@ -17,9 +17,11 @@ std::string expected_number(const KeyDoc& doc, const std::string& kind) {
     const auto add = [&text](const char* words, const std::optional<Real>& bound) {
         if (bound)
             text +=
-                (text.find(" of ") == std::string::npos && text.find(" above ") == std::string::npos ? " " : " and ") + std::string(words) +
-                " " +
-                (*bound == std::floor(*bound) && std::abs(*bound) < 1e15 ? std::to_string(static_cast<long long>(*bound)) : shown(*bound));
+                (text.find(" of ") == std::string::npos && text.find(" above ") == std::string::npos ? " " : " and ") +
+                std::string(words) + " " +
+                (*bound == std::floor(*bound) && std::abs(*bound) < 1e15
+                     ? std::to_string(static_cast<long long>(*bound))
+                     : shown(*bound));
     };
     add("of at least", doc.limits.at_least);
     add("above", doc.limits.above);
@@ -36,7 +38,7 @@ void check_limits(Real number, const Json& json, const Place& place, const KeyDo
     if (!inside) place.refuse(json.dump(), expected_number(doc, kind));
 }
 
-/// How far rotation_rows may be from a rotation: files print a handful of digits.
+/// How far rows may be from a rotation: files print a handful of digits.
 constexpr Real rotation_tolerance = 1e-6;
 
 /// Axis and angle, the spelling of a rotation as an object.
@@ -78,7 +80,8 @@ Json number_schema(const char* type, const KeyDoc& doc) {
 }
 
 void check_count(const Json& json, const Place& place, std::size_t count, const char* of_what) {
-    if (!json.is_array() || json.size() != count) place.refuse(described(json), "a list of " + std::to_string(count) + " " + of_what);
+    if (!json.is_array() || json.size() != count)
+        place.refuse(described(json), "a list of " + std::to_string(count) + " " + of_what);
 }
 
 void Value<bool>::read(const Json& json, const Place& place, const KeyDoc&, bool& out) {
@@ -91,13 +94,15 @@ void Value<int>::read(const Json& json, const Place& place, const KeyDoc& doc, i
     if (!json.is_number()) place.refuse(described(json), expected_number(doc, kind));
     const Real number = json.get<Real>();
     constexpr Real largest = 2147483647;
-    if (number != std::floor(number) || std::abs(number) > largest) place.refuse(described(json), expected_number(doc, kind));
+    if (number != std::floor(number) || std::abs(number) > largest)
+        place.refuse(described(json), expected_number(doc, kind));
     check_limits(number, json, place, doc, kind);
     out = static_cast<int>(number);
 }
 
 void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc&, std::string& out) {
-    if (!json.is_string() || json.get_ref<const std::string&>().empty()) place.refuse(described(json), "a text that is not empty");
+    if (!json.is_string() || json.get_ref<const std::string&>().empty())
+        place.refuse(described(json), "a text that is not empty");
     out = json.get<std::string>();
 }
 
@@ -108,7 +113,8 @@ void Value<FilePath>::read(const Json& json, const Place& place, const KeyDoc& d
     std::error_code error;
     if (!std::filesystem::exists(out.path, error))
         place.refuse("no file " + in_quotes(out.path.string()), "the path of a file, from the folder of the scene on");
-    if (std::filesystem::is_directory(out.path, error)) place.refuse("a folder, " + in_quotes(out.path.string()), "the path of a file");
+    if (std::filesystem::is_directory(out.path, error))
+        place.refuse("a folder, " + in_quotes(out.path.string()), "the path of a file");
 }
 
 void Value<RotationRows>::read(const Json& json, const Place& place, const KeyDoc&, RotationRows& out) {
@@ -122,7 +128,8 @@ void Value<RotationRows>::read(const Json& json, const Place& place, const KeyDo
     }
     const Mat3 defect = matrix * matrix.transpose() - Mat3::Identity();
     if (!(defect.cwiseAbs().maxCoeff() <= rotation_tolerance))
-        place.refuse("rows that are not orthonormal by " + shown(defect.cwiseAbs().maxCoeff()), "a rotation matrix to 1e-6");
+        place.refuse("rows that are not orthonormal by " + shown(defect.cwiseAbs().maxCoeff()),
+                     "a rotation matrix to 1e-6");
     if (matrix.determinant() < 0) place.refuse("a reflection (determinant -1)", "a rotation matrix (determinant 1)");
     const Eigen::AngleAxis<Real> turn(Eigen::Quaternion<Real>(matrix).normalized());
     out.value = turn.angle() * turn.axis();
@@ -139,7 +146,8 @@ void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& d
         out.value = rows.value;
         return;
     }
-    if (!json.is_object()) place.refuse(described(json), R"({"axis": [x, y, z], "degrees": angle} or three rows of a rotation matrix)");
+    if (!json.is_object())
+        place.refuse(described(json), R"({"axis": [x, y, z], "degrees": angle} or three rows of a rotation matrix)");
     AxisAngle turn;
     Value<AxisAngle>::read(json, place, doc, turn);
     const Real angle = turn.radians ? *turn.radians : *turn.degrees * std::numbers::pi / 180;
@@ -158,7 +166,8 @@ void check_group(const KeyGroup& group, const Json& json, const Place& place) {
     switch (group.kind) {
         case KeyGroup::Kind::exactly_one:
             if (present.size() == 1) return;
-            place.refuse(present.empty() ? "none of these keys" : "the keys " + listed(present), "exactly one of " + all);
+            place.refuse(present.empty() ? "none of these keys" : "the keys " + listed(present),
+                         "exactly one of " + all);
         case KeyGroup::Kind::at_most_one:
             if (present.size() <= 1) return;
             place.refuse("the keys " + listed(present), "at most one of " + all);

@@ -45,7 +45,9 @@ struct Value<bool> {
 };
 template <>
 struct Value<Real> {
-    static void read(const Json& json, const Place& place, const KeyDoc& doc, Real& out) { out = read_number(json, place, doc); }
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, Real& out) {
+        out = read_number(json, place, doc);
+    }
     static Json schema(SchemaBook&, const KeyDoc& doc) { return number_schema("number", doc); }
 };
 template <>
@@ -129,7 +131,9 @@ struct Value<std::vector<T>> {
         if (!json.is_array()) place.refuse(described(json), "a list");
         for (std::size_t i = 0; i < json.size(); ++i) Value<T>::read(json[i], place.item(i), doc, out.emplace_back());
     }
-    static Json schema(SchemaBook& book, const KeyDoc& doc) { return {{"type", "array"}, {"items", Value<T>::schema(book, doc)}}; }
+    static Json schema(SchemaBook& book, const KeyDoc& doc) {
+        return {{"type", "array"}, {"items", Value<T>::schema(book, doc)}};
+    }
 };
 template <class T>
 struct Value<OneOrMore<T>> {
@@ -148,8 +152,8 @@ struct Value<Named<T>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, Named<T>& out) {
         if (!json.is_object()) place.refuse(described(json), "an object: one key for each name");
         for (const auto& [name, value] : json.items()) {
-            const auto same =
-                std::find_if(out.items.begin(), out.items.end(), [&, &wanted = name](const auto& item) { return item.first == wanted; });
+            const auto same = std::find_if(out.items.begin(), out.items.end(),
+                                           [&, &wanted = name](const auto& item) { return item.first == wanted; });
             if (same != out.items.end())
                 place.key(name).refuse("the name " + in_quotes(name) + " again", "a name that no included scene has");
             Value<T>::read(value, place.key(name), doc, out.items.emplace_back(name, T{}).second);
@@ -163,7 +167,9 @@ struct Value<Named<T>> {
 /// Everything else is an object with a rule.
 template <class T>
 struct Value {
-    static void read(const Json& json, const Place& place, const KeyDoc&, T& out) { rule_of<T>().read(json, place, out); }
+    static void read(const Json& json, const Place& place, const KeyDoc&, T& out) {
+        rule_of<T>().read(json, place, out);
+    }
     static Json schema(SchemaBook& book, const KeyDoc&) {
         const std::string& name = rule_of<T>().name();
         if (!book.contains(name)) {

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "engine/world/world_state.h"
-#include "systems/dynamics/element_energy.h"
-#include "systems/dynamics/move_colliders.h"
+#include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/motion/move_colliders.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -17,14 +17,14 @@ std::span<T> rows_of(Column<T>& column, Range range) {
 
 void set_nodes(WorldState& world, BodyHandle body, const char* call, const char* field, std::span<const Vec3> values,
                Column<Vec3>& column) {
-    const auto row = static_cast<std::size_t>(world.row(body, call));
-    const std::span<Vec3> target = rows_of(column, world.bodies.nodes[row]);
+    const auto row = static_cast<std::size_t>(world.model.row(body, call));
+    const std::span<Vec3> target = rows_of(column, world.model.bodies.nodes[row]);
     const auto refuse = [&](const std::string& found, const std::string& expected) {
         Complaint{.file = {}, .object = call, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
     };
     if (values.size() != target.size())
         refuse(std::to_string(values.size()) + " values",
-               std::to_string(target.size()) + ", one a node of body '" + world.body_records[row].name + "'");
+               std::to_string(target.size()) + ", one a node of body '" + world.model.body_records[row].name + "'");
     for (std::size_t n = 0; n < values.size(); ++n)
         if (!values[n].allFinite()) refuse("a value that is not finite at node " + std::to_string(n), "finite numbers");
     std::copy(values.begin(), values.end(), target.begin());
@@ -33,45 +33,47 @@ void set_nodes(WorldState& world, BodyHandle body, const char* call, const char*
 }  // namespace
 
 std::span<const Vec3> World::positions(BodyHandle body) const {
-    return rows_of(state_->nodes.position, state_->bodies.nodes[static_cast<std::size_t>(state_->row(body, "positions"))]);
+    return rows_of(state_->model.nodes.position,
+                   state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "positions"))]);
 }
 
 std::span<const Vec3> World::velocities(BodyHandle body) const {
-    return rows_of(state_->nodes.velocity, state_->bodies.nodes[static_cast<std::size_t>(state_->row(body, "velocities"))]);
+    return rows_of(state_->model.nodes.velocity,
+                   state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "velocities"))]);
 }
 
 void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
-    set_nodes(*state_, body, "set_velocities", "velocity", velocity, state_->nodes.velocity);
+    set_nodes(*state_, body, "set_velocities", "velocity", velocity, state_->model.nodes.velocity);
     // Nodes without freedom keep the motion of what holds them.
-    const Range nodes = state_->bodies.nodes[static_cast<std::size_t>(state_->row(body, "set_velocities"))];
+    const Range nodes = state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "set_velocities"))];
     for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n)
-        if (state_->nodes.inverse_mass[n] == 0) state_->nodes.velocity[n] = Vec3::Zero();
-    state_->search_afresh();  // the search counts on the speed of the last step
-    state_->balance.close();
-    state_->wake(static_cast<std::size_t>(state_->row(body, "set_velocities")));
+        if (state_->model.nodes.inverse_mass[n] == 0) state_->model.nodes.velocity[n] = Vec3::Zero();
+    state_->cache.search_afresh(state_->model);  // the search counts on the speed of the last step
+    state_->record.balance.close();
+    state_->model.wake(static_cast<std::size_t>(state_->model.row(body, "set_velocities")));
 }
 
 void World::set_loads(BodyHandle body, std::span<const Vec3> load) {
-    set_nodes(*state_, body, "set_loads", "load", load, state_->nodes.load);
-    state_->wake(static_cast<std::size_t>(state_->row(body, "set_loads")));
-    state_->loaded = std::ranges::any_of(state_->nodes.load, [](const Vec3& l) { return l != Vec3::Zero(); });
+    set_nodes(*state_, body, "set_loads", "load", load, state_->model.nodes.load);
+    state_->model.wake(static_cast<std::size_t>(state_->model.row(body, "set_loads")));
+    state_->model.note_loads();
 }
 
 std::span<const std::array<Index, 3>> World::surface(BodyHandle body) const {
-    return state_->body_records[static_cast<std::size_t>(state_->row(body, "surface"))].surface;
+    return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "surface"))].surface;
 }
 
 std::span<const std::array<Index, 4>> World::tetrahedra(BodyHandle body) const {
-    return state_->body_records[static_cast<std::size_t>(state_->row(body, "tetrahedra"))].tetrahedra;
+    return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "tetrahedra"))].tetrahedra;
 }
 
 std::vector<Real> World::von_mises_stress(BodyHandle body) const {
-    const auto row = static_cast<std::size_t>(state_->row(body, "von_mises_stress"));
-    const Range blocks = state_->bodies.blocks[row];
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "von_mises_stress"));
+    const Range blocks = state_->model.bodies.blocks[row];
     std::vector<Real> stress(static_cast<std::size_t>(blocks.size()) * element_lanes);
-    skerry::von_mises_stress(state_->element_inputs(), blocks, state_->nodes.position, stress);
-    stress.resize(static_cast<std::size_t>(state_->bodies.element_count[row]));
-    const std::vector<Index>& order = state_->body_records[row].element_order;
+    skerry::von_mises_stress(state_->model.all_elements(), blocks, state_->model.nodes.position, stress);
+    stress.resize(static_cast<std::size_t>(state_->model.bodies.element_count[row]));
+    const std::vector<Index>& order = state_->model.body_records[row].element_order;
     if (order.empty()) return stress;
     std::vector<Real> by_tetrahedron(stress.size());
     for (std::size_t e = 0; e < stress.size(); ++e) by_tetrahedron[static_cast<std::size_t>(order[e])] = stress[e];
@@ -79,98 +81,110 @@ std::vector<Real> World::von_mises_stress(BodyHandle body) const {
 }
 
 const std::string& World::name(BodyHandle body) const {
-    return state_->body_records[static_cast<std::size_t>(state_->row(body, "name"))].name;
+    return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "name"))].name;
 }
 
 Real World::mass(BodyHandle body) const {
     Real sum = 0;
-    for (Real m : rows_of(state_->nodes.mass, state_->bodies.nodes[static_cast<std::size_t>(state_->row(body, "mass"))])) sum += m;
+    for (Real m : rows_of(state_->model.nodes.mass,
+                          state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "mass"))]))
+        sum += m;
     return sum;
 }
 
 Vec3 World::center_of_mass(BodyHandle body) const {
-    const Range nodes = state_->bodies.nodes[static_cast<std::size_t>(state_->row(body, "center_of_mass"))];
+    const Range nodes = state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "center_of_mass"))];
     Vec3 moment = Vec3::Zero();
     Real mass = 0;
     for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n) {
-        moment += state_->nodes.mass[n] * state_->nodes.position[n];
-        mass += state_->nodes.mass[n];
+        moment += state_->model.nodes.mass[n] * state_->model.nodes.position[n];
+        mass += state_->model.nodes.mass[n];
     }
     return moment / mass;
 }
 
 Real World::contact_distance(BodyHandle body) const {
-    return state_->bodies.contact_distance[static_cast<std::size_t>(state_->row(body, "contact_distance"))];
+    return state_->model.bodies.contact_distance[static_cast<std::size_t>(state_->model.row(body, "contact_distance"))];
 }
 
 Real World::mean_edge(BodyHandle body) const {
-    return state_->bodies.mean_edge[static_cast<std::size_t>(state_->row(body, "mean_edge"))];
+    return state_->model.bodies.mean_edge[static_cast<std::size_t>(state_->model.row(body, "mean_edge"))];
 }
 
 bool World::asleep(BodyHandle body) const {
-    return state_->bodies.asleep[static_cast<std::size_t>(state_->row(body, "asleep"))] != 0;
+    return state_->model.bodies.asleep[static_cast<std::size_t>(state_->model.row(body, "asleep"))] != 0;
 }
 
 void World::wake(BodyHandle body) {
-    state_->wake(static_cast<std::size_t>(state_->row(body, "wake")));
+    state_->model.wake(static_cast<std::size_t>(state_->model.row(body, "wake")));
 }
 
 std::vector<BodyHandle> World::bodies() const {
     std::vector<BodyHandle> handles;
-    for (std::size_t b = 0; b < state_->bodies.slot.size(); ++b)
-        if (state_->bodies.kind[b] == BodyKind::deformable) handles.push_back(state_->body_map.handle_of_slot(state_->bodies.slot[b]));
+    for (std::size_t b = 0; b < state_->model.bodies.slot.size(); ++b)
+        if (state_->model.bodies.kind[b] == BodyKind::deformable)
+            handles.push_back(state_->model.body_map.handle_of_slot(state_->model.bodies.slot[b]));
     return handles;
 }
 
 std::vector<ColliderHandle> World::colliders() const {
     std::vector<ColliderHandle> handles;
-    for (std::uint32_t slot : state_->colliders.slot) handles.push_back(state_->collider_map.handle_of_slot(slot));
+    for (std::uint32_t slot : state_->model.colliders.slot)
+        handles.push_back(state_->model.collider_map.handle_of_slot(slot));
     return handles;
 }
 
 MotionKey World::pose(ColliderHandle collider) const {
-    const auto row = static_cast<std::size_t>(state_->row(collider, "pose"));
-    const RigidPose pose = pose_at(state_->colliders.script[row], state_->colliders.keyframe, state_->colliders.initial[row], time());
+    const auto row = static_cast<std::size_t>(state_->model.row(collider, "pose"));
+    const RigidPose pose = pose_at(state_->model.colliders.script[row], state_->model.colliders.keyframe,
+                                   state_->model.colliders.initial[row], time());
     return {time(), pose.position, rotation_vector(pose.rotation)};
 }
 
 const Shape& World::shape(ColliderHandle collider) const {
-    return state_->collider_records[static_cast<std::size_t>(state_->row(collider, "shape"))].shape;
+    return state_->model.collider_records[static_cast<std::size_t>(state_->model.row(collider, "shape"))].shape;
 }
 
 const std::string& World::name(ColliderHandle collider) const {
-    return state_->collider_records[static_cast<std::size_t>(state_->row(collider, "name"))].name;
+    return state_->model.collider_records[static_cast<std::size_t>(state_->model.row(collider, "name"))].name;
 }
 
 std::span<const Contact> World::contacts() const {
     WorldState& world = *state_;
-    if (world.step.verdict.fault != StepFault::none) return {};  // of a step that was not taken: numbers that may not be finite
-    if (world.contact_view_is_current) return world.contact_view;
-    const ContactTable& table = world.contacts;
-    world.contact_view.resize(table.size());
+    // of a step that was not taken: numbers that may not be finite
+    if (world.scratch.findings.verdict.fault != StepFault::none) return {};
+    if (world.record.contact_view_is_current) return world.record.contact_view;
+    const ContactTable& table = world.scratch.contacts;
+    world.record.contact_view.resize(table.size());
     for (std::size_t c = 0; c < table.size(); ++c) {
-        Contact& contact = world.contact_view[c];
+        Contact& contact = world.record.contact_view[c];
         const auto first = static_cast<std::size_t>(table.first_body[c]);
-        const auto handle_of = [&](Index body) { return world.body_map.handle_of_slot(world.bodies.slot[static_cast<std::size_t>(body)]); };
-        const bool first_deforms = world.bodies.kind[first] == BodyKind::deformable;
+        const auto handle_of = [&](Index body) {
+            return world.model.body_map.handle_of_slot(world.model.bodies.slot[static_cast<std::size_t>(body)]);
+        };
+        const bool first_deforms = world.model.bodies.kind[first] == BodyKind::deformable;
         contact = {};
         if (first_deforms) contact.first = handle_of(table.first_body[c]);
         Index collider = table.collider[c];
         for (Index body : {table.first_body[c], table.second_body[c]})
-            if (body != no_index && world.bodies.kind[static_cast<std::size_t>(body)] == BodyKind::kinematic)
-                collider = world.bodies.collider[static_cast<std::size_t>(body)];
+            if (body != no_index && world.model.bodies.kind[static_cast<std::size_t>(body)] == BodyKind::kinematic)
+                collider = world.model.bodies.collider[static_cast<std::size_t>(body)];
         const Index second = table.second_body[c];
-        if (second != no_index && world.bodies.kind[static_cast<std::size_t>(second)] == BodyKind::deformable)
+        if (second != no_index && world.model.bodies.kind[static_cast<std::size_t>(second)] == BodyKind::deformable)
             contact.second = handle_of(second);
         if (collider != no_index)
-            contact.collider = world.collider_map.handle_of_slot(world.colliders.slot[static_cast<std::size_t>(collider)]);
+            contact.collider =
+                world.model.collider_map.handle_of_slot(world.model.colliders.slot[static_cast<std::size_t>(collider)]);
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = table.stencil[c].node[a];
             contact.weight[a] = table.stencil[c].weight[a];
             contact.node[a] =
                 contact.weight[a] == 0
                     ? -1
-                    : node - world.bodies.nodes[static_cast<std::size_t>(world.nodes.body[static_cast<std::size_t>(node)])].begin;
+                    : node -
+                          world.model.bodies
+                              .nodes[static_cast<std::size_t>(world.model.nodes.body[static_cast<std::size_t>(node)])]
+                              .begin;
         }
         contact.point = table.point[c];
         contact.normal = table.normal[c];
@@ -181,8 +195,8 @@ std::span<const Contact> World::contacts() const {
         contact.motion = static_cast<ContactMotion>(table.state[c]);
         contact.region = table.region[c];
     }
-    world.contact_view_is_current = true;
-    return world.contact_view;
+    world.record.contact_view_is_current = true;
+    return world.record.contact_view;
 }
 
 }  // namespace skerry

@@ -1,9 +1,10 @@
-// What may be asked of a world. Every complaint names the object, the field, what was found and what was expected.
+#include "engine/world/validate.h"
+
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "engine/mesh/require_positive.h"
-#include "engine/world/world_state.h"
 
 namespace skerry {
 
@@ -43,9 +44,12 @@ struct ShapeCheck {
         if (!plane.normal.allFinite() || plane.normal.norm() == 0)
             refuse(object, "normal", text(plane.normal), "a vector that is not zero");
     }
-    void operator()(const Sphere& sphere) const { require(sphere.radius > 0, object, "radius", sphere.radius, "a length > 0 (m)"); }
+    void operator()(const Sphere& sphere) const {
+        require(sphere.radius > 0, object, "radius", sphere.radius, "a length > 0 (m)");
+    }
     void operator()(const Box& box) const {
-        if (!box.size.allFinite() || box.size.minCoeff() <= 0) refuse(object, "size", text(box.size), "three lengths > 0 (m)");
+        if (!box.size.allFinite() || box.size.minCoeff() <= 0)
+            refuse(object, "size", text(box.size), "three lengths > 0 (m)");
     }
     void operator()(const Capsule& capsule) const {
         require(capsule.radius > 0, object, "radius", capsule.radius, "a length > 0 (m)");
@@ -61,7 +65,8 @@ struct ShapeCheck {
         require(bucket.thickness > 0, object, "thickness", bucket.thickness, "a length > 0 (m)");
     }
     void operator()(const SurfaceMesh& surface) const {
-        if (surface.triangles.empty()) refuse(object, "triangles", "none", "a closed surface of at least four triangles");
+        if (surface.triangles.empty())
+            refuse(object, "triangles", "none", "a closed surface of at least four triangles");
         for (const Vec3& node : surface.nodes) require_finite(object, "nodes", node);
         for (const auto& triangle : surface.triangles)
             for (Index corner : triangle)
@@ -74,17 +79,22 @@ struct ShapeCheck {
 
 void validate(const Settings& settings) {
     require_finite("settings", "gravity", settings.gravity);
-    if (settings.step_size) require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
+    if (settings.step_size)
+        require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
     require(settings.step_safety > 0 && settings.step_safety <= 1, "settings", "step_safety", settings.step_safety,
             "a fraction > 0 and <= 1");
-    if (settings.multirate && settings.integrator == Integrator::literal)
+    if (settings.multirate && settings.integrator == Integrator::forward_euler)
         refuse("settings", "multirate", "true",
-               "false: the literal integrator is for comparison with the paper, which has one step for all");
-    require(settings.threads >= 0, "settings", "threads", settings.threads, "a number of threads, or 0 for those of the caller");
-    require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance, "a number > 0 and < 1");
+               "false: forward_euler is for comparison with the paper, which has one step for all");
+    require(settings.threads >= 0, "settings", "threads", settings.threads,
+            "a number of threads, or 0 for those of the caller");
+    require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance,
+            "a number > 0 and < 1");
     require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
-    require(settings.relaxation > 0 && settings.relaxation < 2, "settings", "relaxation", settings.relaxation, "a number > 0 and < 2");
-    require(settings.restitution_speed >= 0, "settings", "restitution_speed", settings.restitution_speed, "a speed >= 0 (m/s)");
+    require(settings.relaxation > 0 && settings.relaxation < 2, "settings", "relaxation", settings.relaxation,
+            "a number > 0 and < 2");
+    require(settings.restitution_speed >= 0, "settings", "restitution_speed", settings.restitution_speed,
+            "a speed >= 0 (m/s)");
     require(settings.recovery_speed > 0, "settings", "recovery_speed", settings.recovery_speed, "a speed > 0 (m/s)");
     require(settings.sleep_speed >= 0, "settings", "sleep_speed", settings.sleep_speed, "a speed >= 0 (m/s)");
     require(settings.sleep_time >= 0, "settings", "sleep_time", settings.sleep_time, "a time >= 0 (s)");
@@ -94,8 +104,8 @@ void validate(const Settings& settings) {
 void validate(const MaterialSettings& material, const Settings& settings) {
     const std::string object = "material";
     require(material.young_modulus > 0, object, "young_modulus", material.young_modulus, "a modulus > 0 (Pa)");
-    require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio", material.poisson_ratio,
-            "a number > -1 and < 0.5");
+    require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
+            material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
     require(material.friction >= 0, object, "friction", material.friction, "a number >= 0");
     const Real dynamic = material.dynamic_friction.value_or(material.friction);
@@ -105,7 +115,8 @@ void validate(const MaterialSettings& material, const Settings& settings) {
     // what a collider adds counts by the geometric mean: none where the body has none
     require(still == 0 || !needs_frictionless(settings.method), object, "friction", still,
             "0: the method of the settings knows no friction");
-    require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution, "a number from 0 to 1");
+    require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution,
+            "a number from 0 to 1");
     require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
 }
 
@@ -118,7 +129,8 @@ void validate(const Mesh& mesh, const BodySettings& body) {
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
         for (Index corner : mesh.tetrahedra[e])
             if (corner < 0 || corner >= static_cast<Index>(mesh.nodes.size()))
-                refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner), "rows of its nodes");
+                refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner),
+                       "rows of its nodes");
     mesh::require_positive(mesh, object);
     require_finite(object, "position", body.position);
     require_finite(object, "rotation", body.rotation);
@@ -137,7 +149,8 @@ void validate(const Motion& motion, const std::string& object) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
-        require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time, "ascending times (s)");
+        require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,
+                "ascending times (s)");
     }
 }
 
@@ -154,7 +167,8 @@ void validate(const Shape& shape, const ColliderSettings& collider) {
     validate(collider.motion, object);
     if (collider.friction) require(*collider.friction >= 0, object, "friction", *collider.friction, "a number >= 0");
     if (collider.dynamic_friction)
-        require(*collider.dynamic_friction >= 0, object, "dynamic_friction", *collider.dynamic_friction, "a number >= 0");
+        require(*collider.dynamic_friction >= 0, object, "dynamic_friction", *collider.dynamic_friction,
+                "a number >= 0");
     if (collider.static_friction) {
         const Real dynamic = collider.dynamic_friction.value_or(collider.friction.value_or(0));
         require(*collider.static_friction >= dynamic, object, "static_friction", *collider.static_friction,

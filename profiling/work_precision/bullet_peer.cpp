@@ -1,8 +1,10 @@
-// work_precision_bullet: runs a scene of profile_work_precision with Bullet's deformable bodies. The only file that knows Bullet; a program of
-// its own, since Bullet comes in single and in double precision, which no one program can hold, and since some of its runs end the process.
+// work_precision_bullet: runs a scene of profile_work_precision with Bullet's deformable bodies. The only file that
+// knows Bullet; a program of its own, since Bullet comes in single and in double precision, which no one program can
+// hold, and since some of its runs end the process.
 //
-// The bodies are tetrahedra of corotational material with the masses of the scene, without damping of Bullet's own. What moves in the scene
-// touches what stands still through nodes (SDF_RDN) and each other through nodes and faces (VF_DD): the contacts that Bullet has for this.
+// The bodies are tetrahedra of corotational material with the masses of the scene, without damping of Bullet's own.
+// What moves in the scene touches what stands still through nodes (SDF_RDN) and each other through nodes and faces
+// (VF_DD): the contacts that Bullet has for this.
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
@@ -67,7 +69,9 @@ btVector3 gravity_at(const Json& keys, double time) {
     if (time <= keys.front()[0].get<double>()) return vector_of(keys.front(), 1);
     for (std::size_t k = 1; k < keys.size(); ++k) {
         const double from = keys[k - 1][0].get<double>(), to = keys[k][0].get<double>();
-        if (time < to) return vector_of(keys[k - 1], 1).lerp(vector_of(keys[k], 1), static_cast<btScalar>((time - from) / (to - from)));
+        if (time < to)
+            return vector_of(keys[k - 1], 1)
+                .lerp(vector_of(keys[k], 1), static_cast<btScalar>((time - from) / (to - from)));
     }
     return vector_of(keys.back(), 1);
 }
@@ -78,8 +82,8 @@ public:
     Simulation(const Json& scene, const Options& options)
         : scene_(scene), options_(options), solver_(options.newton_steps, options.implicit ? 1e-9 : 1e-4) {
         constraint_solver_.setDeformableSolver(&solver_);
-        world_ = std::make_unique<btDeformableMultiBodyDynamicsWorld>(&dispatcher_, &broadphase_, &constraint_solver_, &configuration_,
-                                                                      &solver_);
+        world_ = std::make_unique<btDeformableMultiBodyDynamicsWorld>(&dispatcher_, &broadphase_, &constraint_solver_,
+                                                                      &configuration_, &solver_);
         const btVector3 gravity = gravity_at(scene["gravity"], 0);
         world_->setGravity(gravity);
         world_->getWorldInfo().m_gravity = gravity;
@@ -133,7 +137,8 @@ private:
         constexpr btScalar half_size = 5;
         auto shape = std::make_unique<btBoxShape>(btVector3(half_size, half_size, half_size));
         const btVector3 normal = vector_of(plane["normal"]);
-        const btScalar shift = scene_["contact_distance"].get<btScalar>() / 2 - half_size;  // the other half is the margin of the bodies
+        // the other half is the margin of the bodies
+        const btScalar shift = scene_["contact_distance"].get<btScalar>() / 2 - half_size;
         btTransform pose(shortestArcQuat(btVector3(0, 0, 1), normal), vector_of(plane["point"]) + normal * shift);
         auto rigid = std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape.get()));
         rigid->setWorldTransform(pose);
@@ -153,7 +158,8 @@ private:
         auto* soft = new btSoftBody(&world_->getWorldInfo(), count, nodes.data(), nullptr);
         for (const Json& t : body["tetrahedra"]) {
             soft->appendTetra(t[0], t[1], t[2], t[3]);
-            // Bullet's trees of nodes are built along links, without end where a node has none; they carry no force here
+            // Bullet's trees of nodes are built along links, without end where a node has none; they carry no force
+            // here
             for (int a = 0; a < 4; ++a)
                 for (int b = a + 1; b < 4; ++b) soft->appendLink(t[a].get<int>(), t[b].get<int>(), nullptr, true);
         }
@@ -168,11 +174,13 @@ private:
         }
         for (const Json& fixed : body["fixed"]) soft->setMass(fixed.get<int>(), 0);
         const Json& material = scene_["material"];
-        soft->getCollisionShape()->setMargin(scene_["contact_distance"].get<btScalar>() / 2);  // two bodies keep the sum of theirs
+        // two bodies keep the sum of theirs
+        soft->getCollisionShape()->setMargin(scene_["contact_distance"].get<btScalar>() / 2);
         if (options_.repulsion > 0) soft->setSpringStiffness(static_cast<btScalar>(options_.repulsion));
         soft->m_cfg.kDF = factor_of_friction();
         soft->m_cfg.kKHR = soft->m_cfg.kCHR = 1;
-        soft->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN | btSoftBody::fCollision::VF_DD;
+        soft->m_cfg.collisions =
+            btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN | btSoftBody::fCollision::VF_DD;
         soft->m_sleepingThreshold = 0;
         soft->setActivationState(DISABLE_DEACTIVATION);
         soft->setSelfCollision(false);
@@ -183,10 +191,11 @@ private:
     }
 
     void add_forces(btSoftBody* soft, const Json& material) {
-        const auto young = material["young_modulus"].get<btScalar>(), poisson = material["poisson_ratio"].get<btScalar>();
+        const auto young = material["young_modulus"].get<btScalar>(),
+                   poisson = material["poisson_ratio"].get<btScalar>();
         const btScalar mu = young / (2 * (1 + poisson)), lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-        elastic_.push_back(
-            std::make_unique<btDeformableLinearElasticityForce>(mu, lambda, btScalar(0), material["stiffness_damping"].get<btScalar>()));
+        elastic_.push_back(std::make_unique<btDeformableLinearElasticityForce>(
+            mu, lambda, btScalar(0), material["stiffness_damping"].get<btScalar>()));
         world_->addForce(soft, elastic_.back().get());
         gravity_.push_back(std::make_unique<btDeformableGravityForce>(gravity_at(scene_["gravity"], 0)));
         world_->addForce(soft, gravity_.back().get());
@@ -215,7 +224,8 @@ Json run_once(const Json& scene, const Options& options) {
     const double interval = scene["seconds"].get<double>() / samples;
     const int steps = std::max(1, static_cast<int>(std::ceil(interval / options.step - 1e-9)));
     const double h = interval / steps;
-    Json result{{"finished", true}, {"step", h}, {"steps", 0}, {"positions", Json::array()}, {"velocities", Json::array()}};
+    Json result{
+        {"finished", true}, {"step", h}, {"steps", 0}, {"positions", Json::array()}, {"velocities", Json::array()}};
     double seconds = 0;
     for (int s = 0; s < samples; ++s) {
         const double start = cpu_seconds();

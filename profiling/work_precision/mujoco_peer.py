@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Runs a scene of profile_work_precision with MuJoCo's flex: mujoco_peer.py SCENE.json RESULT.json --step S [options]. The only file that knows MuJoCo.
+"""Runs a scene of profile_work_precision with MuJoCo's flex: mujoco_peer.py SCENE.json RESULT.json --step S [options].
+The only file that knows MuJoCo.
 
-The bodies are flexes of the same tetrahedra with the masses of the scene; MuJoCo's elastic law is that of Saint Venant and Kirchhoff, which is
-ours for small strains. Its contacts are springs by design: their time constant is set to twice the step, the least that MuJoCo recommends."""
+The bodies are flexes of the same tetrahedra with the masses of the scene; MuJoCo's elastic law is that of Saint Venant
+and Kirchhoff, which is ours for small strains. Its contacts are springs by design: their time constant is set to twice
+the step, the least that MuJoCo recommends."""
 import argparse
 import json
 import math
@@ -19,13 +21,15 @@ def text(values):
 
 def model_of(scene, options):
     material = scene["material"]
-    contact = (f'solref="{2 * options.step:.17g} 1" solimp="0.9999 0.9999 0.001 0.5 2" friction="{material["friction"]:.17g}" condim="3" '
+    contact = (f'solref="{2 * options.step:.17g} 1" solimp="0.9999 0.9999 0.001 0.5 2" '
+               f'friction="{material["friction"]:.17g}" condim="3" '
                f'margin="0"')
     flexes = []
     for b, body in enumerate(scene["bodies"]):
         pins = f'<pin id="{" ".join(map(str, body["fixed"]))}"/>' if body["fixed"] else ""
         flexes.append(
-            f'<flexcomp name="b{b}" type="direct" dim="3" mass="{sum(body["mass"]):.17g}" radius="{scene["contact_distance"] / 2:.17g}" '
+            f'<flexcomp name="b{b}" type="direct" dim="3" mass="{sum(body["mass"]):.17g}" '
+            f'radius="{scene["contact_distance"] / 2:.17g}" '
             f'point="{text(body["nodes"])}" element="{" ".join(str(n) for t in body["tetrahedra"] for n in t)}">'
             f'<contact {contact} selfcollide="none"/>'
             f'<elasticity young="{material["young_modulus"]:.17g}" poisson="{material["poisson_ratio"]:.17g}" '
@@ -34,9 +38,11 @@ def model_of(scene, options):
     for plane in scene["planes"]:
         # the flex keeps half the contact distance by its radius; the plane is moved by the other half
         place = np.array(plane["point"]) + scene["contact_distance"] / 2 * np.array(plane["normal"])
-        planes.append(f'<geom type="plane" size="5 5 1" pos="{text(place)}" zaxis="{text(plane["normal"])}" {contact}/>')
+        planes.append(f'<geom type="plane" size="5 5 1" pos="{text(place)}" zaxis="{text(plane["normal"])}" '
+                      f'{contact}/>')
     return mujoco.MjModel.from_xml_string(
-        f'<mujoco><option timestep="{options.step:.17g}" integrator="{options.integrator}" cone="elliptic" impratio="{options.impratio}" '
+        f'<mujoco><option timestep="{options.step:.17g}" integrator="{options.integrator}" cone="elliptic" '
+        f'impratio="{options.impratio}" '
         f'iterations="{options.iterations}" tolerance="1e-10" gravity="{text(scene["gravity"][0][1:])}"/>'
         f'<size memory="200M"/><worldbody>{"".join(planes)}{"".join(flexes)}</worldbody></mujoco>')
 
@@ -93,7 +99,8 @@ def run(scene, options):
         mujoco.mj_flex(model, data)
         place = data.flexvert_xpos
         # MuJoCo starts anew from rest after one of these
-        warned = any(data.warning[int(w)].number for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL,
+        warned = any(data.warning[int(w)].number for w in (mujoco.mjtWarning.mjWARN_BADQPOS,
+                                                           mujoco.mjtWarning.mjWARN_BADQVEL,
                                                            mujoco.mjtWarning.mjWARN_BADQACC))
         if seconds > options.cap or warned or not np.all(np.isfinite(place)):
             result["finished"] = False

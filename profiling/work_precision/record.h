@@ -20,11 +20,12 @@ struct Record {
 /// Distance of two runs of the same scene at one sample, sqrt(sum m |x - y|^2 / sum m) / L (mass-weighted).
 Real distance_at(const PrecisionScene& scene, const Record& a, const Record& b, std::size_t sample);
 
-/// Its mean over the first `samples` samples: L1 in time, so that an impact that comes a little late counts by as much as it is late. Infinite
-/// where one of the runs did not get so far.
+/// Its mean over the first `samples` samples: L1 in time, so that an impact that comes a little late counts by as much
+/// as it is late. Infinite where one of the runs did not get so far.
 Real mean_distance(const PrecisionScene& scene, const Record& a, const Record& b, std::size_t samples);
 
-/// Points of material, the same on every mesh of a scene: where they are is interpolated in the tetrahedra that hold them.
+/// Points of material, the same on every mesh of a scene: where they are is interpolated in the tetrahedra that hold
+/// them.
 class Probes {
 public:
     Probes(const PrecisionScene& scene, int points_per_body);

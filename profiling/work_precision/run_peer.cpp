@@ -34,14 +34,19 @@ std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::s
     const auto bullet = [&](const char* program, const char* variant, const char* options, bool explicit_step) {
         const std::filesystem::path file = std::filesystem::absolute(programs) / program;
         if (std::filesystem::exists(file))
-            peers.push_back({.engine = "Bullet", .variant = variant, .command = in_quotes(file) + options, .explicit_step = explicit_step});
+            peers.push_back({.engine = "Bullet",
+                             .variant = variant,
+                             .command = in_quotes(file) + options,
+                             .explicit_step = explicit_step});
     };
-    // Bullet's own choice of settings for its contacts, as its examples have them; others that were tried are in docs/work_precision.md.
+    // Bullet's own choice of settings for its contacts, as its examples have them; others that were tried are in
+    // docs/work_precision.md.
     bullet("work_precision_bullet_double", "explicit double", "", true);
     bullet("work_precision_bullet", "explicit single", "", true);
     bullet("work_precision_bullet_double", "implicit double", " --implicit --projection", false);
     const std::string mujoco =
-        in_quotes(python) + " " + in_quotes(std::filesystem::path(SKERRY_PROFILING_FOLDER) / "work_precision/mujoco_peer.py");
+        in_quotes(python) + " " +
+        in_quotes(std::filesystem::path(SKERRY_PROFILING_FOLDER) / "work_precision/mujoco_peer.py");
     if (works(in_quotes(python) + " -c 'import mujoco'"))
         for (const std::string integrator : {"Euler", "RK4", "discrete"})
             peers.push_back({.engine = "MuJoCo",
@@ -52,16 +57,18 @@ std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::s
     return peers;
 }
 
-Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int repeat, double cap, const std::filesystem::path& folder) {
+Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int repeat, double cap,
+                const std::filesystem::path& folder) {
     const std::filesystem::path place = std::filesystem::absolute(folder);
     const std::filesystem::path scene_file = place / "scene.json", result_file = place / "result.json";
     write_scene(scene, scene_file);
     std::filesystem::remove(result_file);
     char numbers[128];
     std::snprintf(numbers, sizeof numbers, " --step %.17g --repeat %d --cap %g", step, repeat, cap);
-    // What a peer says of its troubles, on its outputs or in files, is no part of our report; that it ended without a result is.
-    const std::string command =
-        "exec " + peer.command + " " + in_quotes(scene_file) + " " + in_quotes(result_file) + numbers + " >/dev/null 2>&1";
+    // What a peer says of its troubles, on its outputs or in files, is no part of our report; that it ended without a
+    // result is.
+    const std::string command = "exec " + peer.command + " " + in_quotes(scene_file) + " " + in_quotes(result_file) +
+                                numbers + " >/dev/null 2>&1";
     Record record;
     if (std::system(command.c_str()) != 0 || !std::filesystem::exists(result_file)) return record;
     // a number that is not finite is written as null and read as a failure

@@ -21,14 +21,16 @@ Built build(const PrecisionScene& scene, Settings settings, Real step) {
     World& world = built.world;
     const MaterialHandle material = world.add_material(scene.material);
     for (const PrecisionBody& body : scene.bodies) {
-        const BodyHandle handle = world.add_body(body.mesh, {.material = material, .contact_distance = scene.contact_distance});
+        const BodyHandle handle =
+            world.add_body(body.mesh, {.material = material, .contact_distance = scene.contact_distance});
         world.set_velocities(handle, body.velocity);
         if (!body.fixed.empty()) world.attach(handle, body.fixed);
         built.bodies.push_back(handle);
     }
     // A body keeps half its contact distance from a collider; the plane is moved by the other half.
     for (const PrecisionPlane& plane : scene.planes)
-        world.add_collider(Plane{.normal = plane.normal, .point = plane.point + scene.contact_distance / 2 * plane.normal});
+        world.add_collider(
+            Plane{.normal = plane.normal, .point = plane.point + scene.contact_distance / 2 * plane.normal});
     return built;
 }
 
@@ -89,8 +91,8 @@ std::vector<SkerryVariant> time_variants() {
         one.settings.max_iterations = 20000;
         return one;
     };
-    return {variant("symplectic Euler 1e-3", Integrator::symplectic_euler, 1e-3), variant("leapfrog 1e-3", Integrator::leapfrog, 1e-3),
-            variant("leapfrog 1e-8", Integrator::leapfrog, 1e-8)};
+    return {variant("symplectic Euler 1e-3", Integrator::symplectic_euler, 1e-3),
+            variant("leapfrog 1e-3", Integrator::leapfrog, 1e-3), variant("leapfrog 1e-8", Integrator::leapfrog, 1e-8)};
 }
 
 Real stable_step_of(const PrecisionScene& scene) {
@@ -100,7 +102,8 @@ Real stable_step_of(const PrecisionScene& scene) {
 Record run_skerry(const PrecisionScene& scene, const SkerryVariant& variant, Real step, int repeat, double cap) {
     Record record = run_once(scene, variant.settings, step, cap);
     std::vector<double> seconds{record.seconds};
-    for (int r = 1; r < repeat && record.finished; ++r) seconds.push_back(run_once(scene, variant.settings, step, cap).seconds);
+    for (int r = 1; r < repeat && record.finished; ++r)
+        seconds.push_back(run_once(scene, variant.settings, step, cap).seconds);
     record.seconds = median(std::move(seconds));
     return record;
 }

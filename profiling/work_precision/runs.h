@@ -15,14 +15,16 @@ struct SkerryVariant {
     Settings settings{};  // step and gravity are set from the scene
 };
 
-/// The variants of the time axis: integrators, and tolerances of the contact solver. The last is the most precise; references are taken with it.
+/// The variants of the time axis: integrators, and tolerances of the contact solver. The last is the most precise;
+/// references are taken with it.
 std::vector<SkerryVariant> time_variants();
 
 /// The stable step of the scene as it starts, s.
 Real stable_step_of(const PrecisionScene& scene);
 
 /// Runs the scene `repeat` times and times the steps alone. A step of 0 leaves it to the engine.
-Record run_skerry(const PrecisionScene& scene, const SkerryVariant& variant, Real step, int repeat = 1, double cap = 1e9);
+Record run_skerry(const PrecisionScene& scene, const SkerryVariant& variant, Real step, int repeat = 1,
+                  double cap = 1e9);
 
 /// The program of a peer, with the options that make one curve of it.
 struct Peer {
@@ -37,6 +39,7 @@ struct Peer {
 std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::string& python);
 
 /// Runs the scene in a process of its own, which may take `cap` CPU seconds a run. `folder` holds what is handed over.
-Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int repeat, double cap, const std::filesystem::path& folder);
+Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int repeat, double cap,
+                const std::filesystem::path& folder);
 
 }  // namespace skerry::profiling

@@ -57,7 +57,8 @@ PrecisionScene make_scene(std::string_view name, int level);
 /// The mesh on which the scene's steps are compared.
 int usual_level(std::string_view name);
 
-/// A block on a floor on which gravity pulls along with `fraction` of what friction can hold. It settles for the first part of the samples.
+/// A block on a floor on which gravity pulls along with `fraction` of what friction can hold. It settles for the first
+/// part of the samples.
 PrecisionScene make_creep_scene(Real fraction);
 inline constexpr Real creep_settling = 2.0;  // s: in one second what the pull has strained has died away to 1e-9 m only
 inline constexpr Real creep_measured = 1.0;  // s

@@ -27,7 +27,9 @@ void set_masses(PrecisionScene& scene) {
         const std::vector<Vec3>& x = body.mesh.nodes;
         body.mass.assign(x.size(), 0);
         for (const auto& t : body.mesh.tetrahedra) {
-            const auto at = [&](int k) -> const Vec3& { return x[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+            const auto at = [&](int k) -> const Vec3& {
+                return x[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+            };
             const Real volume = (at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0)) / 6;
             for (const Index n : t) body.mass[static_cast<std::size_t>(n)] += scene.material.density * volume / 4;
         }
@@ -38,7 +40,8 @@ void set_masses(PrecisionScene& scene) {
 PrecisionScene bounce(int level) {
     PrecisionScene scene;
     scene.material = {.young_modulus = 5e4, .poisson_ratio = 0.3, .density = 1000, .friction = 0.3};
-    scene.bodies.push_back(make_body(mesh::ball(0.05, 2 * level), Vec3::Zero(), scene.contact_distance + 0.02, Vec3::Zero()));
+    scene.bodies.push_back(
+        make_body(mesh::ball(0.05, 2 * level), Vec3::Zero(), scene.contact_distance + 0.02, Vec3::Zero()));
     scene.planes.push_back({});
     scene.seconds = 0.3;
     scene.samples = 30;
@@ -50,8 +53,8 @@ PrecisionScene bounce(int level) {
 PrecisionScene slide(int level) {
     PrecisionScene scene;
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.3};
-    scene.bodies.push_back(
-        make_body(mesh::box({0.1, 0.1, 0.05}, {2 * level, 2 * level, level}), Vec3::Zero(), scene.contact_distance, Vec3(1, 0, 0)));
+    scene.bodies.push_back(make_body(mesh::box({0.1, 0.1, 0.05}, {2 * level, 2 * level, level}), Vec3::Zero(),
+                                     scene.contact_distance, Vec3(1, 0, 0)));
     scene.planes.push_back({});
     scene.seconds = 0.4;
     scene.samples = 20;
@@ -64,7 +67,8 @@ PrecisionScene twist(int level) {
     constexpr Real length = 0.3, edge = 0.05, turning = 40;  // m, m, rad/s at the free end: about 0.9 rad of twist
     PrecisionScene scene;
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.3};
-    PrecisionBody bar = make_body(mesh::box({edge, edge, length}, {level, level, 6 * level}), Vec3::Zero(), 0, Vec3::Zero());
+    PrecisionBody bar =
+        make_body(mesh::box({edge, edge, length}, {level, level, 6 * level}), Vec3::Zero(), 0, Vec3::Zero());
     for (std::size_t n = 0; n < bar.mesh.nodes.size(); ++n) {
         const Vec3& x = bar.mesh.nodes[n];
         bar.velocity[n] = turning * x.z() / length * Vec3(-x.y(), x.x(), 0);
@@ -78,14 +82,16 @@ PrecisionScene twist(int level) {
     return scene;
 }
 
-/// A ball runs into three skittles. Where its trajectories part from those of a run that began 1e-12 m elsewhere is measured, not assumed.
+/// A ball runs into three skittles. Where its trajectories part from those of a run that began 1e-12 m elsewhere is
+/// measured, not assumed.
 PrecisionScene skittles(int level) {
     PrecisionScene scene;
     scene.material = {.young_modulus = 6e4, .poisson_ratio = 0.35, .density = 300, .friction = 0.4};
     const Mesh skittle = mesh::skittle(0.38, 2 * level);
     for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.1645, -0.095, 0), Vec3(0.1645, 0.095, 0)})
         scene.bodies.push_back(make_body(skittle, at, scene.contact_distance, Vec3::Zero()));
-    scene.bodies.push_back(make_body(mesh::ball(0.12, 2 * level), {-0.2, 0.01, 0}, scene.contact_distance, Vec3(4, 0, 0)));
+    scene.bodies.push_back(
+        make_body(mesh::ball(0.12, 2 * level), {-0.2, 0.01, 0}, scene.contact_distance, Vec3(4, 0, 0)));
     scene.planes.push_back({});
     scene.seconds = 0.15;
     scene.samples = 15;
@@ -97,8 +103,8 @@ PrecisionScene skittles(int level) {
 PrecisionScene stack(int level) {
     PrecisionScene scene;
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.5};
-    scene.bodies.push_back(
-        make_body(mesh::box({0.16, 0.1, 0.05}, {3 * level, 2 * level, level}), Vec3::Zero(), scene.contact_distance, Vec3::Zero()));
+    scene.bodies.push_back(make_body(mesh::box({0.16, 0.1, 0.05}, {3 * level, 2 * level, level}), Vec3::Zero(),
+                                     scene.contact_distance, Vec3::Zero()));
     scene.bodies.push_back(make_body(mesh::box({0.1, 0.08, 0.05}, {2 * level, 2 * level, level}), {0.02, 0.01, 0.06},
                                      scene.contact_distance, Vec3(0.3, 0.1, -0.5)));
     scene.planes.push_back({});
@@ -118,7 +124,11 @@ PrecisionScene pile(int level) {
         const Vec3 at(i % 2 ? 0.057 : -0.055, i / 2 % 2 ? 0.056 : -0.058, 0.11 * (i / 4) + 0.004 * (i % 4));
         scene.bodies.push_back(make_body(ball, at + Vec3(0.01 * (i / 4), 0.012 * (i / 4), 0), 0.02, Vec3::Zero()));
     }
-    scene.planes = {{}, {{1, 0, 0}, {-wall, 0, 0}}, {{-1, 0, 0}, {wall, 0, 0}}, {{0, 1, 0}, {0, -wall, 0}}, {{0, -1, 0}, {0, wall, 0}}};
+    scene.planes = {{},
+                    {{1, 0, 0}, {-wall, 0, 0}},
+                    {{-1, 0, 0}, {wall, 0, 0}},
+                    {{0, 1, 0}, {0, -wall, 0}},
+                    {{0, -1, 0}, {0, wall, 0}}};
     scene.seconds = 1.5;
     scene.samples = 30;
     scene.length = 2 * radius;
@@ -177,10 +187,12 @@ PrecisionScene make_creep_scene(Real fraction) {
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.5, .damping = 200};
     scene.material.model = MaterialModel::corotational;
     scene.stiffness_damping = 1e-2;
-    scene.bodies.push_back(make_body(mesh::box({0.1, 0.1, 0.05}, {3, 3, 2}), Vec3::Zero(), scene.contact_distance, Vec3::Zero()));
+    scene.bodies.push_back(
+        make_body(mesh::box({0.1, 0.1, 0.05}, {3, 3, 2}), Vec3::Zero(), scene.contact_distance, Vec3::Zero()));
     scene.planes.push_back({});
-    // Weight first, the pull afterwards and slowly, with much damping: a soft block at 99 % of the cone flutters into sliding where its own
-    // oscillations are left alone (with 30/s it does so in any step and to any tolerance), which is mechanics and no creep.
+    // Weight first, the pull afterwards and slowly, with much damping: a soft block at 99 % of the cone flutters into
+    // sliding where its own oscillations are left alone (with 30/s it does so in any step and to any tolerance), which
+    // is mechanics and no creep.
     const Real pull = fraction * scene.material.friction * g;
     scene.gravity = {{0, {0, 0, -g}}, {0.2 * creep_settling, {0, 0, -g}}, {0.6 * creep_settling, {pull, 0, -g}}};
     scene.seconds = creep_settling + creep_measured;
@@ -203,13 +215,17 @@ void perturb(PrecisionScene& scene, std::uint32_t seed, Real amplitude) {
 void write_scene(const PrecisionScene& scene, const std::filesystem::path& file) {
     using Json = nlohmann::json;
     const auto list = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
-    Json json{{"name", scene.name}, {"seconds", scene.seconds}, {"samples", scene.samples}, {"contact_distance", scene.contact_distance}};
+    Json json{{"name", scene.name},
+              {"seconds", scene.seconds},
+              {"samples", scene.samples},
+              {"contact_distance", scene.contact_distance}};
     json["material"] = {{"young_modulus", scene.material.young_modulus},
                         {"poisson_ratio", scene.material.poisson_ratio},
                         {"density", scene.material.density},
                         {"friction", scene.material.friction},
                         {"stiffness_damping", scene.stiffness_damping}};
-    for (const GravityKey& key : scene.gravity) json["gravity"].push_back({key.time, key.gravity.x(), key.gravity.y(), key.gravity.z()});
+    for (const GravityKey& key : scene.gravity)
+        json["gravity"].push_back({key.time, key.gravity.x(), key.gravity.y(), key.gravity.z()});
     json["planes"] = Json::array();
     for (const PrecisionPlane& plane : scene.planes)
         json["planes"].push_back({{"normal", list(plane.normal)}, {"point", list(plane.point)}});

@@ -11,10 +11,10 @@ bool StudyOptions::wants(const std::string& scene) const {
 }
 
 void Study::write(const PrecisionScene& scene, const Row& row, const Record& record) {
-    table << row.axis << ',' << scene.name << ',' << row.engine << ',' << row.variant << ',' << scene.level << ',' << scene.tetrahedra()
-          << ',' << scene.seconds << ',' << record.step << ',' << row.tolerance << ',' << record.seconds << ',' << record.steps << ','
-          << row.error << ',' << row.error_own << ',' << row.reference_error << ',' << row.own_reference_error << ',' << record.finished
-          << '\n'
+    table << row.axis << ',' << scene.name << ',' << row.engine << ',' << row.variant << ',' << scene.level << ','
+          << scene.tetrahedra() << ',' << scene.seconds << ',' << record.step << ',' << row.tolerance << ','
+          << record.seconds << ',' << record.steps << ',' << row.error << ',' << row.error_own << ','
+          << row.reference_error << ',' << row.own_reference_error << ',' << record.finished << '\n'
           << std::flush;
 }
 
@@ -34,7 +34,8 @@ Record Study::run(const PrecisionScene& scene, const SkerryVariant& variant, Rea
 std::vector<Record> Study::run_ladder(const PrecisionScene& scene, const Peer& peer) const {
     std::vector<Record> runs;
     const std::filesystem::path folder = options.out / "runs";
-    // A sample interval is the longest step. Explicit ones begin near what the mesh stands: a run that blows up takes time for all its contacts.
+    // A sample interval is the longest step. Explicit ones begin near what the mesh stands: a run that blows up takes
+    // time for all its contacts.
     Real step = scene.seconds / scene.samples;
     while (peer.explicit_step && step > 1.2 * stable_step_of(scene)) step /= 2;
     for (; runs.size() < 20; step /= 2) {

@@ -42,7 +42,8 @@ struct Study {
     void show(const std::string& what) const;
     /// Runs that are over soon are repeated.
     Record run(const PrecisionScene& scene, const SkerryVariant& variant, Real step) const;
-    /// The last run is the engine's own reference and may take four times the cap; runs before it are given half of that at most.
+    /// The last run is the engine's own reference and may take four times the cap; runs before it are given half of
+    /// that at most.
     std::vector<Record> run_ladder(const PrecisionScene& scene, const Peer& peer) const;
 };
 

@@ -31,7 +31,8 @@ void study_creep(Study& study) {
     table << "engine,variant,step,tolerance,fraction,creep,seconds,finished\n";
     for (const Real fraction : {0.5, 0.9, 0.99}) {
         const PrecisionScene scene = make_creep_scene(fraction);
-        const auto write = [&](const std::string& engine, const std::string& variant, Real tolerance, Real step, const Record& run) {
+        const auto write = [&](const std::string& engine, const std::string& variant, Real tolerance, Real step,
+                               const Record& run) {
             table << engine << ',' << variant << ',' << step << ',' << tolerance << ',' << fraction << ','
                   << (run.finished ? creep_of(scene, run) : -1) << ',' << run.seconds << ',' << run.finished << '\n'
                   << std::flush;

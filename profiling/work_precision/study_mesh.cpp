@@ -1,4 +1,5 @@
-// Work against precision as the mesh gets finer: the same material points on every mesh, each at the step that its mesh stands.
+// Work against precision as the mesh gets finer: the same material points on every mesh, each at the step that its mesh
+// stands.
 #include <cmath>
 #include <limits>
 
@@ -13,7 +14,8 @@ constexpr int points_per_body = 64;
 constexpr Real step_fraction = 0.5;
 
 void study_scene(Study& study, const std::string& name) {
-    const std::vector<int> levels = study.options.quick ? std::vector<int>{1, 2, 3, 4} : std::vector<int>{1, 2, 3, 4, 6, 8, 12};
+    const std::vector<int> levels =
+        study.options.quick ? std::vector<int>{1, 2, 3, 4} : std::vector<int>{1, 2, 3, 4, 6, 8, 12};
     const SkerryVariant variant = time_variants().back();
     std::vector<PrecisionScene> scenes;
     std::vector<Record> runs;
@@ -27,7 +29,8 @@ void study_scene(Study& study, const std::string& name) {
     const auto& reference = paths.back();
     const Real length = scenes.back().length;
     const Real reference_error = mean_distance(reference, paths[paths.size() - 2], length);
-    const auto write = [&](const std::string& engine, const std::string& by, std::size_t k, const Record& run, Real error) {
+    const auto write = [&](const std::string& engine, const std::string& by, std::size_t k, const Record& run,
+                           Real error) {
         study.write(scenes[k],
                     {.axis = "mesh",
                      .engine = engine,
@@ -48,7 +51,8 @@ void study_scene(Study& study, const std::string& name) {
             const Real step = step_fraction * stable_step_of(scenes[k]);
             const Record run = run_peer(scenes[k], peer, step, 1, 4 * study.options.cap, study.options.out / "runs");
             if (!run.finished) break;
-            write(peer.engine, peer.variant, k, run, mean_distance(Probes(scenes[k], points_per_body).follow(run), reference, length));
+            write(peer.engine, peer.variant, k, run,
+                  mean_distance(Probes(scenes[k], points_per_body).follow(run), reference, length));
             if (run.seconds > study.options.cap) break;
         }
     }

@@ -1,5 +1,5 @@
-// A pile is chaotic: what can be compared is not where a ball lies but what many piles have in common. One row a run; the plot makes the
-// statistics.
+// A pile is chaotic: what can be compared is not where a ball lies but what many piles have in common. One row a run;
+// the plot makes the statistics.
 #include <algorithm>
 #include <numbers>
 #include <string>
@@ -53,8 +53,8 @@ void study_pile(Study& study) {
     const auto write = [&](const std::string& engine, const std::string& variant, int seed, const PrecisionScene& scene,
                            const Record& run) {
         const PileState state = run.finished ? state_of(scene, run) : PileState{};
-        table << engine << ',' << variant << ',' << run.step << ',' << seed << ',' << run.seconds << ',' << state.height << ',' << state.top
-              << ',' << state.kinetic << ',' << run.finished << '\n'
+        table << engine << ',' << variant << ',' << run.step << ',' << seed << ',' << run.seconds << ',' << state.height
+              << ',' << state.top << ',' << state.kinetic << ',' << run.finished << '\n'
               << std::flush;
     };
     const auto placed = [&](int seed) {

@@ -1,4 +1,5 @@
-// Work against precision as contacts are solved to smaller tolerances, at one step, by several methods, with and without warm start.
+// Work against precision as contacts are solved to smaller tolerances, at one step, by several methods, with and
+// without warm start.
 #include <string>
 
 #include "profiling/work_precision/study.h"
@@ -27,7 +28,8 @@ void study_scene(Study& study, const std::string& name) {
     const auto samples = static_cast<std::size_t>(scene.samples);
     const Real step = stable_step_of(scene) / 4;
     study.show(name + ": reference of the solver");
-    const Record reference = run_skerry(scene, variant_of(SolverMethod::automatic, reference_tolerance, WarmStart::on), step);
+    const Record reference =
+        run_skerry(scene, variant_of(SolverMethod::automatic, reference_tolerance, WarmStart::on), step);
     const Record other = run_skerry(scene, variant_of(SolverMethod::nncg, reference_tolerance, WarmStart::on), step);
     const Real reference_error = mean_distance(scene, reference, other, samples);
 

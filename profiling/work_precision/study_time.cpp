@@ -11,8 +11,8 @@ namespace {
 
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
-/// Our reference may take so many times what the longest run of a peer that is compared may take; ours are compared up to a step that is longer
-/// by 2 to the power of `reference_halvings`.
+/// Our reference may take so many times what the longest run of a peer that is compared may take; ours are compared up
+/// to a step that is longer by 2 to the power of `reference_halvings`.
 constexpr double reference_share = 10;
 constexpr int reference_halvings = 3;
 
@@ -32,14 +32,15 @@ void cut_at_divergence(Study& study, PrecisionScene& scene, const SkerryVariant&
     for (std::size_t s = 0; s < std::min(a.positions.size(), b.positions.size()); ++s) {
         if (distance_at(scene, a, b, s) < diverged) continue;
         const int kept = std::max(1, static_cast<int>(s + 1) / 2);
-        std::fprintf(stderr, "\r\033[K%s: runs begun %g m apart part at %.3f s; compared up to %.3f s\n", scene.name.c_str(),
-                     first_distance, static_cast<double>(s + 1) * scene.seconds / scene.samples, kept * scene.seconds / scene.samples);
+        std::fprintf(stderr, "\r\033[K%s: runs begun %g m apart part at %.3f s; compared up to %.3f s\n",
+                     scene.name.c_str(), first_distance, static_cast<double>(s + 1) * scene.seconds / scene.samples,
+                     kept * scene.seconds / scene.samples);
         scene.seconds *= static_cast<Real>(kept) / scene.samples;
         scene.samples = kept;
         return;
     }
-    std::fprintf(stderr, "\r\033[K%s: runs begun %g m apart are %.2g L apart at its end\n", scene.name.c_str(), first_distance,
-                 distance_at(scene, a, b, a.positions.size() - 1));
+    std::fprintf(stderr, "\r\033[K%s: runs begun %g m apart are %.2g L apart at its end\n", scene.name.c_str(),
+                 first_distance, distance_at(scene, a, b, a.positions.size() - 1));
 }
 
 void write_peers(Study& study, const PrecisionScene& scene, const Record& reference, Real reference_error) {

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, in metres: python3 scenes/meshes/make_meshes.py"""
+"""Makes the mesh files of scenes/mesh_drop.json, one in each family of formats, in metres:
+python3 scenes/meshes/make_meshes.py"""
 import math
 import pathlib
 
 FOLDER = pathlib.Path(__file__).resolve().parent
-# Kuhn's six tetrahedra of a cell; its corners are numbered by bits x + 2 y + 4 z. Neighbouring cells match, also around a ring.
+# Kuhn's six tetrahedra of a cell; its corners are numbered by bits x + 2 y + 4 z. Neighbouring cells match, also around
+# a ring.
 KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]
 
 
@@ -65,15 +67,18 @@ def point_lines(mesh, first=None):
 
 
 def write_gmsh(mesh, name):
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(mesh.nodes)), *point_lines(mesh, 1), "$EndNodes", "$Elements", str(len(mesh.tetrahedra))]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(mesh.nodes)), *point_lines(mesh, 1),
+             "$EndNodes", "$Elements", str(len(mesh.tetrahedra))]
     lines += [f"{i + 1} 4 2 1 1 " + " ".join(str(n + 1) for n in t) for i, t in enumerate(mesh.tetrahedra)]
     (FOLDER / name).write_text("\n".join(lines + ["$EndElements", ""]))
 
 
 def write_vtk(mesh, name):
     count = len(mesh.tetrahedra)
-    lines = ["# vtk DataFile Version 3.0", "made by make_meshes.py", "ASCII", "DATASET UNSTRUCTURED_GRID", f"POINTS {len(mesh.nodes)} double", *point_lines(mesh)]
-    lines += [f"CELLS {count} {5 * count}"] + ["4 " + " ".join(map(str, t)) for t in mesh.tetrahedra] + [f"CELL_TYPES {count}"] + ["10"] * count
+    lines = ["# vtk DataFile Version 3.0", "made by make_meshes.py", "ASCII", "DATASET UNSTRUCTURED_GRID",
+             f"POINTS {len(mesh.nodes)} double", *point_lines(mesh)]
+    lines += [f"CELLS {count} {5 * count}"] + ["4 " + " ".join(map(str, t)) for t in mesh.tetrahedra]
+    lines += [f"CELL_TYPES {count}"] + ["10"] * count
     (FOLDER / name).write_text("\n".join(lines + [""]))
 
 

@@ -8,9 +8,9 @@ from records import cells, rows_of
 
 HEADER = """# Accuracy
 
-Made by `scripts/accuracy`, which runs the tests tagged `[accuracy]`: every line is an assertion of one of them, in `tests/scene/accuracy` or
-`tests/property`. *Error* is absolute, or relative to what is expected, as the tolerance is. SI units unless said; `h` is the step, `n` a number of
-elements. {lines} lines, {items} items.
+Made by `scripts/accuracy`, which runs the tests tagged `[accuracy]`: every line is an assertion of one of them, in
+`tests/scene/accuracy` or `tests/property`. *Error* is absolute, or relative to what is expected, as the tolerance is.
+SI units unless said; `h` is the step, `n` a number of elements. {lines} lines, {items} items.
 
 | item | what | formula | expected | found | error | tolerance |
 |---:|---|---|---:|---:|---:|---:|
@@ -32,7 +32,8 @@ def line(row):
         error, tolerance = percent(error / abs(row["expected"])), percent(row["tolerance"])
     else:
         error, tolerance = f"{error:.2g}", f"{row['tolerance']:.2g}"
-    return cells([row["item"] or "-", row["name"], f"`{row['formula']}`", number(row["expected"]), number(row["found"]), error, tolerance])
+    return cells([row["item"] or "-", row["name"], f"`{row['formula']}`", number(row["expected"]), number(row["found"]),
+                  error, tolerance])
 
 
 def main(folder, output):
@@ -45,7 +46,8 @@ def main(folder, output):
     text += "\n".join(map(line, rows)) + "\n"
     if any(notes.values()):
         text += "\n## Notes\n\n"
-        text += "".join(f"- **{item or 'without a number'}**: {' '.join(lines)}\n" for item, lines in notes.items() if lines)
+        text += "".join(f"- **{item or 'without a number'}**: {' '.join(lines)}\n" for item, lines in notes.items()
+                        if lines)
     pathlib.Path(output).write_text(text)
     print(f"{len(rows)} lines in {output}")
 

@@ -1,4 +1,5 @@
-# What demo, test and .ci/run share. Source it first: it goes to the root of the repository, whose path is then in `root`.
+# What demo, test and .ci/run share. Source it first: it goes to the root of the repository, whose path is then in
+# `root`.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -13,8 +14,8 @@ fail() {
     exit 1
 }
 
-# phase NAME COMMAND...: runs it with its output in build/NAME.log. Silent when all is well, but for one line on a terminal; else the end of
-# the log, and the exit status of the command.
+# phase NAME COMMAND...: runs it with its output in build/NAME.log. Silent when all is well, but for one line on a
+# terminal; else the end of the log, and the exit status of the command.
 phase() {
     local name=$1 log="build/$1.log" start=$SECONDS status=0 ticker=
     shift
@@ -76,8 +77,8 @@ build() {
     phase "$preset-build" cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 
-# run_tests PRESET [CTEST-OPTION...]: on a terminal one line that moves on, else failures and the summary only; all of it in
-# build/PRESET-test.log.
+# run_tests PRESET [CTEST-OPTION...]: on a terminal one line that moves on, else failures and the summary only; all of
+# it in build/PRESET-test.log.
 run_tests() {
     local preset=$1
     shift
@@ -85,6 +86,7 @@ run_tests() {
     if [[ -t 1 ]]; then
         ctest --preset "$preset" -j "$jobs" --progress --output-log "$log" "$@"
     else
-        ctest --preset "$preset" -j "$jobs" --output-log "$log" "$@" | { grep --line-buffered -vE '^ +Start +[0-9]+: | Passed +[0-9.]+ sec$' || true; }
+        ctest --preset "$preset" -j "$jobs" --output-log "$log" "$@" |
+            { grep --line-buffered -vE '^ +Start +[0-9]+: | Passed +[0-9.]+ sec$' || true; }
     fi
 }

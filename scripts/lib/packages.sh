@@ -21,7 +21,8 @@ need_packages() {
     if [[ ${SKERRY_PACKAGES:-} == present ]]; then return; fi
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         {
-            echo "This system has no apt. Please install what these Debian packages hold, then run this again with SKERRY_PACKAGES=present:"
+            echo "This system has no apt. Please install what these Debian packages hold, then run this again with" \
+                "SKERRY_PACKAGES=present:"
             packages_for "$1" | sed 's/^\([^ ]*\) /    \1: /'
         } >&2
         exit 3

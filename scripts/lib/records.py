@@ -6,7 +6,8 @@ import sys
 
 def rows_of(folder):
     """All lines, sorted by item: within an item in the order of the tests, those without a number last."""
-    rows = [json.loads(text) for file in sorted(pathlib.Path(folder).glob("*.jsonl")) for text in file.read_text().splitlines()]
+    rows = [json.loads(text) for file in sorted(pathlib.Path(folder).glob("*.jsonl"))
+            for text in file.read_text().splitlines()]
     if not rows:
         sys.exit(f"{folder} holds no record of a test")
     return sorted(rows, key=lambda row: row["item"] or 1000)

@@ -36,7 +36,8 @@ void keep_unique(std::vector<T>& values) {
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-void append_vertices(const std::vector<Index>& node, Range triangles, Index first_vertex, Index first_node, SurfaceTables& surface) {
+void append_vertices(const std::vector<Index>& node, Range triangles, Index first_vertex, Index first_node,
+                     SurfaceTables& surface) {
     std::vector<Index> count(node.size() + 1, 0);
     for (Index t = triangles.begin; t < triangles.end; ++t)
         for (Index v : surface.triangles.vertex[t]) ++count[v - first_vertex + 1];
@@ -52,12 +53,14 @@ void append_vertices(const std::vector<Index>& node, Range triangles, Index firs
         for (std::size_t k = 0; k < 3; ++k) {
             const Index v = surface.triangles.vertex[t][k];
             Index& fill = count[v - first_vertex];
-            if (base + fill == surface.vertices.triangle_begin[v]) surface.triangles.owned_vertices[t] |= std::uint8_t(1u << k);
+            if (base + fill == surface.vertices.triangle_begin[v])
+                surface.triangles.owned_vertices[t] |= std::uint8_t(1u << k);
             surface.vertex_triangle[base + fill++] = t;
         }
 }
 
-void append_edges(const std::vector<std::array<Index, 2>>& node, Range triangles, Index first_node, SurfaceTables& surface) {
+void append_edges(const std::vector<std::array<Index, 2>>& node, Range triangles, Index first_node,
+                  SurfaceTables& surface) {
     for (const auto& e : node) {
         surface.edges.node.push_back({first_node + e[0], first_node + e[1]});
         surface.edges.triangle.push_back({no_index, no_index});
@@ -95,8 +98,9 @@ std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Inde
         if (end == i + 1) single.push_back(faces[i]);
         i = end;
     }
-    std::sort(single.begin(), single.end(),
-              [](const Face& a, const Face& b) { return a.element != b.element ? a.element < b.element : a.corner < b.corner; });
+    std::sort(single.begin(), single.end(), [](const Face& a, const Face& b) {
+        return a.element != b.element ? a.element < b.element : a.corner < b.corner;
+    });
 
     std::vector<BoundaryTriangle> triangles;
     triangles.reserve(single.size());
@@ -108,7 +112,8 @@ std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Inde
     return triangles;
 }
 
-SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element, SurfaceTables& surface) {
+SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
+                             SurfaceTables& surface) {
     std::vector<Index> vertex;
     std::vector<std::array<Index, 2>> edge;
     for (const BoundaryTriangle& triangle : triangles)

@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include "systems/collision/contact_key.h"
+#include "systems/collision/inputs/contact_key.h"
 
 namespace skerry {
 
-ContactRow contact_row(const CollisionInputs& inputs, const ContactPair& pair, const Candidate& candidate, ContactKind kind,
-                       const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance, Real contact_distance,
-                       const SurfaceProperties& surface) {
+ContactRow contact_row(const CollisionInputs& inputs, const ContactPair& pair, const Candidate& candidate,
+                       ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
+                       Real contact_distance, const SurfaceProperties& surface) {
     const bool turned = kind == ContactKind::point_triangle && is_point_of_second(candidate.feature);
     const bool collider = pair.kind == PairKind::collider;
     ContactRow row;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/contact_reach.h"
+#include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/search/find_pairs.h"
 #include "systems/collision/search/search_pair.h"
 #include "systems/collision/search/step_reach.h"
@@ -17,29 +17,32 @@ namespace {
 
 constexpr std::size_t trees_per_block = 4;  // a refit takes microseconds
 
-void set_body_fronts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool measure, Column<Real>& front) {
-    front.resize(inputs.body.slot.size());
-    for (std::size_t b = 0; b < front.size(); ++b)
-        front[b] = inputs.body.travel[b] + body_reach(inputs, settings, static_cast<Index>(b), measure, h);
+void bound_body_travels(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool measure,
+                        Column<Real>& travel_bound) {
+    travel_bound.resize(inputs.body.slot.size());
+    for (std::size_t b = 0; b < travel_bound.size(); ++b)
+        travel_bound[b] = inputs.body.travel[b] + body_reach(inputs, settings, static_cast<Index>(b), measure, h);
 }
 
-void set_collider_fronts(const CollisionInputs& inputs, Real h, SearchMemory& memory) {
-    memory.collider_front.resize(inputs.collider.slot.size());
-    for (std::size_t c = 0; c < memory.collider_front.size(); ++c)
-        memory.collider_front[c] = inputs.collider.travel[c] + collider_reach(inputs, static_cast<Index>(c), memory.collider_extent[c], h);
+void bound_collider_travels(const CollisionInputs& inputs, Real h, SearchMemory& memory) {
+    memory.collider_travel_bound.resize(inputs.collider.slot.size());
+    for (std::size_t c = 0; c < memory.collider_travel_bound.size(); ++c)
+        memory.collider_travel_bound[c] =
+            inputs.collider.travel[c] + collider_reach(inputs, static_cast<Index>(c), memory.collider_extent[c], h);
 }
 
-bool all_below(const Column<Real>& front, const Column<Real>& valid_until) {
+bool all_below(const Column<Real>& travel_bound, const Column<Real>& valid_until) {
     bool below = true;
-    for (std::size_t i = 0; i < front.size(); ++i) below &= front[i] < valid_until[i];
+    for (std::size_t i = 0; i < travel_bound.size(); ++i) below &= travel_bound[i] < valid_until[i];
     return below;
 }
 
 /// A mesh collider moves as a body; its row among the colliders says nothing.
 bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     bool below = true;
-    for (std::size_t c = 0; c < search.memory.collider_front.size(); ++c)
-        below &= search.memory.collider_front[c] < search.collider_valid_until[c] || inputs.collider.body[c] != no_index;
+    for (std::size_t c = 0; c < search.memory.collider_travel_bound.size(); ++c)
+        below &= search.memory.collider_travel_bound[c] < search.collider_valid_until[c] ||
+                 inputs.collider.body[c] != no_index;
     return below;
 }
 
@@ -47,10 +50,11 @@ void list_expired(const CollisionInputs& inputs, bool all, SearchMemory& memory,
     memory.expired.clear();
     pairs.fresh.resize(pairs.size());
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const Real own = memory.body_front[pairs.first[p]];
-        pairs.front[p] =
-            own + (pairs.kind[p] == PairKind::collider ? memory.collider_front[pairs.second[p]] : memory.body_front[pairs.second[p]]);
-        pairs.fresh[p] = all || !(pairs.front[p] < pairs.valid_until[p]);
+        const Real own = memory.body_travel_bound[pairs.first[p]];
+        pairs.travel_bound[p] =
+            own + (pairs.kind[p] == PairKind::collider ? memory.collider_travel_bound[pairs.second[p]]
+                                                       : memory.body_travel_bound[pairs.second[p]]);
+        pairs.fresh[p] = all || !(pairs.travel_bound[p] < pairs.valid_until[p]);
         if (pairs.fresh[p]) memory.expired.push_back(static_cast<Index>(p));
     }
     // A tree that several expired pairs share is fitted once.
@@ -72,31 +76,35 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
             const Index b = memory.refit[i];
             const Range tree = inputs.body.bvh_nodes[b], vertices = inputs.body.vertices[b];
             if (tree.size() == 0) continue;
-            refit_bvh(tree, inputs.bvh_node, inputs.leaf_triangle, inputs.surface.triangles.node, inputs.position, box, leaf_box);
-            memory.sphere[b] = sphere_around(box[tree.begin], vertices.begin, vertices.end,
-                                             [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; });
+            refit_bvh(tree, inputs.bvh_node, inputs.leaf_triangle, inputs.surface.triangles.node, inputs.position, box,
+                      leaf_box);
+            memory.sphere[b] =
+                sphere_around(box[tree.begin], vertices.begin, vertices.end,
+                              [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; });
         }
     });
 }
 
-/// What both partners may close in this step, m. Not front minus travel: a shape that turns may have travelled without bounds.
+/// What both partners may close in this step, m. Not travel_bound minus travel: a shape that turns may have travelled
+/// without bounds.
 Real closing(const CollisionInputs& inputs, const SearchMemory& memory, const PairToSearch& pair, Real h) {
-    const auto of_body = [&](Index b) { return memory.body_front[b] - inputs.body.travel[b]; };
+    const auto of_body = [&](Index b) { return memory.body_travel_bound[b] - inputs.body.travel[b]; };
     return of_body(pair.first) + (pair.kind == PairKind::collider
                                       ? collider_reach(inputs, pair.second, memory.collider_extent[pair.second], h)
                                       : of_body(pair.second));
 }
 
-void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, const BvhBoxes& boxes, Index p,
-                  const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
+void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, const BvhBoxes& boxes,
+                  Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
-    pair.datum = pair_datum(inputs, pair.kind, pair.first, pair.second);
+    pair.travel_base = pair_travel_base(inputs, pair.kind, pair.first, pair.second);
     pair.margin = settings.pair_skin * pair.scale.edge + closing(inputs, memory, pair, h);
     if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart)
-        pairs.state[p] = !found.empty() && surfaces_cross(inputs, pair, boxes) ? PairState::overlapping : PairState::apart;
+        pairs.state[p] =
+            !found.empty() && surfaces_cross(inputs, pair, boxes) ? PairState::overlapping : PairState::apart;
 
     pairs.candidates[p].resize(found.size());
     pairs.asleep_until[p].resize(found.size());
@@ -106,12 +114,13 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     }
 }
 
-/// Bodies whose drift has cost a searched pair a good part of its skin.
-void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory, const PairTable& pairs) {
+/// Bodies whose displacement has cost a searched pair a good part of its skin.
+void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
+                    const PairTable& pairs) {
     constexpr Real good_part = 0.25;
     memory.rebase.resize(inputs.body.slot.size());
     const auto ask = [&](Index b, Real skin) {
-        if (2 * inputs.body.drift[b] > good_part * skin) memory.rebase[b] = 1;
+        if (2 * inputs.body.displacement[b] > good_part * skin) memory.rebase[b] = 1;
     };
     for (Index p : memory.expired) {
         const Real skin = settings.pair_skin * pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).edge;
@@ -122,21 +131,21 @@ void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& sett
 
 }  // namespace
 
-bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<Aabb> box,
-                     std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs) {
+bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+                     std::span<Aabb> box, std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs) {
     SearchMemory& memory = search.memory;
     const std::size_t body_count = inputs.body.slot.size(), collider_count = inputs.collider.slot.size();
-    const bool afresh =
-        !settings.use_budgets || search.body_valid_until.size() != body_count || search.collider_valid_until.size() != collider_count;
-    set_body_fronts(inputs, settings, h, afresh, memory.body_front);
+    const bool afresh = !settings.use_budgets || search.body_valid_until.size() != body_count ||
+                        search.collider_valid_until.size() != collider_count;
+    bound_body_travels(inputs, settings, h, afresh, memory.body_travel_bound);
     bool broad = afresh;
     if (!afresh) {
-        set_collider_fronts(inputs, h, memory);
-        broad = !all_below(memory.body_front, search.body_valid_until) || !colliders_below(inputs, search);
+        bound_collider_travels(inputs, h, memory);
+        broad = !all_below(memory.body_travel_bound, search.body_valid_until) || !colliders_below(inputs, search);
     }
     if (broad) {
         find_pairs(executor, inputs, settings, h, afresh, search, pairs);
-        set_collider_fronts(inputs, h, memory);  // of a plane that turns, by where the bodies are now
+        bound_collider_travels(inputs, h, memory);  // of a plane that turns, by where the bodies are now
     }
     list_expired(inputs, afresh, memory, pairs);
     if (!broad && memory.expired.empty()) return false;

@@ -1,20 +1,21 @@
-// Which bodies, and which of their features, could touch soon (methods.md 6, items 1 to 3).
+// Which bodies, and which of their features, could touch soon (docs/methods/collision.md 1 to 3).
 #pragma once
 
 #include "components/pair_table.h"
 #include "jobs/executor.h"
-#include "systems/collision/collision_inputs.h"
+#include "systems/collision/inputs/collision_inputs.h"
 
 namespace skerry {
 
-/// Brings the pair list and the candidate lists up to date. Nothing close: one comparison per body and per pair, then returns false
-/// (skipped). Otherwise first the broad search (sweep over body boxes; only when some body used up its budget of travel), then, for each
-/// pair whose own budget is used up, a refit of its trees and a traversal, in parallel over those pairs. `box` and `leaf_box` are those of
-/// BvhTable and BvhLeafTable, refit here. The budgets are explained in contact_reach.h; they rest on BodyTable::travel, which must bound
-/// the motion of every node since the body was added, and on BodyTable::max_speed, that of the motion that led to the present positions.
-/// Where that is not so (a new body, one moved by hand, rows that moved) clear SearchState::body_valid_until: everything is then searched
+/// Brings the pair list and the candidate lists up to date. Nothing close: one comparison per body and per pair, then
+/// returns false (skipped). Otherwise first the broad search (sweep over body boxes; only when some body used up its
+/// budget of travel), then, for each pair whose own budget is used up, a refit of its trees and a traversal, in
+/// parallel over those pairs. `box` and `leaf_box` are those of BvhTable and BvhLeafTable, refit here. The budgets are
+/// explained in contact_reach.h; they rest on BodyTable::travel, which must bound the motion of every node since the
+/// body was added, and on BodyTable::max_speed, that of the motion that led to the present positions. Where that is not
+/// so (a new body, one moved by hand, rows that moved) clear SearchState::body_valid_until: everything is then searched
 /// afresh with the present velocities. Deterministic: pairs in key order, candidates in feature order.
-bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<Aabb> box,
-                     std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs);
+bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+                     std::span<Aabb> box, std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs);
 
 }  // namespace skerry

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/contact_key.h"
-#include "systems/collision/contact_reach.h"
 #include "systems/collision/contact_rows.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/edge_edge_contact.h"
 #include "systems/collision/narrow/point_triangle_contact.h"
@@ -44,7 +44,7 @@ public:
           first_(pairs.first[p]),
           second_(pairs.second[p]),
           apart_(pairs.state[p] == PairState::apart && settings.continuous),
-          front_(pairs.front[p]),
+          travel_bound_(pairs.travel_bound[p]),
           candidates_(pairs.candidates[p].span()),
           asleep_until_(pairs.asleep_until[p].span()),
           found_(found) {}
@@ -55,7 +55,7 @@ public:
             const Index stop = std::min(i + candidates_at_once, end);
             if (settings_.use_budgets && all_asleep(i, stop)) continue;
             for (Index c = i; c < stop; ++c)
-                if (!settings_.use_budgets || !(front_ < asleep_until_[c])) wake(c);
+                if (!settings_.use_budgets || !(travel_bound_ < asleep_until_[c])) wake(c);
         }
         return std::sqrt(nearest_squared_);
     }
@@ -65,7 +65,7 @@ private:
         const Real* const until = asleep_until_.data();
         bool awake = false;
 #pragma omp simd reduction(| : awake)
-        for (Index i = begin; i < end; ++i) awake |= !(front_ < until[i]);
+        for (Index i = begin; i < end; ++i) awake |= !(travel_bound_ < until[i]);
         return !awake;
     }
 
@@ -84,10 +84,10 @@ private:
     void prepare() {
         scale_ = pair_scale(inputs_, kind_, first_, second_);
         surface_ = pair_surface(inputs_, kind_, first_, second_);
-        datum_ = pair_datum(inputs_, kind_, first_, second_);
+        travel_base_ = pair_travel_base(inputs_, kind_, first_, second_);
         // Without a shell touching surfaces may overlap by rounding.
         surfaces_ = apart_ && scale_.contact_distance > 0 ? Surfaces::apart : Surfaces::may_overlap;
-        const Real closing = front_ - pair_travel(inputs_, kind_, first_, second_);
+        const Real closing = travel_bound_ - pair_travel(inputs_, kind_, first_, second_);
         near_ = scale_.contact_distance + (closing >= 0 ? closing : 0);
         prepared_ = true;
     }
@@ -103,11 +103,11 @@ private:
         return false;
     }
 
-    void add(const Candidate& candidate, ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
-             Real contact_distance, const Vec3& surface_velocity) {
+    void add(const Candidate& candidate, ContactKind kind, const Stencil& stencil, const Vec3& point,
+             const Vec3& normal, Real distance, Real contact_distance, const Vec3& surface_velocity) {
         if (!moves(stencil)) return;
-        ContactRow row = contact_row(inputs_, {key_, kind_, first_, second_}, candidate, kind, stencil, point, normal, distance,
-                                     contact_distance, surface_);
+        ContactRow row = contact_row(inputs_, {key_, kind_, first_, second_}, candidate, kind, stencil, point, normal,
+                                     distance, contact_distance, surface_);
         row.surface_velocity = surface_velocity;
         found_.push_back(row);
     }
@@ -117,32 +117,35 @@ private:
         const RigidMotion& motion = inputs_.collider.motion[candidate.second];
         const SurfacePoint nearest = distance_to_collider_part(inputs_.collider.geometry[candidate.second], motion,
                                                                second_local(candidate.feature), inputs_.position[node]);
-        asleep_until_[c] = datum_ + nearest.distance - scale_.contact_distance;
+        asleep_until_[c] = travel_base_ + nearest.distance - scale_.contact_distance;
         if (!(nearest.distance <= near_)) return;
         const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(nearest.point - motion.position);
         if (!within_reach(nearest.distance, (inputs_.velocity[node] - velocity).norm())) return;
-        add(candidate, ContactKind::point_collider, {{node, node, node, node}, {1, 0, 0, 0}}, nearest.point, nearest.normal,
-            nearest.distance, scale_.contact_distance, velocity);
+        add(candidate, ContactKind::point_collider, {{node, node, node, node}, {1, 0, 0, 0}}, nearest.point,
+            nearest.normal, nearest.distance, scale_.contact_distance, velocity);
     }
 
     void point_against_triangle(Index c, const Candidate& candidate) {
         const Index node = inputs_.surface.vertices.node[candidate.first];
-        const PointTriangleContact contact =
-            point_triangle_contact(inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_, surfaces_);
+        const PointTriangleContact contact = point_triangle_contact(
+            inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_, surfaces_);
         nearest_squared_ = std::min(nearest_squared_, contact.closest.distance_squared);
-        asleep_until_[c] = datum_ + contact.sleep;
+        asleep_until_[c] = travel_base_ + contact.sleep;
         if (contact.side == Side::none) return;
         const auto& corner = inputs_.surface.triangles.node[candidate.second];
         Real speed_squared = 0;
-        for (Index n : corner) speed_squared = std::max(speed_squared, (inputs_.velocity[node] - inputs_.velocity[n]).squaredNorm());
+        for (Index n : corner)
+            speed_squared = std::max(speed_squared, (inputs_.velocity[node] - inputs_.velocity[n]).squaredNorm());
         if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
         if (contact.side == Side::behind && !is_truly_behind(c, node, corner, std::abs(contact.distance))) return;
-        add(candidate, ContactKind::point_triangle, stencil_of_point({node, corner[0], corner[1], corner[2]}, contact.closest),
-            contact.closest.nearest, contact.normal, contact.distance, scale_.contact_distance, Vec3::Zero());
+        add(candidate, ContactKind::point_triangle,
+            stencil_of_point({node, corner[0], corner[1], corner[2]}, contact.closest), contact.closest.nearest,
+            contact.normal, contact.distance, scale_.contact_distance, Vec3::Zero());
     }
 
-    /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front of the far side of a thin
-    /// part, or be pushed out through a nearer face. All triangles as near as that are candidates of the same point, in one row.
+    /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front
+    /// of the far side of a thin part, or be pushed out through a nearer face. All triangles as near as that are
+    /// candidates of the same point, in one row.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
         // In a body's contact with itself it may simply be on the other side of a thin part.
         if (kind_ == PairKind::self && !was_far_at_rest(inputs_, scale_, point, corner)) return false;
@@ -151,8 +154,8 @@ private:
         const Real limit = depth - nearer_fraction * (depth + scale_.edge);
         const auto nearer = [&](Index i) {
             const auto& n = inputs_.surface.triangles.node[candidates_[i].second];
-            const PointTriangle other =
-                closest_point_on_triangle(inputs_.position[point], inputs_.position[n[0]], inputs_.position[n[1]], inputs_.position[n[2]]);
+            const PointTriangle other = closest_point_on_triangle(inputs_.position[point], inputs_.position[n[0]],
+                                                                  inputs_.position[n[1]], inputs_.position[n[2]]);
             return limit > 0 && other.distance_squared < limit * limit;
         };
         for (Index i = c - 1; i >= 0 && point_of_feature(candidates_[i].feature) == group; --i)
@@ -163,18 +166,20 @@ private:
     }
 
     void edge_against_edge(Index c, const Candidate& candidate) {
-        const EdgeEdgeContact contact =
-            edge_edge_contact(inputs_.surface, inputs_.position, candidate.first, candidate.second, scale_, near_, surfaces_);
+        const EdgeEdgeContact contact = edge_edge_contact(inputs_.surface, inputs_.position, candidate.first,
+                                                          candidate.second, scale_, near_, surfaces_);
         nearest_squared_ = std::min(nearest_squared_, contact.closest.distance_squared);
-        asleep_until_[c] = datum_ + contact.sleep;
+        asleep_until_[c] = travel_base_ + contact.sleep;
         if (!contact.touching) return;
         const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
         Real speed_squared = 0;
         for (Index m : a)
-            for (Index n : b) speed_squared = std::max(speed_squared, (inputs_.velocity[m] - inputs_.velocity[n]).squaredNorm());
+            for (Index n : b)
+                speed_squared = std::max(speed_squared, (inputs_.velocity[m] - inputs_.velocity[n]).squaredNorm());
         if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
-        add(candidate, ContactKind::edge_edge, stencil_of_edges({a[0], a[1], b[0], b[1]}, contact.closest), contact.closest.on_second,
-            contact.normal, contact.distance, scale_.contact_distance - contact.slack, Vec3::Zero());
+        add(candidate, ContactKind::edge_edge, stencil_of_edges({a[0], a[1], b[0], b[1]}, contact.closest),
+            contact.closest.on_second, contact.normal, contact.distance, scale_.contact_distance - contact.slack,
+            Vec3::Zero());
     }
 
     const CollisionInputs& inputs_;
@@ -184,7 +189,7 @@ private:
     const PairKind kind_;
     const Index first_, second_;
     const bool apart_;
-    const Real front_;
+    const Real travel_bound_;
     std::span<const Candidate> candidates_;
     std::span<Real> asleep_until_;
     Column<ContactRow>& found_;
@@ -193,7 +198,7 @@ private:
     Surfaces surfaces_ = Surfaces::may_overlap;
     PairScale scale_;
     SurfaceProperties surface_;
-    Real datum_ = 0;
+    Real travel_base_ = 0;
     Real near_ = 0;
 };
 
@@ -208,21 +213,22 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
 }
 
 /// Pairs of which neither partner moves: what is between them is in equilibrium, or they would not rest.
-void mark_resting(const CollisionInputs& inputs, PairTable& pairs) {
-    pairs.resting.resize(pairs.size());
+void mark_idle(const CollisionInputs& inputs, PairTable& pairs) {
+    pairs.idle.resize(pairs.size());
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        pairs.resting[p] =
-            inputs.body.asleep[pairs.first[p]] && (pairs.kind[p] == PairKind::collider ? collider_stands_still(inputs, pairs.second[p])
-                                                                                       : body_stands_still(inputs, pairs.second[p]));
+        pairs.idle[p] = inputs.body.asleep[pairs.first[p]] &&
+                        (pairs.kind[p] == PairKind::collider ? collider_stands_still(inputs, pairs.second[p])
+                                                             : body_stands_still(inputs, pairs.second[p]));
     }
 }
 
-/// Cuts the concatenated candidate lists of the pairs that do not rest into blocks of about equal length. Returns their number.
+/// Cuts the concatenated candidate lists of the pairs that do not rest into blocks of about equal length. Returns their
+/// number.
 Index cut_blocks(PairTable& pairs) {
     pairs.block.clear();
     Index filled = candidates_per_block;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const Index count = pairs.resting[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
+        const Index count = pairs.idle[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
         for (Index begin = 0; begin < count;) {
             if (filled >= candidates_per_block) {
                 pairs.block.push_back({static_cast<Index>(p), begin});
@@ -238,7 +244,8 @@ Index cut_blocks(PairTable& pairs) {
     return blocks;
 }
 
-void look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b, PairTable& pairs) {
+void look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b,
+                   PairTable& pairs) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     Column<ContactRow>& found = pairs.found[b];
     found.clear();
@@ -246,7 +253,8 @@ void look_at_block(const CollisionInputs& inputs, const CollisionSettings& setti
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        if (from < to && !pairs.resting[p]) nearest = std::min(nearest, PairContacts(inputs, settings, h, pairs, p, found).run(from, to));
+        if (from < to && !pairs.idle[p])
+            nearest = std::min(nearest, PairContacts(inputs, settings, h, pairs, p, found).run(from, to));
     }
     pairs.block_nearest[b] = nearest;
 }
@@ -286,9 +294,9 @@ void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& c
 
 }  // namespace
 
-bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
-                   CrossingTable& crossings, ContactTable& contacts) {
-    mark_resting(inputs, pairs);
+bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+                   PairTable& pairs, CrossingTable& crossings, ContactTable& contacts) {
+    mark_idle(inputs, pairs);
     const Index blocks = cut_blocks(pairs);
     if (blocks == 0) {
         contacts.resize(0);
@@ -315,7 +323,8 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
     const auto write = [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) write_rows(pairs.found[b].span(), pairs.block_first[b], contacts);
     };
-    parallel_for(executor, static_cast<std::size_t>(blocks), count > rows_per_block ? 1 : static_cast<std::size_t>(blocks), write);
+    parallel_for(executor, static_cast<std::size_t>(blocks),
+                 count > rows_per_block ? 1 : static_cast<std::size_t>(blocks), write);
     return true;
 }
 

@@ -4,9 +4,9 @@
 #include <atomic>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/contact_key.h"
-#include "systems/collision/contact_reach.h"
 #include "systems/collision/contact_rows.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/geometry/closest_points.h"
 #include "systems/geometry/time_of_contact.h"
@@ -18,7 +18,7 @@ namespace {
 // Features that approach each other by less than this fraction of their distance in the step cannot meet, by far.
 constexpr Real slow_fraction = 0.5;
 
-struct Motion {
+struct StepMotion {
     std::span<const Vec3> velocity_next, push_out;
     Real h;
 
@@ -34,7 +34,8 @@ struct Nearest {
 
 class PairCrossings {
 public:
-    PairCrossings(const CollisionInputs& inputs, const Motion& motion, const PairTable& pairs, Index p, Column<ContactRow>& found)
+    PairCrossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, Index p,
+                  Column<ContactRow>& found)
         : inputs_(inputs),
           motion_(motion),
           key_(pairs.key[p]),
@@ -45,13 +46,13 @@ public:
           asleep_until_(pairs.asleep_until[p].span()),
           found_(found) {}
 
-    /// Looks at the candidates that can have met by `front`. Returns how many were tested.
-    std::uint64_t run(Index begin, Index end, Real front) {
+    /// Looks at the candidates that can have met by `travel_bound`. Returns how many were tested.
+    std::uint64_t run(Index begin, Index end, Real travel_bound) {
         scale_ = pair_scale(inputs_, kind_, first_, second_);
         const Real travel = pair_travel(inputs_, kind_, first_, second_);
         std::uint64_t tested = 0;
         for (Index c = begin; c < end; ++c)
-            if (!(front < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel);
+            if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel);
         return tested;
     }
 
@@ -108,15 +109,18 @@ private:
         if (!(length > 0)) return;  // they touched before the step
         const Vec3 normal = met.offset / length;
         Real along = 0;  // m, of the two points at the start of the step
-        for (std::size_t a = 0; a < 4; ++a) along += met.stencil.weight[a] * normal.dot(inputs_.position[met.stencil.node[a]]);
-        const Real distance = std::max(along, Real(0));  // features that turn by more than a right angle have not overlapped
-        found_.push_back(contact_row(inputs_, {key_, kind_, first_, second_}, candidate,
-                                     kind == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle, met.stencil,
-                                     met.point, normal, distance, scale_.contact_distance, pair_surface(inputs_, kind_, first_, second_)));
+        for (std::size_t a = 0; a < 4; ++a)
+            along += met.stencil.weight[a] * normal.dot(inputs_.position[met.stencil.node[a]]);
+        // features that turn by more than a right angle have not overlapped
+        const Real distance = std::max(along, Real(0));
+        found_.push_back(contact_row(
+            inputs_, {key_, kind_, first_, second_}, candidate,
+            kind == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle, met.stencil,
+            met.point, normal, distance, scale_.contact_distance, pair_surface(inputs_, kind_, first_, second_)));
     }
 
     const CollisionInputs& inputs_;
-    const Motion& motion_;
+    const StepMotion& motion_;
     const std::uint64_t key_;
     const PairKind kind_;
     const Index first_, second_;
@@ -128,8 +132,8 @@ private:
 
 /// How far a pair can come in this step, m.
 struct PairReach {
-    Real motion;  // of both together
-    Real front;   // travel of both with it
+    Real motion;        // of both together
+    Real travel_bound;  // travel of both with it
 };
 
 PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
@@ -142,8 +146,8 @@ bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) 
            pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).contact_distance > 0;
 }
 
-std::uint64_t look_at_block(const CollisionInputs& inputs, const Motion& motion, const PairTable& pairs, std::size_t b,
-                            Column<ContactRow>& found) {
+std::uint64_t look_at_block(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
+                            std::size_t b, Column<ContactRow>& found) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     std::uint64_t tested = 0;
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
@@ -151,9 +155,13 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const Motion& motion,
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
         if (from >= to || pairs.kind[p] == PairKind::collider) continue;
         const PairReach reach = reach_of(inputs, pairs, p, motion.h);
-        // What slept in find_contacts was not measured: it may be nearer than block_nearest, though not within the front of then.
-        const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && reach.front <= pairs.front[p];
-        if (!slow && is_watched(inputs, pairs, p)) tested += PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.front);
+        // Of the block's candidates, those awake in find_contacts have D >= block_nearest, so that a motion below
+        // slow_fraction block_nearest cannot bring them together; those asleep have g > reach as long as the motion
+        // stays within the front of find_contacts.
+        const bool slow =
+            reach.motion <= slow_fraction * pairs.block_nearest[b] && reach.travel_bound <= pairs.travel_bound[p];
+        if (!slow && is_watched(inputs, pairs, p))
+            tested += PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.travel_bound);
     }
     return tested;
 }
@@ -163,11 +171,13 @@ Index count_beyond_lists(const CollisionInputs& inputs, const PairTable& pairs, 
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
         if (pairs.kind[p] == PairKind::collider || pairs.state[p] != PairState::apart) continue;
-        // valid_until allows for what was drifted before the search, since `travel` starts to count at a drift of zero. Now nothing has.
-        const Real drifted = pairs.fresh[p] ? pair_travel(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) -
-                                                  pair_datum(inputs, pairs.kind[p], pairs.first[p], pairs.second[p])
-                                            : 0;
-        count += !(reach_of(inputs, pairs, p, h).front < pairs.valid_until[p] + drifted);
+        // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. Where the list was made from the very
+        // positions of this step nothing has moved since, d0 is not lost, and T + m is the bound.
+        const Real drifted = pairs.fresh[p]
+                                 ? pair_travel(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) -
+                                       pair_travel_base(inputs, pairs.kind[p], pairs.first[p], pairs.second[p])
+                                 : 0;
+        count += !(reach_of(inputs, pairs, p, h).travel_bound < pairs.valid_until[p] + drifted);
     }
     return count;
 }
@@ -183,11 +193,12 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
 }  // namespace
 
 Index find_crossings(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
-                     std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs, CrossingTable& crossings) {
+                     std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs,
+                     CrossingTable& crossings) {
     const std::size_t blocks = pairs.block.size() > 0 ? pairs.block.size() - 1 : 0;
     if (!settings.continuous || blocks == 0) return 0;
     if (crossings.found.size() < blocks) crossings.found.resize(blocks);
-    const Motion motion{velocity_next, push_out, h};
+    const StepMotion motion{velocity_next, push_out, h};
     std::atomic<std::uint64_t> tested{0};
     for (auto& found : crossings.found) found.clear();
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {

@@ -9,7 +9,8 @@ namespace {
 template <class Visit>
 void for_each_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass, Visit&& visit) {
     for (std::size_t a = 0; a < 4; ++a)
-        if (stencil.weight[a] != 0 && inverse_mass[stencil.node[a]] > 0) visit(static_cast<std::size_t>(stencil.node[a]));
+        if (stencil.weight[a] != 0 && inverse_mass[stencil.node[a]] > 0)
+            visit(static_cast<std::size_t>(stencil.node[a]));
 }
 
 }  // namespace
@@ -20,7 +21,8 @@ bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass)
     return moves;
 }
 
-Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, std::span<Index> contact_region) {
+Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                           std::span<Index> contact_region) {
     std::fill(contact_region.begin(), contact_region.end(), no_index);
     std::vector<std::size_t> in_area(inverse_mass.size(), 0);  // by node: 1 + the i for which it was last marked
     Index area_count = 0;
@@ -32,7 +34,8 @@ Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Rea
         for (std::size_t k = 0; k < stencil.size(); ++k)
             if (contact_region[k] == area) for_each_moving_node(stencil[k], inverse_mass, mark);
         for (std::size_t j = i + 1; j < stencil.size(); ++j) {
-            if (contact_region[j] != no_index) continue;  // the paper's omission: an area with a number is left as it is
+            // the paper's omission: an area with a number is left as it is
+            if (contact_region[j] != no_index) continue;
             bool shares = false;
             for_each_moving_node(stencil[j], inverse_mass, [&](std::size_t node) { shares |= in_area[node] == i + 1; });
             if (!shares) continue;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t contact_block = 2048;  // ~20 us of merging
 
-/// Turns an impulse by the smallest rotation that takes one unit normal to the other, so that it keeps its place in the friction cone.
-/// A normal that flipped names another contact: nothing is carried over.
+/// Turns an impulse by the smallest rotation that takes one unit normal to the other, so that it keeps its place in the
+/// friction cone. A normal that flipped names another contact: nothing is carried over.
 Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     const Real cosine = from.dot(to);
     constexpr Real flipped = -0.999;  // cosine; beyond it the axis of the rotation is noise
@@ -21,10 +21,10 @@ Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     return cosine * impulse + axis.cross(impulse) + (axis.dot(impulse) / (1 + cosine)) * axis;
 }
 
-/// Merges this step's impulses with those of resting pairs, which stand for a step of length `h` from now on. Both are in key order, and no
-/// pair is in both.
-void keep_resting(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse, const RestingPairs& pairs,
-                  Real h, const WarmStartTable& last, WarmStartTable& next) {
+/// Merges this step's impulses with those of idle pairs, which stand for a step of length `h` from now on. Both are
+/// in key order, and no pair is in both.
+void keep_resting(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse,
+                  const IdlePairs& pairs, Real h, const WarmStartTable& last, WarmStartTable& next) {
     next.key.clear();
     next.normal.clear();
     next.impulse.clear();
@@ -41,9 +41,10 @@ void keep_resting(std::span<const ContactKey> key, std::span<const Vec3> normal,
         const std::uint64_t pair = last.key[old].pair;
         while (p < pairs.key.size() && pairs.key[p] < pair) ++p;
         if (p == pairs.key.size()) break;
-        if (pairs.key[p] != pair || !pairs.resting[p]) continue;
-        take_new(static_cast<std::size_t>(std::lower_bound(key.begin() + static_cast<std::ptrdiff_t>(i), key.end(), ContactKey{pair, 0}) -
-                                          key.begin()));
+        if (pairs.key[p] != pair || !pairs.idle[p]) continue;
+        take_new(static_cast<std::size_t>(
+            std::lower_bound(key.begin() + static_cast<std::ptrdiff_t>(i), key.end(), ContactKey{pair, 0}) -
+            key.begin()));
         next.key.push_back(last.key[old]);
         next.normal.push_back(last.normal[old]);
         next.impulse.push_back(scale * last.impulse[old]);
@@ -53,8 +54,8 @@ void keep_resting(std::span<const ContactKey> key, std::span<const Vec3> normal,
 
 }  // namespace
 
-bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal, const WarmStartTable& last, Real h,
-                      std::span<Vec3> impulse) {
+bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
+                      const WarmStartTable& last, Real h, std::span<Vec3> impulse) {
     SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size());
     if (key.empty() || last.key.empty()) {
         std::fill(impulse.begin(), impulse.end(), Vec3::Zero());
@@ -65,20 +66,22 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     const std::span<const ContactKey> last_key = last.key;
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         // every block finds its own place in last step's table, then both run along together
-        std::size_t old = static_cast<std::size_t>(std::lower_bound(last_key.begin(), last_key.end(), key[begin]) - last_key.begin());
+        std::size_t old =
+            static_cast<std::size_t>(std::lower_bound(last_key.begin(), last_key.end(), key[begin]) - last_key.begin());
         for (std::size_t i = begin; i < end; ++i) {
             while (old < last_key.size() && last_key[old] < key[i]) ++old;
             const bool known = old < last_key.size() && last_key[old] == key[i];
-            impulse[i] = known ? Vec3(scale * turn(last.impulse[old], last.normal[old], normal[i])) : Vec3(Vec3::Zero());
+            impulse[i] =
+                known ? Vec3(scale * turn(last.impulse[old], last.normal[old], normal[i])) : Vec3(Vec3::Zero());
         }
     });
     return true;
 }
 
 void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse,
-                      const RestingPairs& pairs, Real h, WarmStartTable& last, WarmStartTable& next) {
-    SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size() && pairs.resting.size() == pairs.key.size());
-    const bool any_rests = std::ranges::find(pairs.resting, 1) != pairs.resting.end();
+                      const IdlePairs& pairs, Real h, WarmStartTable& last, WarmStartTable& next) {
+    SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size() && pairs.idle.size() == pairs.key.size());
+    const bool any_rests = std::ranges::find(pairs.idle, 1) != pairs.idle.end();
     if (any_rests && !last.key.empty()) {
         keep_resting(key, normal, impulse, pairs, h, last, next);
         std::swap(last.key, next.key);

@@ -25,20 +25,24 @@ Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction fricti
     return std::max(std::abs(tangential.dot(frame.first)), std::abs(tangential.dot(frame.second)));
 }
 
-ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_friction, Real dynamic_friction, Friction friction) {
+ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_friction, Real dynamic_friction,
+                      Friction friction) {
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // the solver puts a sliding impulse onto the dynamic limit to rounding; the warm start turns it without changing the ratio
+    // the solver puts a sliding impulse onto the dynamic limit to rounding; the warm start turns it without changing
+    // the ratio
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, friction);
     const Real limit = dynamic_friction * along;
-    const bool on_limit = std::abs(load - limit) <= rounding * limit || load >= static_friction * along * (1 - rounding);
+    const bool on_limit =
+        std::abs(load - limit) <= rounding * limit || load >= static_friction * along * (1 - rounding);
     return on_limit ? ContactState::slide : ContactState::stick;
 }
 
 /// What comes from outside: the collider's surface, and nodes that no impulse moves.
-void add_outer(const Stencil& stencil, const Vec3& surface_velocity, const Vec3& impulse, std::span<const Real> inverse_mass,
-               std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, ContactMeasures& sum) {
+void add_outer(const Stencil& stencil, const Vec3& surface_velocity, const Vec3& impulse,
+               std::span<const Real> inverse_mass, std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
+               ContactMeasures& sum) {
     Real moving = 0;  // sum of the weights
     Vec3 outer_velocity = surface_velocity;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -66,8 +70,8 @@ void add(ContactMeasures& sum, const ContactMeasures& part) {
 }  // namespace
 
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
-                                 std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, std::span<Vec3> slip,
-                                 std::span<ContactState> state, Friction friction) {
+                                 std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
+                                 std::span<Vec3> slip, std::span<ContactState> state, Friction friction) {
     const std::size_t count = contacts.size();
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // a fixed number of parts, so that their sums need no memory; their borders depend on the contact count alone
@@ -89,7 +93,8 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
             if (state[i] == ContactState::open) continue;
             const Vec3 before = relative_velocity(contacts.stencil[i], contacts.surface_velocity[i], velocity);
             part.dissipated -= 0.5 * impulse.dot(before + after);
-            add_outer(contacts.stencil[i], contacts.surface_velocity[i], impulse, inverse_mass, velocity, velocity_next, part);
+            add_outer(contacts.stencil[i], contacts.surface_velocity[i], impulse, inverse_mass, velocity, velocity_next,
+                      part);
         }
     });
     ContactMeasures total;

@@ -11,17 +11,19 @@ struct ContactMeasures {
     Real max_penetration = 0;    // m, largest -distance: overlap of the surfaces themselves
     Real max_gap_violation = 0;  // m, largest -gap: pressed into the contact shell
     Real dissipated = 0;         // J, -sum of impulse . (velocity before + velocity after) / 2
-    // from colliders and held nodes to the moving nodes: their momentum gains outer_impulse, their energy outer_work - dissipated
+    // from colliders and held nodes to the moving nodes: their momentum gains outer_impulse, their energy outer_work -
+    // dissipated
     Vec3 outer_impulse = Vec3::Zero();  // N s
     Real outer_work = 0;                // J
     Index stick_count = 0;
     Index slide_count = 0;
 };
 
-/// Writes slip (tangential relative velocity after the solve) and state (open: no impulse; slide: impulse on the limit of `friction`).
-/// Parallel over blocks of contacts; sums in block order.
+/// Writes slip (tangential relative velocity after the solve) and state (open: no impulse; slide: impulse on the limit
+/// of `friction`). Parallel over blocks of contacts; sums in block order.
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
-                                 std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, std::span<Vec3> slip,
-                                 std::span<ContactState> state, Friction friction = Friction::cone);
+                                 std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
+                                 std::span<Vec3> slip, std::span<ContactState> state,
+                                 Friction friction = Friction::cone);
 
 }  // namespace skerry

@@ -1,7 +1,6 @@
 #include "systems/contact/separate_regions.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -12,75 +11,44 @@
 namespace skerry {
 namespace {
 
-/// Starts a new set of stamps and makes room for all nodes. Nothing is cleared per step: a stamp of an earlier step is no stamp.
-void begin_step(std::size_t node_count, UnionFind& memory) {
-    if (memory.node.size() < node_count) memory.node.resize(node_count);
-    if (memory.now == std::numeric_limits<std::uint32_t>::max()) {
-        for (UnionNode& node : memory.node) node.stamp = 0;
-        memory.now = 0;
-    }
-    ++memory.now;
-}
-
-Index find_root(Column<UnionNode>& node, Index at) {
-    while (node[at].parent != at) {
-        const Index next = node[node[at].parent].parent;
-        if (next != node[at].parent) node[at].parent = next;  // path halving; most paths are short already, and need no write
-        at = next;
-    }
-    return at;
-}
-
-/// Joins the moving nodes of a contact. The smaller root wins, so that roots do not depend on the order of the joins.
-/// Returns one of its moving nodes, or no_index.
-Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, UnionFind& memory) {
+/// Joins the moving nodes of a contact. Returns their root, or no_index.
+Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, UnionFind& sets) {
     Index root = no_index;
     for (std::size_t a = 0; a < 4; ++a) {
         const Index at = stencil.node[a];
         if (stencil.weight[a] == 0 || !(inverse_mass[at] > 0)) continue;
-        if (memory.node[at].stamp != memory.now) memory.node[at] = {at, memory.now, no_index};
-        const Index other = find_root(memory.node, at);
+        const Index other = sets.root(at);
         if (root == other) continue;
-        if (root == no_index) {
-            root = other;
-            continue;
-        }
-        const Index winner = std::min(root, other);
-        memory.node[std::max(root, other)].parent = winner;
-        root = winner;
+        root = root == no_index ? other : sets.join_roots(root, other);
     }
     return root;
 }
 
 /// Numbers the regions by their first contact.
-Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, UnionFind& memory,
+Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, UnionFind& sets,
                           std::span<Index> contact_region) {
-    begin_step(inverse_mass.size(), memory);
+    sets.start(inverse_mass.size());
     constexpr std::size_t ahead = 12;  // contacts: by then their nodes have come from the memory
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
-            __builtin_prefetch(&memory.node[node], 1);
+            sets.fetch(node);
             __builtin_prefetch(&inverse_mass[node]);
         }
     };
     for (std::size_t i = 0; i < stencil.size(); ++i) {
         if (i + ahead < stencil.size()) fetch(stencil[i + ahead]);
-        contact_region[i] = unite(stencil[i], inverse_mass, memory);
+        contact_region[i] = unite(stencil[i], inverse_mass, sets);
     }
-    Index region_count = 0;
     for (std::size_t i = 0; i < contact_region.size(); ++i) {
         if (i + ahead < contact_region.size() && contact_region[i + ahead] != no_index)
-            __builtin_prefetch(&memory.node[contact_region[i + ahead]]);
-        Index& region = contact_region[i];
-        if (region == no_index) continue;
-        const Index root = find_root(memory.node, region);
-        if (memory.node[root].label == no_index) memory.node[root].label = region_count++;
-        region = memory.node[root].label;
+            sets.fetch(contact_region[i + ahead]);
+        if (contact_region[i] != no_index) contact_region[i] = sets.number(contact_region[i]);
     }
-    return region_count;
+    return sets.number_count;
 }
 
-Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, std::span<Index> contact_region) {
+Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                       std::span<Index> contact_region) {
     bool any = false;
     for (std::size_t i = 0; i < stencil.size(); ++i) {
         const bool moves = has_moving_node(stencil[i], inverse_mass);
@@ -118,8 +86,8 @@ void resize_results(Index region_count, RegionTable& regions) {
 
 }  // namespace
 
-bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, ContactRegions mode, UnionFind& memory,
-                      RegionTable& regions, std::span<Index> contact_region) {
+bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, ContactRegions mode,
+                      UnionFind& memory, RegionTable& regions, std::span<Index> contact_region) {
     SKERRY_CHECK(contact_region.size() == stencil.size());
     regions.independent = true;
     if (stencil.empty()) {
@@ -141,11 +109,13 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
     }
     collect_contacts(contact_region, region_count, regions);
     resize_results(region_count, regions);
-    if (mode == ContactRegions::paper_algorithm_1) regions.independent = count_shared_nodes(stencil, inverse_mass, regions) == 0;
+    if (mode == ContactRegions::paper_algorithm_1)
+        regions.independent = count_shared_nodes(stencil, inverse_mass, regions) == 0;
     return true;
 }
 
-Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const RegionTable& regions) {
+Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                         const RegionTable& regions) {
     std::vector<std::pair<Index, Index>> node_region;
     for (std::size_t r = 0; r < regions.size(); ++r)
         for (const Index contact : regions.contacts[r])

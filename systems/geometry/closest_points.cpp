@@ -8,7 +8,8 @@ namespace skerry {
 
 namespace {
 
-// A triangle lower than this fraction of its longest edge counts as that edge: the sums below lose all digits before 1e-8.
+// A triangle lower than this fraction of its longest edge counts as that edge: the sums below lose all digits before
+// 1e-8.
 constexpr Real min_height_fraction = 1e-6;
 
 // Segments this close to parallel have no crossing worth naming.
@@ -27,8 +28,10 @@ PointTriangle at(const Vec3& p, const Vec3& nearest, TriangleRegion region, Real
 
 /// The longest edge stands for the triangle.
 PointTriangle closest_point_on_flat_triangle(const Vec3& p, const std::array<Vec3, 3>& corner) {
-    constexpr std::array<TriangleRegion, 3> edge_region{TriangleRegion::edge01, TriangleRegion::edge12, TriangleRegion::edge20};
-    constexpr std::array<TriangleRegion, 3> vertex_region{TriangleRegion::vertex0, TriangleRegion::vertex1, TriangleRegion::vertex2};
+    constexpr std::array<TriangleRegion, 3> edge_region{TriangleRegion::edge01, TriangleRegion::edge12,
+                                                        TriangleRegion::edge20};
+    constexpr std::array<TriangleRegion, 3> vertex_region{TriangleRegion::vertex0, TriangleRegion::vertex1,
+                                                          TriangleRegion::vertex2};
     std::size_t longest = 0;
     Real length_squared = -1;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -17,7 +17,8 @@ struct PointTriangle {
     Real distance_squared;  // m^2
 };
 
-/// Nearest point of triangle abc to p (Ericson, Real-Time Collision Detection, 5.1.5). A triangle without area is treated as its longest edge.
+/// Nearest point of triangle abc to p (Ericson, Real-Time Collision Detection, 5.1.5). A triangle without area is
+/// treated as its longest edge.
 PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 struct SegmentSegment {
@@ -28,7 +29,8 @@ struct SegmentSegment {
     Real distance_squared;  // m^2
 };
 
-/// Nearest points of segments a0 a1 and b0 b1 (Ericson 5.1.9). Segments whose |ea x eb|^2 < 1e-6 |ea|^2 |eb|^2 count as parallel.
+/// Nearest points of segments a0 a1 and b0 b1 (Ericson 5.1.9). Segments whose |ea x eb|^2 < 1e-6 |ea|^2 |eb|^2 count as
+/// parallel.
 SegmentSegment closest_points_of_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1);
 
 }  // namespace skerry

@@ -9,15 +9,17 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the way that surely is free which is taken at once. The rest keeps the features apart whatever the rounding.
+// Fraction of the way that surely is free which is taken at once. The rest keeps the features apart whatever the
+// rounding.
 constexpr Real advance = 0.9;
 
 // Each round takes 0.9 of the distance; what needs more slides along for longer than a step is worth.
 constexpr int most_rounds = 4096;
 
 Real distance(FeaturePair kind, const FourPoints& x) {
-    const Real squared = kind == FeaturePair::point_triangle ? closest_point_on_triangle(x[0], x[1], x[2], x[3]).distance_squared
-                                                             : closest_points_of_segments(x[0], x[1], x[2], x[3]).distance_squared;
+    const Real squared = kind == FeaturePair::point_triangle
+                             ? closest_point_on_triangle(x[0], x[1], x[2], x[3]).distance_squared
+                             : closest_points_of_segments(x[0], x[1], x[2], x[3]).distance_squared;
     return std::sqrt(squared);
 }
 
@@ -28,8 +30,8 @@ Real greatest_approach(FeaturePair kind, const FourPoints& displacement) {
     std::array<Real, 4> squared;
     for (std::size_t i = 0; i < 4; ++i) squared[i] = (displacement[i] - mean).squaredNorm();
     const Real own = kind == FeaturePair::point_triangle ? squared[0] : std::max(squared[0], squared[1]);
-    const Real other =
-        kind == FeaturePair::point_triangle ? std::max({squared[1], squared[2], squared[3]}) : std::max(squared[2], squared[3]);
+    const Real other = kind == FeaturePair::point_triangle ? std::max({squared[1], squared[2], squared[3]})
+                                                           : std::max(squared[2], squared[3]);
     return std::sqrt(own) + std::sqrt(other);
 }
 

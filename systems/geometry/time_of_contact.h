@@ -1,4 +1,4 @@
-// When features that move in straight lines come together (methods.md 6, item 6).
+// When features that move in straight lines come together (docs/methods/collision.md 7.2).
 #pragma once
 
 #include <array>
@@ -16,13 +16,15 @@ using FourPoints = std::array<Vec3, 4>;  // m
 /// A search ends when the features are nearer than this fraction of their distance at the start.
 inline constexpr Real contact_slack = 0.1;
 
-/// m: no two points of the two features come nearer to each other by more than this while the points move by `displacement`. Common motion does not count.
+/// m: no two points of the two features come nearer to each other by more than this while the points move by
+/// `displacement`. Common motion does not count.
 Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 
-/// The time in [0, 1] at which features that move from `position` by `displacement` in straight lines are near contact, or nothing when they
-/// do not come as near. Additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section 5): never later than the
-/// contact, and at that time they are nearer than `contact_slack` of the distance at the start. 0 when they touch at the start. Features that
-/// slide past each other very near for long (some thousand times their distance) are given up as contact at the time reached.
+/// The time in [0, 1] at which features that move from `position` by `displacement` in straight lines are near contact,
+/// or nothing when they do not come as near. Additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional
+/// IPC, section 5): never later than the contact, and at that time they are nearer than `contact_slack` of the distance
+/// at the start. 0 when they touch at the start. Features that slide past each other very near for long (some thousand
+/// times their distance) are given up as contact at the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement);
 
 }  // namespace skerry

@@ -5,11 +5,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
-namespace skerry::corotational {
+namespace skerry {
 
 namespace {
 
-/// F = R S with R a rotation: from the singular values, the smallest turned round when F is mirrored. Shares nothing with the kernel.
+/// F = R S with R a rotation: from the singular values, the smallest turned round when F is mirrored. Shares nothing
+/// with the kernel.
 struct Polar {
     Mat3 R;
     Vec3 stretch;
@@ -28,17 +29,17 @@ Polar polar(const Mat3& F) {
 
 }  // namespace
 
-Real energy_density(const MaterialConstants& material, const Mat3& F) {
+Real Corotational::energy_density(const MaterialConstants& material, const Mat3& F) {
     const Vec3 strain = polar(F).stretch - Vec3::Ones();
     return material.shear_modulus * strain.squaredNorm() + 0.5 * material.lame_lambda * strain.sum() * strain.sum();
 }
 
-Mat3 stress(const MaterialConstants& material, const Mat3& F) {
+Mat3 Corotational::stress(const MaterialConstants& material, const Mat3& F) {
     const Polar p = polar(F);
     return 2 * material.shear_modulus * (F - p.R) + material.lame_lambda * (p.stretch.sum() - 3) * p.R;
 }
 
-Real stiffness_bound(const MaterialConstants& material, const Mat3& F) {
+Real Corotational::stiffness_bound(const MaterialConstants& material, const Mat3& F) {
     const Real mu = material.shear_modulus, la = material.lame_lambda;
     const Vec3 s = polar(F).stretch;
     const Real twist = la * (s.sum() - 3) - 2 * mu;
@@ -48,4 +49,4 @@ Real stiffness_bound(const MaterialConstants& material, const Mat3& F) {
     return bound;
 }
 
-}  // namespace skerry::corotational
+}  // namespace skerry

@@ -4,31 +4,67 @@
 #include "components/material_table.h"
 #include "systems/material/lane_math.h"
 
-namespace skerry::corotational {
+namespace skerry {
 
-/// Elastic energy per rest volume, J/m^3: mu |F - R|^2 + lambda/2 (tr(R^T F) - 3)^2, R the rotation nearest to F.
-Real energy_density(const MaterialConstants& material, const Mat3& F);
+/// What a law has is said in systems/material/with_law.h.
+struct Corotational {
+    static constexpr bool has_frame = true;
+    static constexpr bool stiffness_varies = false;
+    static constexpr int stress_flops = 54;
 
-/// First Piola-Kirchhoff stress, Pa: 2 mu (F - R) + lambda (tr(R^T F) - 3) R (methods.md 5).
-Mat3 stress(const MaterialConstants& material, const Mat3& F);
+    /// Elastic energy per rest volume, J/m^3: mu |F - R|^2 + lambda/2 (tr(R^T F) - 3)^2, R the rotation nearest to F.
+    static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-/// Largest eigenvalue of dP/dF, Pa: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), s the singular values of F, the
-/// smallest with the sign of det F (methods.md 4.2). Infinite where the nearest rotation is not unique.
-Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+    /// First Piola-Kirchhoff stress, Pa: 2 mu (F - R) + lambda (tr(R^T F) - 3) R (docs/methods/elasticity.md 2.2).
+    static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-/// The same by lanes, with the rotation R nearest to F given.
-template <class T>
-T energy_density(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
-    const LaneMat3<T> strain = F - R;
-    const T trace = inner_product(R, strain);
-    return material.shear_modulus * inner_product(strain, strain) + (0.5 * material.lame_lambda) * (trace * trace);
-}
+    /// Largest eigenvalue of dP/dF, Pa: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), s the
+    /// singular values of F, the smallest with the sign of det F (docs/methods/stable_step.md 4.2). Infinite where the
+    /// nearest rotation is not unique.
+    static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-template <class T>
-LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
-    const LaneMat3<T> strain = F - R;
-    const T pressure = material.lame_lambda * inner_product(R, strain);  // R : (F - R) = tr(R^T F) - 3 without the cancellation
-    return (2 * material.shear_modulus) * strain + pressure * R;
-}
+    /// The same by lanes, with the rotation R nearest to F given.
+    template <class T>
+    static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
+        const LaneMat3<T> strain = F - R;
+        const T trace = inner_product(R, strain);
+        return material.shear_modulus * inner_product(strain, strain) + (0.5 * material.lame_lambda) * (trace * trace);
+    }
 
-}  // namespace skerry::corotational
+    template <class T>
+    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
+        const LaneMat3<T> strain = F - R;
+        // R : (F - R) = tr(R^T F) - 3 without the cancellation
+        const T pressure = material.lame_lambda * inner_product(R, strain);
+        return (2 * material.shear_modulus) * strain + pressure * R;
+    }
+
+    /// Above dP/dF: 2 mu X + lambda (R : X) R, and what turning the frame adds, kappa (X - R X^T R).
+    template <class T, class Terms>
+    static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R, Terms& H) {
+        const T kappa = frame_stiffness(material, F, R);
+        H.add_identity(2 * material.shear_modulus + kappa);
+        H.add_turned_transpose(-kappa, R);
+        H.add_dyad(T{} + material.lame_lambda, R);
+    }
+
+private:
+    /// kappa, so that kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 on the modes that turn R,
+    /// with G = tr(S) I - S. Compressed, the modes are softened, but not below zero: a negative eigenvalue bends the
+    /// path and bounds no step. The eigenvalues of G lie within its mean -+ 2 spread; s_i + s_j is not taken below
+    /// 1e-3, where the frame is about to jump.
+    template <class T>
+    static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
+        constexpr Real least = 1e-3;
+        const T s00 = dot(R.c0, F.c0), s11 = dot(R.c1, F.c1), s22 = dot(R.c2, F.c2);
+        const T s01 = dot(R.c0, F.c1), s12 = dot(R.c1, F.c2), s20 = dot(R.c2, F.c0);
+        const T third = (s00 + s11 + s22) / 3.0, d0 = s00 - third, d1 = s11 - third, d2 = s22 - third;
+        const T spread = square_root((d0 * d0 + d1 * d1 + d2 * d2 + 2.0 * (s01 * s01 + s12 * s12 + s20 * s20)) / 6.0);
+        const T mean = 2.0 * third, c = material.lame_lambda * (3.0 * third - 3.0) - 2 * material.shear_modulus;
+        const T curvature = c > 0.0 ? mean - 2.0 * spread : mean + 2.0 * spread;
+        const T kappa = c / (curvature > least ? curvature : T{} + least);
+        return kappa > -material.shear_modulus ? kappa : T{} - material.shear_modulus;
+    }
+};
+
+}  // namespace skerry

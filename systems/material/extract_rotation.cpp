@@ -9,8 +9,8 @@ namespace {
 
 using Vector4 = std::array<Real, 4>;
 
-/// Eigenvalues and vectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan, 8.5): plain loops, so that the bits
-/// do not depend on how a library vectorises it.
+/// Eigenvalues and vectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan, 8.5): plain loops, so
+/// that the bits do not depend on how a library vectorises it.
 struct Eigen4 {
     Vector4 value;
     std::array<Vector4, 4> vector;  // vector[i]: of value[i]
@@ -63,10 +63,14 @@ std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& s
     const Real wx = A(2, 1) - A(1, 2), wy = A(0, 2) - A(2, 0), wz = A(1, 0) - A(0, 1);
     const Real xy = A(0, 1) + A(1, 0), yz = A(1, 2) + A(2, 1), zx = A(2, 0) + A(0, 2);
     const Real xx = A(0, 0), yy = A(1, 1), zz = A(2, 2);
-    const Eigen4 eigen =
-        eigen_of({{{xx + yy + zz, wx, wy, wz}, {wx, xx - yy - zz, xy, zx}, {wy, xy, yy - xx - zz, yz}, {wz, zx, yz, zz - xx - yy}}});
-    const auto top = static_cast<std::size_t>(std::max_element(eigen.value.begin(), eigen.value.end()) - eigen.value.begin());
-    // Nearest to the start among the vectors of (nearly) the largest eigenvalue, so that a degenerate element does not spin.
+    const Eigen4 eigen = eigen_of({{{xx + yy + zz, wx, wy, wz},
+                                    {wx, xx - yy - zz, xy, zx},
+                                    {wy, xy, yy - xx - zz, yz},
+                                    {wz, zx, yz, zz - xx - yy}}});
+    const auto top =
+        static_cast<std::size_t>(std::max_element(eigen.value.begin(), eigen.value.end()) - eigen.value.begin());
+    // Nearest to the start among the vectors of (nearly) the largest eigenvalue, so that a degenerate element does not
+    // spin.
     constexpr Real tie = 1e-6;  // of the largest entry of F
     Vector4 q{};
     for (std::size_t i = 0; i < 4; ++i) {

@@ -1,4 +1,5 @@
-// The rotation nearest to a deformation gradient, started from the last step's (the idea of Mueller 2016, with Newton's step).
+// The rotation nearest to a deformation gradient, started from the last step's (the idea of Mueller 2016, with Newton's
+// step).
 #pragma once
 
 #include "components/element_table.h"
@@ -18,12 +19,14 @@ template <class T>
     const T xx = q.x * x2, yy = q.y * y2, zz = q.z * z2;
     const T xy = q.x * y2, yz = q.y * z2, zx = q.z * x2;
     const T wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
-    return {{1.0 - (yy + zz), xy + wz, zx - wy}, {xy - wz, 1.0 - (xx + zz), yz + wx}, {zx + wy, yz - wx, 1.0 - (xx + yy)}};
+    return {
+        {1.0 - (yy + zz), xy + wz, zx - wy}, {xy - wz, 1.0 - (xx + zz), yz + wx}, {zx + wy, yz - wx, 1.0 - (xx + yy)}};
 }
 
-/// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and a the axial vector of
-/// R^T F, it turns by G^-1 a. Mueller's a / tr(S) leaves a third of the error in every pass; this leaves its cube. Returns (by lane)
-/// whether that was the last pass needed: it started safely inside the basin of the maximum and turned by less than 2e-5.
+/// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and a the
+/// axial vector of R^T F, it turns by G^-1 a. Mueller's a / tr(S) leaves a third of the error in every pass; this
+/// leaves its cube. Returns (by lane) whether that was the last pass needed: it started safely inside the basin of the
+/// maximum and turned by less than 2e-5.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q) {
     constexpr Real settled_turn_squared = 4e-10;  // rad^2; its cube is below the rounding of F
@@ -46,8 +49,8 @@ template <class T>
     const LaneVec3<T> o{half_inverse * (h00 * axial.x + h01 * axial.y + h20 * axial.z),
                         half_inverse * (h01 * axial.x + h11 * axial.y + h12 * axial.z),
                         half_inverse * (h20 * axial.x + h12 * axial.y + h22 * axial.z)};
-    // q <- q (1, o), o half the turn. Its length is |q| sqrt(1 + |o|^2): known before the product is, which keeps the root and the
-    // division off the critical path. The first factor takes back what |q| has lost to rounding.
+    // q <- q (1, o), o half the turn. Its length is |q| sqrt(1 + |o|^2): known before the product is, which keeps the
+    // root and the division off the critical path. The first factor takes back what |q| has lost to rounding.
     const T o_squared = dot(o, o);
     const T scale = (1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)) / square_root(1.0 + o_squared);
     const LaneQuaternion<T> p = q;
@@ -56,15 +59,17 @@ template <class T>
     return inside & (4.0 * o_squared <= settled_turn_squared);
 }
 
-/// The rotation (w, x, y, z) that maximises tr(R^T F), for any F: the top eigenvector of Horn's 4x4 matrix. Where several do equally
-/// well (F of rank one or zero, a mirrored F) it is the one nearest to `start`. `start` itself when F is not finite.
+/// The rotation (w, x, y, z) that maximises tr(R^T F), for any F: the top eigenvector of Horn's 4x4 matrix. Where
+/// several do equally well (F of rank one or zero, a mirrored F) it is the one nearest to `start`. `start` itself when
+/// F is not finite.
 std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start);
 
 /// The same in all lanes, from `start`; a lane without volume keeps its own. Out of line and slow: rarely needed.
 void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
 /// The rotations nearest to F in all lanes, started from q. Lanes without volume keep theirs.
-[[gnu::always_inline]] inline void extract_rotation(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& q) {
+[[gnu::always_inline]] inline void extract_rotation(const LaneMat3<Real8>& F, const Real8& volume,
+                                                    LaneQuaternion<Real8>& q) {
     constexpr int max_passes = 4;  // from a warm start two are enough; what needs more is solved lane by lane
     const LaneQuaternion<Real8> start = q;
     for (int pass = 0; pass < max_passes; ++pass)

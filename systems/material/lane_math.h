@@ -1,4 +1,5 @@
-// Arithmetic of the element kernels: the same source works on one element (T = Real) and on element_lanes of them side by side (T = Real8).
+// Arithmetic of the element kernels: the same source works on one element (T = Real) and on element_lanes of them side
+// by side (T = Real8).
 #pragma once
 
 #include <array>
@@ -71,7 +72,8 @@ LaneVec3<T> cross(const LaneVec3<T>& a, const LaneVec3<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// A 3x3 matrix of T by columns. What the force kernel calls is inlined by order: gcc does not, and nine registers would go through memory.
+/// A 3x3 matrix of T by columns. What the force kernel calls is inlined by order: gcc does not, and nine registers
+/// would go through memory.
 template <class T>
 struct LaneMat3 {
     LaneVec3<T> c0, c1, c2;
@@ -105,6 +107,13 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> cofactor(const LaneMat3<T>& a) {
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
+}
+
+/// The identity, known when compiling: no arithmetic.
+struct IdentityMatrix {};
+template <class T>
+[[gnu::always_inline]] inline const LaneMat3<T>& multiply(IdentityMatrix, const LaneMat3<T>& b) {
+    return b;
 }
 
 /// One lane as a plain matrix, and back.

@@ -2,20 +2,21 @@
 
 #include <algorithm>
 
-namespace skerry::linear {
+namespace skerry {
 
-Real energy_density(const MaterialConstants& material, const Mat3& F) {
+Real Linear::energy_density(const MaterialConstants& material, const Mat3& F) {
     const Mat3 strain = 0.5 * (F + F.transpose()) - Mat3::Identity();
     const Real trace = strain.trace();
     return material.shear_modulus * strain.squaredNorm() + 0.5 * material.lame_lambda * trace * trace;
 }
 
-Mat3 stress(const MaterialConstants& material, const Mat3& F) {
-    return material.shear_modulus * (F + F.transpose() - 2 * Mat3::Identity()) + material.lame_lambda * (F.trace() - 3) * Mat3::Identity();
+Mat3 Linear::stress(const MaterialConstants& material, const Mat3& F) {
+    return material.shear_modulus * (F + F.transpose() - 2 * Mat3::Identity()) +
+           material.lame_lambda * (F.trace() - 3) * Mat3::Identity();
 }
 
-Real stiffness_bound(const MaterialConstants& material, const Mat3&) {
+Real Linear::stiffness_bound(const MaterialConstants& material, const Mat3&) {
     return 2 * material.shear_modulus + std::max(Real{0}, 3 * material.lame_lambda);  // lambda < 0: auxetic
 }
 
-}  // namespace skerry::linear
+}  // namespace skerry

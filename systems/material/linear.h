@@ -4,34 +4,52 @@
 #include "components/material_table.h"
 #include "systems/material/lane_math.h"
 
-namespace skerry::linear {
+namespace skerry {
 
-/// Elastic energy per rest volume, J/m^3: mu |e|^2 + lambda/2 (tr e)^2 with e = (F + F^T)/2 - I.
-Real energy_density(const MaterialConstants& material, const Mat3& F);
+/// What a law has is said in systems/material/with_law.h.
+struct Linear {
+    static constexpr bool has_frame = false;
+    static constexpr bool stiffness_varies = false;
+    static constexpr int stress_flops = 18;
 
-/// First Piola-Kirchhoff stress dPsi/dF, Pa (methods.md 5).
-Mat3 stress(const MaterialConstants& material, const Mat3& F);
+    /// Elastic energy per rest volume, J/m^3: mu |e|^2 + lambda/2 (tr e)^2 with e = (F + F^T)/2 - I.
+    static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-/// Largest eigenvalue of dP/dF, Pa: that of the rest shape, whatever the deformation.
-Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+    /// First Piola-Kirchhoff stress dPsi/dF, Pa (docs/methods/elasticity.md 2.1).
+    static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-/// The same by lanes.
-template <class T>
-T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
-    const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
-    const T gxy = F.c1.x + F.c0.y, gyz = F.c2.y + F.c1.z, gzx = F.c0.z + F.c2.x;
-    const T trace = exx + eyy + ezz;
-    return material.shear_modulus * (exx * exx + eyy * eyy + ezz * ezz + 0.5 * (gxy * gxy + gyz * gyz + gzx * gzx)) +
-           (0.5 * material.lame_lambda) * (trace * trace);
-}
+    /// Largest eigenvalue of dP/dF, Pa: that of the rest shape, whatever the deformation.
+    static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-template <class T>
-LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
-    const Real mu = material.shear_modulus;
-    const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
-    const T pressure = material.lame_lambda * (exx + eyy + ezz);
-    const T sxy = mu * (F.c1.x + F.c0.y), syz = mu * (F.c2.y + F.c1.z), szx = mu * (F.c0.z + F.c2.x);
-    return {{(2 * mu) * exx + pressure, sxy, szx}, {sxy, (2 * mu) * eyy + pressure, syz}, {szx, syz, (2 * mu) * ezz + pressure}};
-}
+    /// The same by lanes.
+    template <class T>
+    static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
+        const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
+        const T gxy = F.c1.x + F.c0.y, gyz = F.c2.y + F.c1.z, gzx = F.c0.z + F.c2.x;
+        const T trace = exx + eyy + ezz;
+        return material.shear_modulus *
+                   (exx * exx + eyy * eyy + ezz * ezz + 0.5 * (gxy * gxy + gyz * gyz + gzx * gzx)) +
+               (0.5 * material.lame_lambda) * (trace * trace);
+    }
 
-}  // namespace skerry::linear
+    template <class T>
+    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
+        const Real mu = material.shear_modulus;
+        const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
+        const T pressure = material.lame_lambda * (exx + eyy + ezz);
+        const T sxy = mu * (F.c1.x + F.c0.y), syz = mu * (F.c2.y + F.c1.z), szx = mu * (F.c0.z + F.c2.x);
+        return {{(2 * mu) * exx + pressure, sxy, szx},
+                {sxy, (2 * mu) * eyy + pressure, syz},
+                {szx, syz, (2 * mu) * ezz + pressure}};
+    }
+
+    /// dP/dF: mu (X + X^T) + lambda tr(X) I.
+    template <class T, class Terms>
+    static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>&, Terms& H) {
+        H.add_identity(T{} + material.shear_modulus);
+        H.add_turned_transpose(T{} + material.shear_modulus, IdentityMatrix{});
+        H.add_dyad(T{} + material.lame_lambda, IdentityMatrix{});
+    }
+};
+
+}  // namespace skerry

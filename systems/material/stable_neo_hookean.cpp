@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace skerry::stable_neo_hookean {
+namespace skerry {
 
 namespace {
 
@@ -18,24 +18,25 @@ Mat3 cofactor_of(const Mat3& F) {
 
 }  // namespace
 
-Real energy_density(const MaterialConstants& material, const Mat3& F) {
+Real StableNeoHookean::energy_density(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
     const Mat3 e = F - Mat3::Identity();  // as by lanes
     const Real trace = e.trace(), bulk = (trace * trace - e.cwiseProduct(e.transpose()).sum()) / 2 + e.determinant();
     const Real growth = trace + bulk, quarter = (2 * trace + e.squaredNorm()) / 4;
-    return mu * (0.375 * e.squaredNorm() - 0.75 * bulk - 0.5 * (std::log1p(quarter) - quarter)) + 0.5 * la * growth * growth;
+    return mu * (0.375 * e.squaredNorm() - 0.75 * bulk - 0.5 * (std::log1p(quarter) - quarter)) +
+           0.5 * la * growth * growth;
 }
 
-Mat3 stress(const MaterialConstants& material, const Mat3& F) {
+Mat3 StableNeoHookean::stress(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
     return mu * (1 - 1 / (F.squaredNorm() + 1)) * F + (la * (F.determinant() - 1) - 0.75 * mu) * cofactor_of(F);
 }
 
-Real stiffness_bound(const MaterialConstants& material, const Mat3& F) {
+Real StableNeoHookean::stiffness_bound(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
     // The largest root of e^3 - |F|^2 e - 2 J = 0 is at most 2/sqrt(3) |F|.
     return 1.125 * mu + la * cofactor_of(F).squaredNorm() +
            2 / std::sqrt(Real{3}) * std::abs(la * (F.determinant() - 1) - 0.75 * mu) * F.norm();
 }
 
-}  // namespace skerry::stable_neo_hookean
+}  // namespace skerry

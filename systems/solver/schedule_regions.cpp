@@ -3,23 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/solver/lanes/lane_queue.h"
+#include "systems/solver/regions/lane_queue.h"
 
 namespace skerry {
 namespace {
 
-// microseconds; T = c0 + c1 K S of methods.md 3.3. Measured with chains of 2 to 12 contacts and sheets of 18 to 1922 on one core of a
-// shared machine (AVX-512): only ratios matter for the order, sizes only for how much one task gets.
+// microseconds; T = c0 + c1 K S of docs/methods/regions.md 4.1. Measured with chains of 2 to 12 contacts and sheets of
+// 18 to 1922 on one core of a shared machine (AVX-512): only ratios matter for the order, sizes only for how much one
+// task gets.
 constexpr Real single_cost = 0.06;
 constexpr Real region_cost = 0.1, contact_cost = 0.06;  // load, look at the warm start, write back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
 constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1
-constexpr Real tasks_per_worker = 4;                  // the last to finish is then late by an eighth of the whole at most
+// the last to finish is then late by an eighth of the whole at most
+constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;
 constexpr Real forgetting = 0.3;  // weight of the latest step in the moving average
 constexpr Real caution = 1.2;     // times the average
 constexpr Real fewest_sweeps = 4;
+constexpr Real first_sweeps = 8, sweeps_of_size = 2;  // of regions not seen before; the second by root of the contacts
 
 Index contact_count(const RegionTable& regions, Index region) {
     return regions.contacts.offset[region + 1] - regions.contacts.offset[region];
@@ -32,16 +35,18 @@ bool fits_lanes(Index contacts) {
 Real predicted_sweeps(Index contacts, Real average, const SolverSettings& settings) {
     if (settings.fixed_iterations) return settings.max_iterations;
     if (average != no_history) return std::max(fewest_sweeps, caution * average);
-    return 8 + 2 * std::sqrt(static_cast<Real>(contacts));
+    return first_sweeps + sweeps_of_size * std::sqrt(static_cast<Real>(contacts));
 }
 
 Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettings& settings) {
     if (contacts == 1 && !settings.fixed_iterations) return single_cost;
     const Real sweep = lanes && fits_lanes(contacts) ? lane_contact_sweep_cost : contact_sweep_cost;
-    return region_cost + static_cast<Real>(contacts) * (contact_cost + sweep * predicted_sweeps(contacts, average, settings));
+    return region_cost +
+           static_cast<Real>(contacts) * (contact_cost + sweep * predicted_sweeps(contacts, average, settings));
 }
 
-/// Large regions by cost; small ones need no sorting: a counting sort by size keeps equal sizes together, largest first.
+/// Large regions by cost; small ones need no sorting: a counting sort by size keeps equal sizes together, largest
+/// first.
 void sort_regions(const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
     std::array<Index, largest_lane_region + 2> begin{};  // of each size; large ones first
@@ -56,7 +61,7 @@ void sort_regions(const Column<Real>& cost, RegionTable& regions) {
 
 }  // namespace
 
-void recall_regions(std::span<const ContactKey> key, SolverMemory::Data& memory, RegionTable& regions) {
+void recall_regions(std::span<const ContactKey> key, RegionMemory& memory, RegionTable& regions) {
     const std::size_t count = regions.size();
     regions.id.resize(key.empty() ? 0 : count);
     RegionHistoryTable& present = memory.present;
@@ -79,7 +84,7 @@ void recall_regions(std::span<const ContactKey> key, SolverMemory::Data& memory,
     }
 }
 
-void schedule_regions(const SolverSettings& settings, int workers, SolverMemory::Data& memory, RegionTable& regions) {
+void schedule_regions(const SolverSettings& settings, int workers, RegionMemory& memory, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
     const bool lanes = lanes_allowed(settings) && regions.independent;
     make_room(memory.cost, regions.size());
@@ -105,12 +110,13 @@ void schedule_regions(const SolverSettings& settings, int workers, SolverMemory:
     }
 }
 
-void remember_regions(SolverMemory::Data& memory, const RegionTable& regions) {
+void remember_regions(RegionMemory& memory, const RegionTable& regions) {
     RegionHistoryTable& present = memory.present;
     if (regions.id.empty()) present.resize(0);
     for (std::size_t r = 0; r < present.size(); ++r) {
         const Real now = regions.iterations[r];
-        present.sweeps[r] = present.sweeps[r] == no_history ? now : (1 - forgetting) * present.sweeps[r] + forgetting * now;
+        present.sweeps[r] =
+            present.sweeps[r] == no_history ? now : (1 - forgetting) * present.sweeps[r] + forgetting * now;
     }
     std::swap(memory.history, present);
 }

@@ -3,29 +3,12 @@
 #include <algorithm>
 
 #include "components/check.h"
-#include "systems/solver/coloured/solve_large_regions.h"
-#include "systems/solver/lanes/lane_queue.h"
+#include "systems/solver/regions/lane_queue.h"
+#include "systems/solver/regions/solve_large_regions.h"
 #include "systems/solver/schedule_regions.h"
-#include "systems/solver/solve_region.h"
-#include "systems/solver/solver_memory.h"
 
 namespace skerry {
 namespace {
-
-void make_room_for(const RegionTable& regions, std::size_t node_count, const SolverSettings& settings, SolverMemory::Data& memory) {
-    const std::size_t contacts = regions.contacts.item.size();
-    make_room(memory.contact, contacts);
-    make_room(memory.impulse, contacts);
-    make_room(memory.push_impulse, contacts);
-    make_room(memory.push_bias, contacts);
-    make_room(memory.resting, contacts);
-    make_room(memory.last_velocity, contacts);
-    make_room(memory.node, 4 * contacts);
-    make_room(memory.velocity, 4 * contacts);
-    make_room(memory.scratch, 4 * contacts);
-    make_room(memory.place, node_count);
-    for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(memory.workspace[slot], contacts);
-}
 
 void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, RegionTable& regions) {
     LaneQueue queue(stage, regions);
@@ -37,7 +20,7 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
             write_outcome(solve_single(stage, row[0]), number, regions);
             continue;
         }
-        LoadedRegion region = load_region(stage, row, regions.contacts.offset[number]);
+        RegionInOrder region = load_region(stage, row, regions.contacts.offset[number]);
         RegionOutcome outcome;
         const bool done = start_region(stage, region, outcome);
         if (!done && lanes && queue.takes(region)) {
@@ -66,40 +49,41 @@ void solve_tasks(Executor& executor, const RegionStage& stage, RegionTable& regi
     solve_large_regions(executor, stage, regions);
     const Column<RegionTask>& tasks = stage.memory.task;
     const bool lanes = lanes_allowed(stage.settings) && regions.independent;
-    // regions that share a node (the paper's algorithm makes some) see each other's result: one after the other, in order
+    // regions that share a node (the paper's algorithm makes some) see each other's result: one after the other, in
+    // order
     if (!regions.independent || tasks.size() == 1) {
         for (const RegionTask& task : tasks) solve_task(stage, task, lanes, regions);
         return;
     }
-    executor.run_blocks(static_cast<Index>(tasks.size()), [&](Index t) { solve_task(stage, tasks[t], lanes, regions); });
+    executor.run_blocks(static_cast<Index>(tasks.size()),
+                        [&](Index t) { solve_task(stage, tasks[t], lanes, regions); });
 }
 
 }  // namespace
 
-SolverMemory::SolverMemory() : data_(std::make_unique<Data>()) {}
+SolverMemory::SolverMemory() : data_(std::make_unique<RegionMemory>()) {}
 SolverMemory::~SolverMemory() = default;
 
-bool SolverMemory::pushed() const {
-    return data_->pushed.load(std::memory_order_relaxed);
-}
-
-bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h, SolverMemory& memory,
-                   RegionTable& regions, const RegionOutputs& out) {
+bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h,
+                   SolverMemory& memory, RegionTable& regions, const RegionOutputs& out) {
     SKERRY_CHECK(h > 0 && settings.max_iterations >= 1);
     SKERRY_CHECK(out.impulse.size() == contacts.stencil.size() && contacts.normal.size() == contacts.stencil.size());
-    SKERRY_CHECK(out.velocity_next.size() == contacts.inverse_mass.size() && out.push_out.size() == contacts.inverse_mass.size());
-    SolverMemory::Data& data = memory.data();
+    SKERRY_CHECK(out.velocity_next.size() == contacts.inverse_mass.size() &&
+                 out.push_out.size() == contacts.inverse_mass.size());
+    RegionMemory& data = memory.data();
     // advance_positions has used the last push; a refused step has not
     if (data.pushed.exchange(false)) std::fill(out.push_out.begin(), out.push_out.end(), Vec3::Zero());
+    regions.pushed = false;
     make_rows(regions);
     recall_regions(contacts.key, data, regions);
     if (regions.size() == 0) {
         remember_regions(data, regions);
         return false;
     }
-    make_room_for(regions, contacts.inverse_mass.size(), settings, data);
+    data.make_room_for(regions.contacts.item.size(), contacts.inverse_mass.size(), settings);
     schedule_regions(settings, executor.worker_count(), data, regions);
     solve_tasks(executor, {contacts, settings, h, out, data}, regions);
+    regions.pushed = data.pushed.load(std::memory_order_relaxed);
     remember_regions(data, regions);
     return true;
 }

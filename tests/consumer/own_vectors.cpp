@@ -1,5 +1,5 @@
-// Eigen as the user's own code uses it. The library may have been built for another instruction set, with which Eigen aligns and frees
-// memory in another way: the two must not meet.
+// Eigen as the user's own code uses it. The library may have been built for another instruction set, with which Eigen
+// aligns and frees memory in another way: the two must not meet.
 #include <Eigen/Dense>
 
 double own_vectors() {

@@ -1,5 +1,7 @@
 // Rules of the house that a reader of one change does not see.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <regex>
 
 #include "tests/contract/project_files.h"
 
@@ -10,13 +12,41 @@ TEST_CASE("no file is longer than 500 lines", "[contract]") {
     }
 }
 
+TEST_CASE("no line goes beyond 120 columns", "[contract]") {
+    // Columns are characters: a byte that goes on with one (UTF-8) is none of its own.
+    const auto columns = [](const std::string& line) {
+        return std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
+    };
+    for (const skerry::test::ProjectFile& file : skerry::test::project_files())
+        for (std::size_t i = 0; i < file.lines.size(); ++i) {
+            INFO(file.path << ":" << i + 1 << ": " << file.lines[i]);
+            CHECK(columns(file.lines[i]) <= 120);
+        }
+}
+
 TEST_CASE("nothing is left to do later", "[contract]") {
     // Put together from parts, so that this file is not one that it finds.
-    const std::vector<std::string> marks{std::string("TO") + "DO", std::string("FIX") + "ME", std::string("not imple") + "mented"};
+    const std::vector<std::string> marks{std::string("TO") + "DO", std::string("FIX") + "ME",
+                                         std::string("not imple") + "mented"};
     for (const skerry::test::ProjectFile& file : skerry::test::project_files())
         for (std::size_t i = 0; i < file.lines.size(); ++i)
             for (const std::string& mark : marks) {
                 INFO(file.path << ":" << i + 1 << ": " << file.lines[i]);
                 CHECK(file.lines[i].find(mark) == std::string::npos);
             }
+}
+
+TEST_CASE("the list of stages captures nothing", "[contract]") {
+    // What a stage looks at through a lambda's memory it has not declared.
+    static const std::regex capture("\\[[&=a-z][^\\]]*\\] *[({]");
+    bool found = false;
+    for (const skerry::test::ProjectFile& file : skerry::test::project_files()) {
+        if (file.path != "engine/world/step/build_step.cpp") continue;
+        found = true;
+        for (std::size_t i = 0; i < file.lines.size(); ++i) {
+            INFO(file.path << ":" << i + 1 << ": " << file.lines[i]);
+            CHECK_FALSE(std::regex_search(file.lines[i], capture));
+        }
+    }
+    CHECK(found);
 }

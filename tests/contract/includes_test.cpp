@@ -18,7 +18,8 @@ struct Place {
 };
 
 std::optional<Place> place_of(const std::string& path) {
-    // jobs stands beside the components, and uses them; what supports the tests supports benchmarks, too. The first that fits counts.
+    // jobs stands beside the components, and uses them; what supports the tests supports benchmarks, too. The first
+    // that fits counts.
     static const std::vector<Place> places{
         {"components/", 10},
         {"jobs/", 11},
@@ -39,13 +40,33 @@ std::optional<Place> place_of(const std::string& path) {
     return std::nullopt;
 }
 
+/// Folders within a folder stand on floors of their own; what lies beside them, not in one, uses them all.
+int inner_floor(const std::string& path) {
+    static const std::vector<Place> places{
+        {"systems/collision/inputs/", 1}, {"systems/collision/tree/", 1},    {"systems/collision/narrow/", 2},
+        {"systems/collision/search/", 3}, {"systems/dynamics/elements/", 1}, {"systems/dynamics/stability/", 2},
+        {"systems/dynamics/motion/", 3},  {"systems/dynamics/checks/", 3},   {"systems/solver/inputs/", 1},
+        {"systems/solver/local/", 2},     {"systems/solver/operators/", 3},  {"systems/solver/methods/", 4},
+        {"systems/solver/lanes/", 5},     {"systems/solver/coloured/", 5},   {"systems/solver/regions/", 6},
+    };
+    constexpr int top = 100;
+    for (const Place& place : places)
+        if (path.starts_with(place.folder)) return place.floor;
+    return top;
+}
+
+bool same_folder(const std::string& a, const std::string& b) {
+    return std::filesystem::path(a).parent_path() == std::filesystem::path(b).parent_path();
+}
+
 bool is_public(const std::string& path) {
     static const std::set<std::string> components{"components/types.h", "components/options.h", "components/handle.h",
-                                                  "components/column.h"};
+                                                  "components/column.h", "components/access_check.h"};
     return path.starts_with("engine/include/skerry/") || components.contains(path);
 }
 
-/// The file of the project that an include names: beside the one it is in, from the root or, for a public header, from engine/include.
+/// The file of the project that an include names: beside the one it is in, from the root or, for a public header, from
+/// engine/include.
 std::optional<std::string> included_file(const std::string& from, const std::string& name) {
     const std::string beside = (std::filesystem::path(from).parent_path() / name).lexically_normal().generic_string();
     for (const std::string& path : {beside, name, "engine/include/" + name})
@@ -58,14 +79,19 @@ std::string objection(const std::string& from, const std::string& to) {
     const std::optional<Place> own = place_of(from), other = place_of(to);
     if (!other) return "is on no floor";
     if (own->folder != other->folder && other->floor >= own->floor) return "does not point down";
+    if (own->folder == other->folder && !same_folder(from, to) && inner_floor(to) >= inner_floor(from) &&
+        own->folder.starts_with("systems/"))
+        return "does not point down within its folder";
     if (from.starts_with("engine/include/") && !is_public(to)) return "is no public header";
     return "";
 }
 
-/// What is wrong with an include of a threading header; empty when nothing is. Atomics are no threads: a pool of scratch may count with one.
+/// What is wrong with an include of a threading header; empty when nothing is. Atomics are no threads: a pool of
+/// scratch may count with one.
 std::string threading_objection(const std::string& from, const std::string& header) {
     static const std::regex library("(tbb|oneapi)/.*|omp\\.h|pthread\\.h|future|execution");
-    static const std::regex primitive("thread|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token");
+    static const std::regex primitive(
+        "thread|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token");
     if (place_of(from)->floor >= 70 || from.starts_with("jobs/backend_")) return "";
     if (std::regex_match(header, library)) return "is for jobs/backend_*.cpp alone";
     if (std::regex_match(header, primitive) && !from.starts_with("jobs/")) return "is for jobs alone";
@@ -118,7 +144,8 @@ TEST_CASE("only jobs know a threading library", "[contract]") {
         if (!is_checked(file)) continue;
         for (const std::string& line : file.lines) {
             INFO(file.path << ": " << line);
-            if (const std::optional<Include> include = include_of(line)) CHECK(threading_objection(file.path, include->name) == "");
+            if (const std::optional<Include> include = include_of(line))
+                CHECK(threading_objection(file.path, include->name) == "");
             // Vector loops are no threads.
             if (std::regex_match(line, parallel_pragma)) CHECK(file.path.starts_with("jobs/backend_"));
         }
@@ -129,6 +156,14 @@ TEST_CASE("the test of includes notices what it is there for", "[contract]") {
     CHECK(objection("systems/geometry/a.h", "systems/solver/b.h") != "");
     CHECK(objection("systems/material/a.h", "systems/collision/b.h") != "");
     CHECK(objection("components/a.h", "jobs/b.h") != "");
+    CHECK(objection("systems/dynamics/elements/a.h", "systems/dynamics/motion/b.h") != "");
+    CHECK(objection("systems/dynamics/motion/a.h", "systems/dynamics/elements/b.h") == "");
+    CHECK(objection("systems/collision/tree/a.h", "systems/collision/b.h") != "");
+    CHECK(objection("systems/solver/operators/a.h", "systems/solver/methods/b.h") != "");
+    CHECK(objection("systems/solver/lanes/a.h", "systems/solver/coloured/b.h") != "");
+    CHECK(objection("systems/solver/regions/a.h", "systems/solver/solve_regions.h") != "");
+    CHECK(objection("systems/solver/regions/a.h", "systems/solver/lanes/b.h") == "");
+    CHECK(objection("systems/collision/a.h", "systems/collision/tree/b.h") == "");
     CHECK(objection("jobs/a.h", "components/b.h") == "");
     CHECK(objection("engine/world/a.cpp", "engine/scene/b.h") == "");
     CHECK(objection("engine/include/skerry/a.h", "engine/world/b.h") != "");

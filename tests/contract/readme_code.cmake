@@ -1,5 +1,6 @@
-# skerry_readme_code(README SOURCE): writes the first block of C++ in README as a program: as it is when it has a main, else its includes,
-# then the rest as the body of main. Writes nothing, and removes what it wrote before, when there is no such block.
+# skerry_readme_code(README SOURCE): writes the first block of C++ in README as a program: as it is when it has a main,
+# else its includes, then the rest as the body of main. Writes nothing, and removes what it wrote before, when there is
+# no such block.
 function(skerry_readme_code readme source)
     set(text "")
     if(EXISTS ${readme})

@@ -9,8 +9,9 @@ namespace {
 
 std::vector<std::filesystem::path> scene_files() {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(SKERRY_SOURCE_DIR "/scenes"))
-        if (entry.path().extension() == ".json" && entry.path().string().find("schema") == std::string::npos) files.push_back(entry.path());
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(SKERRY_SOURCE_DIR "/scenes"))
+        if (entry.path().extension() == ".json" && entry.path().string().find("schema") == std::string::npos)
+            files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -19,7 +20,7 @@ std::vector<std::filesystem::path> scene_files() {
 
 TEST_CASE("every scene that is shipped runs", "[contract][scene]") {
     const std::vector<std::filesystem::path> files = scene_files();
-    CHECK(files.size() >= 5);
+    CHECK(files.size() >= 9);
     for (const std::filesystem::path& file : files) {
         INFO(file);
         skerry::Scene scene = skerry::load_scene(file);

@@ -42,7 +42,8 @@ World resting_balls(Backend backend, int threads, Settings settings = {}) {
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
     world.add_collider(Plane{});
     const Mesh ball = mesh::ball(0.05, 6);
-    for (int i = 0; i < 6; ++i) world.add_body(ball, {.material = rubber, .position = {0.07 * (i % 3), 0.0, 0.06 + 0.1 * (i / 3)}});
+    for (int i = 0; i < 6; ++i)
+        world.add_body(ball, {.material = rubber, .position = {0.07 * (i % 3), 0.0, 0.06 + 0.1 * (i / 3)}});
     return world;
 }
 
@@ -70,7 +71,8 @@ TEST_CASE("the counter sees an allocation", "[determinism]") {
 
 TEST_CASE("a resting pile allocates nothing in a fifth of a second of steps", "[determinism]") {
     for (Backend backend : available_backends()) {
-        if (backend == Backend::openmp) continue;  // libgomp allocates each of its tasks; what we allocate is the same code
+        // libgomp allocates each of its tasks; what we allocate is the same code
+        if (backend == Backend::openmp) continue;
         for (int threads : {1, 2}) {
             INFO(name_of(backend) << " with " << threads);
             World world = resting_balls(backend, threads);

@@ -61,13 +61,15 @@ TEST_CASE("a sum is the same bits on 1 to 8 workers and every backend", "[determ
         for (int run = 0; run < 20; ++run) {
             const Real sum = reduce(
                 *executor, numbers.size(), block, partial, 0.0,
-                [&](std::size_t begin, std::size_t end) { return sum_of(numbers, begin, end); }, [](Real a, Real b) { return a + b; });
+                [&](std::size_t begin, std::size_t end) { return sum_of(numbers, begin, end); },
+                [](Real a, Real b) { return a + b; });
             REQUIRE(std::bit_cast<std::uint64_t>(sum) == expected);
         }
     }
 }
 
-TEST_CASE("a graph of stages that do not commute gives the same bits on 1 to 8 workers and every backend", "[determinism]") {
+TEST_CASE("a graph of stages that do not commute gives the same bits on 1 to 8 workers and every backend",
+          "[determinism]") {
     CAPTURE(seed);
     const std::size_t column_count = 6, stage_count = 30, rows = 500;
     const std::vector<Real> start = awkward_numbers(column_count * rows);
@@ -78,13 +80,15 @@ TEST_CASE("a graph of stages that do not commute gives the same bits on 1 to 8 w
     // x -> 1 / (1 + |x + y|): any other order of the stages gives other numbers.
     const auto mix = [](Executor& executor, std::span<const Real> from, std::span<Real> to) {
         parallel_for(executor, to.size(), 32, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t row = begin; row < end; ++row) to[row] = 1 / (1 + std::abs(to[row] + from[from.size() - 1 - row]));
+            for (std::size_t row = begin; row < end; ++row)
+                to[row] = 1 / (1 + std::abs(to[row] + from[from.size() - 1 - row]));
         });
     };
     std::mt19937 random(seed);
     TaskGraph graph;
     for (std::size_t s = 0; s < stage_count; ++s) {
-        const std::size_t from = random() % column_count, to = (from + 1 + random() % (column_count - 1)) % column_count;
+        const std::size_t from = random() % column_count,
+                          to = (from + 1 + random() % (column_count - 1)) % column_count;
         graph.stage(names[s].c_str(), mix, read(columns[from]), write(columns[to]));
     }
     graph.compile();

@@ -9,8 +9,8 @@ using namespace skerry::test;
 
 namespace {
 
-/// Balls that fall onto each other and a box: contacts between bodies, with colliders, and regions of many sizes; large enough not to run
-/// inline.
+/// Balls that fall onto each other and a box: contacts between bodies, with colliders, and regions of many sizes; large
+/// enough not to run inline.
 World pile(Backend backend, int threads, MaterialModel model = MaterialModel::stable_neo_hookean) {
     Settings settings;
     settings.backend = backend;

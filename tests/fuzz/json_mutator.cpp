@@ -59,7 +59,8 @@ void change(Json& root, RandomNumbers& random) {
             value = telling_value(random);
             return;
         case 2:
-            if (value.is_number()) value = value.get<double>() * random.one_of<double>({-1, 0, 0.5, 2, 1e3, 1e-3, 1e12, 1e-12});
+            if (value.is_number())
+                value = value.get<double>() * random.one_of<double>({-1, 0, 0.5, 2, 1e3, 1e-3, 1e12, 1e-12});
             return;
         case 3:
             if (value.is_array() && !value.empty()) value.erase(random.next() % value.size());

@@ -23,7 +23,8 @@ template <std::size_t N>
 void expect_rows(const std::vector<Vec3>& nodes, const std::vector<std::array<Index, N>>& rows) {
     for (const Vec3& x : nodes) expect_valid(x.allFinite(), "a node that is not finite");
     for (const auto& row : rows)
-        for (const Index n : row) expect_valid(n >= 0 && static_cast<std::size_t>(n) < nodes.size(), "a row that names no node");
+        for (const Index n : row)
+            expect_valid(n >= 0 && static_cast<std::size_t>(n) < nodes.size(), "a row that names no node");
 }
 
 void use_body(const std::string& path) {
@@ -70,7 +71,8 @@ void read_stl_bytes(FileBytes bytes) {
 void read_tetgen_bytes(FileBytes bytes) {
     const auto border = std::find(bytes.begin(), bytes.end(), 0);
     const bool found = border != bytes.end();
-    const auto first = static_cast<std::size_t>(found ? border - bytes.begin() : static_cast<std::ptrdiff_t>(bytes.size() / 2));
+    const auto first =
+        static_cast<std::size_t>(found ? border - bytes.begin() : static_cast<std::ptrdiff_t>(bytes.size() / 2));
     folder().write("mesh.node", text_of(bytes.first(first)));
     const std::string path = folder().write("mesh.ele", text_of(bytes.subspan(first + (found ? 1 : 0)))).string();
     use_body(path);

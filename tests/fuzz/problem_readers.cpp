@@ -113,7 +113,8 @@ void read_problem_values_bytes(FileBytes bytes) {
     if (bytes.empty()) return;
     ProblemValues values = bytes[0] % 2 == 0 ? local_values() : global_values();
     constexpr Real big = std::numeric_limits<Real>::max(), none = std::numeric_limits<Real>::quiet_NaN();
-    constexpr Real reals[] = {0, -0.0, 1, -1, 1e-300, 1e300, big, none, std::numeric_limits<Real>::infinity(), 1e-8, 1e8, 5e-324};
+    constexpr Real reals[] = {0,    -0.0, 1,     -1, 1e-300, 1e300, big, none, std::numeric_limits<Real>::infinity(),
+                              1e-8, 1e8,  5e-324};
     constexpr Index integers[] = {0, 1, -1, -2, 2, 3, 6, 7, 9, 2147483647, -2147483647 - 1, 1 << 30, 65536};
     for (FileBytes rest = bytes.subspan(1); rest.size() >= 4; rest = rest.subspan(4)) {
         if (rest[0] % 2 == 0)

@@ -1,26 +1,20 @@
-// Random numbers that are the same on every machine (splitmix64, Steele et al. 2014): std distributions differ between libraries.
+// Random numbers of the kinds that random scenes are made of, the same on every machine.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 
-#include "components/types.h"
+#include "components/split_mix.h"
 
 namespace skerry::test {
 
-class RandomNumbers {
+class RandomNumbers : public SplitMix {
 public:
-    explicit RandomNumbers(std::uint64_t seed) : state_(seed) {}
+    using SplitMix::SplitMix;
 
-    std::uint64_t next() {
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-        return z ^ (z >> 31);
-    }
     /// In [low, high).
-    Real within(Real low, Real high) { return low + (high - low) * static_cast<Real>(next() >> 11) * 0x1p-53; }
+    Real within(Real low, Real high) { return low + (high - low) * fraction(); }
     /// In [low, high), every decade as likely as the next.
     Real by_decade(Real low, Real high) { return std::exp(within(std::log(low), std::log(high))); }
     /// From low to high, both included.
@@ -36,9 +30,6 @@ public:
     T one_of(const T (&choices)[N]) {
         return choices[next() % N];
     }
-
-private:
-    std::uint64_t state_;
 };
 
 }  // namespace skerry::test

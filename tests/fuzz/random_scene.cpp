@@ -30,7 +30,8 @@ public:
         wave_speed_ = std::sqrt(stiffness_ / density_);
         duration_ = scene_.advances * scene_.steps_per_advance * 0.05 * scene_.length / wave_speed_;
         // up to 100 m/s whatever the material, or slow enough for it to stand the impact
-        top_speed_ = random_.chance(0.2) ? random_.by_decade(0.1, 100) : std::min(100.0, wave_speed_ * random_.by_decade(1e-3, 0.5));
+        top_speed_ = random_.chance(0.2) ? random_.by_decade(0.1, 100)
+                                         : std::min(100.0, wave_speed_ * random_.by_decade(1e-3, 0.5));
         scene_.speed = top_speed_;
 
         Json json;
@@ -66,8 +67,10 @@ private:
             scene_.oversized_step = true;
             scene_.passive = false;
         }
-        if (random_.chance(0.3)) s["integrator"] = random_.one_of<const char*>({"leapfrog", "leapfrog", "leapfrog", "literal"});
-        if (s.contains("integrator") && s["integrator"] == "literal") scene_.passive = false;  // forward Euler gains energy by its nature
+        if (random_.chance(0.3))
+            s["integrator"] = random_.one_of<const char*>({"leapfrog", "leapfrog", "leapfrog", "forward_euler"});
+        // forward Euler gains energy by its nature
+        if (s.contains("integrator") && s["integrator"] == "forward_euler") scene_.passive = false;
         if (random_.chance(0.3)) s["multirate"] = true;
         if (random_.chance(0.2)) {
             s["sleep_speed"] = top_speed_ * random_.by_decade(1e-3, 1);
@@ -76,8 +79,8 @@ private:
         s["backend"] = any_name<Backend>();
         s["threads"] = random_.one_of<int>({1, 1, 1, 2, 3});
         // the paper's Algorithm 1 takes quadratic time: few scenes with it say as much as many
-        s["contact_regions"] =
-            random_.one_of<const char*>({"separate", "separate", "separate", "separate", "global", "global", "paper_algorithm_1"});
+        s["contact_regions"] = random_.one_of<const char*>(
+            {"separate", "separate", "separate", "separate", "global", "global", "paper_algorithm_1"});
         const std::string method = random_.chance(0.4) ? "automatic" : any_name<SolverMethod>();
         frictionless_ = method == "mprgp";
         s["method"] = method;
@@ -89,8 +92,8 @@ private:
         // sweeps that go too far may add energy before they converge, and may be cut off there
         if (random_.chance(0.1)) s["relaxation"] = random_.within(0.1, 1.9);
         if (random_.chance(0.2)) s["max_strain_step"] = random_.by_decade(0.01, 1);
-        for (const char* key : {"contact_budgets", "continuous_collision", "certify_warm_start", "skip_separating", "frictionless_rows",
-                                "freeze_contacts", "small_regions_in_lanes"})
+        for (const char* key : {"contact_budgets", "continuous_collision", "certify_warm_start", "skip_separating",
+                                "frictionless_rows", "freeze_contacts", "small_regions_in_lanes"})
             if (random_.chance(0.3)) s[key] = random_.chance(0.5);
         return s;
     }
@@ -101,9 +104,11 @@ private:
         for (int m = 0; m < material_count_; ++m) {
             Json material;
             material["young_modulus"] = std::clamp(stiffness_ * (m == 0 ? 1 : random_.by_decade(0.01, 100)), 1e3, 1e9);
-            material["poisson_ratio"] = random_.one_of<Real>({0, 0.499, random_.within(-0.3, 0.499), random_.within(0.2, 0.45)});
+            material["poisson_ratio"] =
+                random_.one_of<Real>({0, 0.499, random_.within(-0.3, 0.499), random_.within(0.2, 0.45)});
             material["density"] = std::clamp(density_ * (m == 0 ? 1 : random_.by_decade(0.01, 100)), 1.0, 1e4);
-            const Real friction = frictionless_ ? 0 : random_.one_of<Real>({0, 0.5, 10, random_.within(0, 1), random_.within(0, 10)});
+            const Real friction =
+                frictionless_ ? 0 : random_.one_of<Real>({0, 0.5, 10, random_.within(0, 1), random_.within(0, 10)});
             if (!frictionless_ && random_.chance(0.3)) {
                 material["static_friction"] = friction;
                 material["dynamic_friction"] = friction * random_.within(0, 1);
@@ -124,15 +129,18 @@ private:
         switch (random_.count(0, 5)) {
             case 0: {
                 Vec3 edges = Vec3::Constant(size);
-                if (random_.chance(0.6)) edges = size * Vec3(random_.by_decade(0.1, 1), random_.by_decade(0.1, 1), random_.within(0.2, 1));
-                mesh["box"] = {{"size", list(edges)}, {"cells", {random_.count(1, 4), random_.count(1, 4), random_.count(1, 4)}}};
+                if (random_.chance(0.6))
+                    edges = size * Vec3(random_.by_decade(0.1, 1), random_.by_decade(0.1, 1), random_.within(0.2, 1));
+                mesh["box"] = {{"size", list(edges)},
+                               {"cells", {random_.count(1, 4), random_.count(1, 4), random_.count(1, 4)}}};
                 break;
             }
             case 1:
                 mesh["ball"] = {{"radius", size / 2}, {"resolution", resolution}};
                 break;
             case 2:
-                mesh["cylinder"] = {{"radius", size * random_.within(0.1, 0.5)}, {"height", size}, {"resolution", resolution}};
+                mesh["cylinder"] = {
+                    {"radius", size * random_.within(0.1, 0.5)}, {"height", size}, {"resolution", resolution}};
                 break;
             case 3: {
                 Json profile = Json::array();
@@ -157,19 +165,25 @@ private:
         return mesh;
     }
 
-    Json rotation() { return {{"axis", list(random_.direction())}, {"radians", random_.one_of<Real>({0, random_.within(-4, 4)})}}; }
+    Json rotation() {
+        return {{"axis", list(random_.direction())}, {"radians", random_.one_of<Real>({0, random_.within(-4, 4)})}};
+    }
 
     /// Apart by a part of their sizes, exactly touching, or one in the other.
     Vec3 next_to_last(Real size) {
         const Real reach = (last_size_ + size) / 2;
-        const Real apart = random_.one_of<Real>({1, 1, 1, 1.001, random_.within(1, 1.1), random_.within(0.9, 1), random_.within(0, 1)});
-        if (apart < 0.9) scene_.passive = false;  // one in the other: they may be pushed out only later, when their surfaces meet
+        const Real apart = random_.one_of<Real>(
+            {1, 1, 1, 1.001, random_.within(1, 1.1), random_.within(0.9, 1), random_.within(0, 1)});
+        // one in the other: they may be pushed out only later, when their surfaces meet
+        if (apart < 0.9) scene_.passive = false;
         const Vec3 position = last_position_ + apart * reach * random_.direction();
         last_size_ = size;
         return last_position_ = position;
     }
 
-    Vec3 velocity(Real most) { return random_.chance(0.3) ? Vec3(Vec3::Zero()) : Vec3(random_.within(0, most) * random_.direction()); }
+    Vec3 velocity(Real most) {
+        return random_.chance(0.3) ? Vec3(Vec3::Zero()) : Vec3(random_.within(0, most) * random_.direction());
+    }
 
     Json motion(const Vec3& start) {
         Json motion;
@@ -204,11 +218,13 @@ private:
         if (random_.chance(0.5)) body["rotation"] = rotation();
         body["velocity"] = list(velocity(top_speed_));
         if (random_.chance(0.4)) body["angular_velocity"] = list(velocity(top_speed_ / size));
-        if (random_.chance(0.3)) body["contact_distance"] = random_.chance(0.3) ? 0 : size * random_.by_decade(1e-4, 0.1);
+        if (random_.chance(0.3))
+            body["contact_distance"] = random_.chance(0.3) ? 0 : size * random_.by_decade(1e-4, 0.1);
         if (random_.chance(0.2)) body["self_contact"] = true;
         if (random_.chance(0.2)) {
             Json pin = {{"nodes", Json::array({random_.count(0, 3)})}};
-            if (random_.chance(0.3)) pin = {{"box", {{"lower", list(Vec3::Constant(-size * 2))}, {"upper", {size * 2, size * 2, 0.0}}}}};
+            if (random_.chance(0.3))
+                pin = {{"box", {{"lower", list(Vec3::Constant(-size * 2))}, {"upper", {size * 2, size * 2, 0.0}}}}};
             if (random_.chance(0.5)) {
                 pin["motion"] = motion(last_position_);
                 pin["pivot"] = list(last_position_);
@@ -225,13 +241,15 @@ private:
             case 1:
                 return {{"sphere", {{"radius", size / 2}}}};
             case 2:
-                return {{"box", {{"size", list(size * Vec3(1, random_.by_decade(0.1, 1), random_.by_decade(0.1, 1)))}}}};
+                return {
+                    {"box", {{"size", list(size * Vec3(1, random_.by_decade(0.1, 1), random_.by_decade(0.1, 1)))}}}};
             case 3:
                 return {{"capsule", {{"radius", size * random_.within(0.1, 0.4)}, {"length", size / 2}}}};
             case 4:
                 return {{"cylinder", {{"radius", size * random_.within(0.1, 0.5)}, {"height", size}}}};
             case 5:
-                return {{"bucket", {{"radius", size}, {"height", size}, {"thickness", size * random_.within(0.01, 0.2)}}}};
+                return {
+                    {"bucket", {{"radius", size}, {"height", size}, {"thickness", size * random_.within(0.01, 0.2)}}}};
             default:
                 return {{"mesh", mesh(size)}};
         }
@@ -247,7 +265,8 @@ private:
         if (random_.chance(0.4)) collider["motion"] = motion(place);
         if (random_.chance(0.5)) collider["friction"] = random_.one_of<Real>({0, 1, random_.within(0, 10)});
         if (random_.chance(0.3)) collider["restitution"] = random_.within(0, 1);
-        if (collider["shape"].contains("mesh") && random_.chance(0.5)) collider["contact_distance"] = size * random_.by_decade(1e-4, 0.05);
+        if (collider["shape"].contains("mesh") && random_.chance(0.5))
+            collider["contact_distance"] = size * random_.by_decade(1e-4, 0.05);
         return collider;
     }
 
@@ -255,7 +274,8 @@ private:
         if (random_.chance(0.5)) return;
         for (int k = random_.count(1, 6); k > 0; --k)
             scene_.changes.push_back({random_.count(1, scene_.advances - 1),
-                                      static_cast<Change>(random_.count(0, static_cast<int>(Change::set_gravity))), random_.next()});
+                                      static_cast<Change>(random_.count(0, static_cast<int>(Change::set_gravity))),
+                                      random_.next()});
         std::stable_sort(scene_.changes.begin(), scene_.changes.end(),
                          [](const SceneChange& a, const SceneChange& b) { return a.advance < b.advance; });
     }

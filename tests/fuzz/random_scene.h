@@ -1,4 +1,5 @@
-// Random valid scenes: as JSON, so that `skerry run` can rerun one that failed, and changes in mid-run, which JSON cannot say.
+// Random valid scenes: as JSON, so that `skerry run` can rerun one that failed, and changes in mid-run, which JSON
+// cannot say.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,17 @@
 namespace skerry::test {
 
 /// What happens to the world before one of the calls of advance.
-enum class Change { remove_body, remove_collider, add_body, add_collider, attach, detach, set_velocities, set_loads, set_gravity };
+enum class Change {
+    remove_body,
+    remove_collider,
+    add_body,
+    add_collider,
+    attach,
+    detach,
+    set_velocities,
+    set_loads,
+    set_gravity
+};
 
 struct SceneChange {
     int advance = 0;  // before this one, from 0
@@ -29,9 +40,9 @@ struct RandomScene {
     bool oversized_step = false;  // it asks for a step that may be longer than the stable one
 };
 
-/// The same seed gives the same scene on every machine. Bodies of all built-in shapes that overlap, touch or nearly touch; 1 mm to 100 m, E
-/// 1e3 to 1e9 Pa, nu -0.3 to 0.499, density 1 to 1e4 kg/m^3, friction 0 to 10, speeds up to 100 m/s; every kind of collider, still or
-/// moved; pins, self contact, all methods, laws and switches.
+/// The same seed gives the same scene on every machine. Bodies of all built-in shapes that overlap, touch or nearly
+/// touch; 1 mm to 100 m, E 1e3 to 1e9 Pa, nu -0.3 to 0.499, density 1 to 1e4 kg/m^3, friction 0 to 10, speeds up to 100
+/// m/s; every kind of collider, still or moved; pins, self contact, all methods, laws and switches.
 RandomScene make_random_scene(std::uint64_t seed);
 
 }  // namespace skerry::test

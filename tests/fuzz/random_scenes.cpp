@@ -1,4 +1,5 @@
-// Random scenes for as long as asked, each in a process of its own: a crash or a hang of one is written down and the next one runs.
+// Random scenes for as long as asked, each in a process of its own: a crash or a hang of one is written down and the
+// next one runs.
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -55,8 +56,8 @@ Verdict run_here(const RandomScene& scene, bool compare, const Options& options)
             const SceneRun again = run_random_scene(scene, folder.path(), other);
             if (again.hash != run.hash || again.steps != run.steps) return {"failed", "other bits on other threads"};
         }
-        std::snprintf(text, sizeof text, "steps %" PRIu64 " contacts %d growth %.3g %s", run.steps, static_cast<int>(run.max_contacts),
-                      run.energy_growth, run.message.c_str());
+        std::snprintf(text, sizeof text, "steps %" PRIu64 " contacts %d growth %.3g %s", run.steps,
+                      static_cast<int>(run.max_contacts), run.energy_growth, run.message.c_str());
         const char* const kinds[] = {"ok", "refused", "cut_short"};
         return {kinds[static_cast<int>(run.end)], text};
     } catch (const std::exception& error) {
@@ -82,7 +83,8 @@ Verdict run_apart(const RandomScene& scene, bool compare, const Options& options
     close(channel[1]);
     std::string said;
     char buffer[4096];
-    for (ssize_t got; (got = read(channel[0], buffer, sizeof buffer)) > 0;) said.append(buffer, static_cast<std::size_t>(got));
+    for (ssize_t got; (got = read(channel[0], buffer, sizeof buffer)) > 0;)
+        said.append(buffer, static_cast<std::size_t>(got));
     close(channel[0]);
     int status = 0;
     waitpid(child, &status, 0);
@@ -103,7 +105,8 @@ int main(int argc, char** argv) {
     app.add_option("--scenes", options.scenes, "stop after so many");
     app.add_option("--scene-seconds", options.scene_seconds, "CPU time after which a scene is cut short");
     app.add_option("--hang-seconds", options.hang_seconds, "CPU time after which a scene counts as hung");
-    app.add_option("--compare-every", options.compare_every, "every so many scenes is run again on four threads; 0: none");
+    app.add_option("--compare-every", options.compare_every,
+                   "every so many scenes is run again on four threads; 0: none");
     app.add_option("--out", options.out, "folder for the scenes that failed, as JSON");
     app.add_flag("--list", options.list, "one line a scene");
     CLI11_PARSE(app, argc, argv);
@@ -112,8 +115,8 @@ int main(int argc, char** argv) {
     std::map<std::string, int> counts;
     std::uint64_t done = 0;
     double shown = 0;
-    for (std::uint64_t seed = options.seed; clock.seconds() < options.seconds && (options.scenes == 0 || done < options.scenes);
-         ++seed, ++done) {
+    for (std::uint64_t seed = options.seed;
+         clock.seconds() < options.seconds && (options.scenes == 0 || done < options.scenes); ++seed, ++done) {
         const RandomScene scene = make_random_scene(seed);
         const bool compare = options.compare_every > 0 && seed % static_cast<std::uint64_t>(options.compare_every) == 0;
         const Clock of_scene;
@@ -121,8 +124,8 @@ int main(int argc, char** argv) {
         ++counts[verdict.kind];
         const bool bad = verdict.kind == "failed" || verdict.kind == "crashed" || verdict.kind == "hung";
         if (bad || options.list)
-            std::printf("%" PRIu64 " %s %.1f s %s%s\n", seed, verdict.kind.c_str(), of_scene.seconds(), scene.passive ? "passive " : "",
-                        verdict.text.c_str());
+            std::printf("%" PRIu64 " %s %.1f s %s%s\n", seed, verdict.kind.c_str(), of_scene.seconds(),
+                        scene.passive ? "passive " : "", verdict.text.c_str());
         if (bad && !options.out.empty()) {
             std::filesystem::create_directories(options.out);
             std::ofstream(options.out / ("scene_" + std::to_string(seed) + ".json")) << scene.json;

@@ -13,16 +13,18 @@ namespace skerry::test {
 
 using FileBytes = std::span<const std::uint8_t>;
 
-/// Returns when the bytes were read into something valid, or refused with SceneError. Everything else is a fault: another exception (which
-/// goes on), a number that is not finite, an index out of range (both end the program, as a sanitizer does).
+/// Returns when the bytes were read into something valid, or refused with SceneError. Everything else is a fault:
+/// another exception (which goes on), a number that is not finite, an index out of range (both end the program, as a
+/// sanitizer does).
 using ReadBytes = void (*)(FileBytes);
 
 struct FileReaderCase {
     std::string_view name;  // also of its folder of found cases
     ReadBytes read;
 };
-/// gmsh, vtk, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj), scene (and drop files),
-/// problem (FCLIB as bytes of HDF5), problem_values (FCLIB in whole HDF5 files, so that what stands in them is reached).
+/// gmsh, vtk, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj), scene,
+/// problem (FCLIB as bytes of HDF5), problem_values (FCLIB in whole HDF5 files, so that what stands in them is
+/// reached).
 std::span<const FileReaderCase> all_readers();
 
 /// Ends the program when something that was read is not valid.

@@ -38,6 +38,7 @@ TEST_CASE("found cases lie in folders named after readers", "[unit]") {
     const fs::path folder = fs::path(SKERRY_SOURCE_DIR) / "tests/fuzz/found";
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
-        CHECK(std::any_of(all_readers().begin(), all_readers().end(), [&](const FileReaderCase& reader) { return reader.name == name; }));
+        CHECK(std::any_of(all_readers().begin(), all_readers().end(),
+                          [&](const FileReaderCase& reader) { return reader.name == name; }));
     }
 }

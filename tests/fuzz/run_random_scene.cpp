@@ -42,7 +42,8 @@ public:
             case Change::add_body:
                 return add_body(random);
             case Change::add_collider:
-                world_.add_collider(Sphere{scene_.length * random.by_decade(0.1, 10)}, {.position = anywhere(random), .motion = {}});
+                world_.add_collider(Sphere{scene_.length * random.by_decade(0.1, 10)},
+                                    {.position = anywhere(random), .motion = {}});
                 return;
             case Change::attach:
                 if (body) attach(*body, random);
@@ -71,9 +72,10 @@ private:
 
     void add_body(RandomNumbers& random) {
         // of the softest kind that the scenes have, and light: the step of the others need not shrink for it
-        const MaterialHandle material = world_.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000, .friction = 0});
-        const Mesh mesh =
-            random.chance(0.5) ? mesh::ball(scene_.length / 2, random.count(1, 4)) : mesh::box(scene_.length * Vec3::Ones(), {2, 1, 3});
+        const MaterialHandle material =
+            world_.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000, .friction = 0});
+        const Mesh mesh = random.chance(0.5) ? mesh::ball(scene_.length / 2, random.count(1, 4))
+                                             : mesh::box(scene_.length * Vec3::Ones(), {2, 1, 3});
         world_.add_body(mesh, {.material = material,
                                .position = anywhere(random),
                                .velocity = random.within(0, scene_.speed) * random.direction(),
@@ -107,8 +109,8 @@ private:
     std::vector<AttachmentHandle> attachments_;
 };
 
-/// Symplectic Euler's own error, close to the limit of stability, and contacts pushed out of each other in between; what blows up grows by
-/// orders of magnitude.
+/// Symplectic Euler's own error, close to the limit of stability, and contacts pushed out of each other in between;
+/// what blows up grows by orders of magnitude.
 constexpr Real most_growth = 3;
 
 /// Energy of a scene that nothing does work on but gravity.
@@ -141,7 +143,9 @@ private:
 /// m: how far colliders are moved. A plane that is swept past a body has it as far behind it as that.
 Real way_of_colliders(const RandomScene& scene) {
     const nlohmann::json json = nlohmann::json::parse(scene.json);
-    const auto vector = [](const nlohmann::json& v) { return Vec3(v.at(0).get<Real>(), v.at(1).get<Real>(), v.at(2).get<Real>()); };
+    const auto vector = [](const nlohmann::json& v) {
+        return Vec3(v.at(0).get<Real>(), v.at(1).get<Real>(), v.at(2).get<Real>());
+    };
     Real way = 0;
     for (const auto& collider : json.value("colliders", nlohmann::json::array())) {
         if (!collider.contains("motion")) continue;
@@ -149,7 +153,8 @@ Real way_of_colliders(const RandomScene& scene) {
         if (motion.contains("velocity")) way += json.at("seconds").get<Real>() * vector(motion["velocity"]).norm();
         if (!motion.contains("keys")) continue;
         const auto& keys = motion["keys"];
-        for (std::size_t k = 1; k < keys.size(); ++k) way += (vector(keys[k]["position"]) - vector(keys[k - 1]["position"])).norm();
+        for (std::size_t k = 1; k < keys.size(); ++k)
+            way += (vector(keys[k]["position"]) - vector(keys[k - 1]["position"])).norm();
     }
     return way;
 }
@@ -165,7 +170,8 @@ Real extent_of(const World& world, const RandomScene& scene) {
 
 }  // namespace
 
-SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path& folder, const SceneOverrides& overrides, double seconds) {
+SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path& folder,
+                          const SceneOverrides& overrides, double seconds) {
     const std::filesystem::path file = folder / "scene.json";
     std::ofstream(file) << scene.json;
     const double start = cpu_seconds();

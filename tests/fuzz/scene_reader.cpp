@@ -1,4 +1,4 @@
-// Scene files and drop files, built and moved by one step unless they ask for more than a fuzzer has time for.
+// Scene files, built and moved by one step unless they ask for more than a fuzzer has time for.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,8 @@ namespace skerry::test {
 
 namespace {
 
-constexpr Real most_parts = 4000;  // elements of a body, or copies: few bytes of a scene can ask for millions, and rightly so
+// elements of a body, or copies: few bytes of a scene can ask for millions, and rightly so
+constexpr Real most_parts = 4000;
 
 /// The scene's folder, with the files that the scenes of the corpus name.
 const TemporaryFolder& folder() {
@@ -32,12 +33,14 @@ Real elements_of(const MeshEntry& mesh) {
     const auto cubed = [](Real n) { return 6 * n * n * n; };
     if (mesh.box) return 6.0 * mesh.box->cells[0] * mesh.box->cells[1] * mesh.box->cells[2];
     if (mesh.ball) return cubed(mesh.ball->resolution + 1);
-    if (mesh.cylinder) return cubed(mesh.cylinder->resolution + 1) * (1 + mesh.cylinder->height / mesh.cylinder->radius);
+    if (mesh.cylinder)
+        return cubed(mesh.cylinder->resolution + 1) * (1 + mesh.cylinder->height / mesh.cylinder->radius);
     if (mesh.skittle) return 10 * cubed(mesh.skittle->resolution + 1);
     if (mesh.lathe) {
         Real widest = 0;
         for (const auto& [radius, z] : mesh.lathe->profile) widest = std::max(widest, radius);
-        const Real height = mesh.lathe->profile.empty() ? 0 : mesh.lathe->profile.back()[1] - mesh.lathe->profile.front()[1];
+        const Real height =
+            mesh.lathe->profile.empty() ? 0 : mesh.lathe->profile.back()[1] - mesh.lathe->profile.front()[1];
         return cubed(mesh.lathe->resolution + 1) * (1 + height / widest);
     }
     if (mesh.table) {
@@ -51,8 +54,9 @@ Real elements_of(const MeshEntry& mesh) {
 bool affordable(const SceneFile& scene) {
     Real copies = 0, elements = 0;
     for (const BodyEntry& body : scene.bodies) {
-        const Real repeated = body.repeat ? Real(1) * body.repeat->count[0] * body.repeat->count[1] * body.repeat->count[2] : 1;
-        copies += repeated + static_cast<Real>(body.positions.size() + body.placements.size());
+        const Real repeated =
+            body.repeat ? Real(1) * body.repeat->count[0] * body.repeat->count[1] * body.repeat->count[2] : 1;
+        copies += repeated + static_cast<Real>(body.positions.size());
         elements += repeated * elements_of(body.mesh);
     }
     for (const ColliderEntry& collider : scene.colliders)

@@ -28,7 +28,8 @@ void move(World& world) {
     expect_valid(world.stable_step() > 0, "a stable step that is none");
     world.advance(std::min(world.stable_step(), 1.0));
     for (const BodyHandle body : world.bodies()) {
-        expect_valid(std::isfinite(world.mass(body)) && world.center_of_mass(body).allFinite(), "a mass that is not finite");
+        expect_valid(std::isfinite(world.mass(body)) && world.center_of_mass(body).allFinite(),
+                     "a mass that is not finite");
         for (const Vec3& x : world.positions(body)) expect_valid(x.allFinite(), "a position that is not finite");
     }
 }

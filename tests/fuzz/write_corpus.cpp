@@ -27,17 +27,19 @@ void put_meshes(const fs::path& folder, const std::string& name, const Mesh& mes
         if (ending == ".vtk") put(folder / "body" / (name + file.name), file.content);
         if (ending == ".obj") put(folder / "collider" / (name + file.name), file.content);
     }
-    for (int first : {0, 1}) put(folder / "tetgen" / (name + std::to_string(first)), node_file(mesh, first) + '\0' + ele_file(mesh, first));
+    for (int first : {0, 1})
+        put(folder / "tetgen" / (name + std::to_string(first)), node_file(mesh, first) + '\0' + ele_file(mesh, first));
 }
 
 const char* const small_scenes[] = {
-    R"({"materials": {"m": {"E": 1e5, "mu": 0.3}}, "bodies": [{"mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "m"}]})",
+    R"({"materials": {"m": {"E": 1e5, "mu": 0.3}}, "bodies": [
+        {"mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "m"}]})",
     R"({"include": "other.json", "bodies": [{"name": "b", "mesh": {"file": "body.vtk", "scale": 2}, "material": "wood",
         "repeat": {"count": [2, 1, 1], "spacing": [1, 0, 0], "jitter": 0.1, "seed": 3}}],
-        "colliders": [{"shape": {"mesh": {"file": "shape.obj"}}, "position": [0, 0, 9], "motion": {"keys": [{"time": 0}, {"time": 1, "position": [1, 0, 0]}]}}],
-        "probes": [{"name": "p", "body": "b_0", "box": {"lower": [-9, -9, -9], "upper": [9, 9, 9]}}], "probe_step": 0.01, "frame_step": 0.1, "seconds": 1})",
-    R"({"mesh": "body.vtk", "material": {"E": 1e5}, "gravity": [0, -9.81, 0], "bucket": {"floor_y": 0, "wall_x": 1, "wall_z": 1}, "seconds": 1,
-        "bodies": [{"position": [0, 1, 0], "rotation_rows": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}]})"};
+        "colliders": [{"shape": {"mesh": {"file": "shape.obj"}}, "position": [0, 0, 9],
+            "motion": {"keys": [{"time": 0}, {"time": 1, "position": [1, 0, 0]}]}}],
+        "probes": [{"name": "p", "body": "b_0", "box": {"lower": [-9, -9, -9], "upper": [9, 9, 9]}}],
+        "probe_step": 0.01, "frame_step": 0.1, "seconds": 1})"};
 
 }  // namespace
 

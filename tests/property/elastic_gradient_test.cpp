@@ -2,9 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"
-#include "systems/dynamics/element_energy.h"
+#include "systems/dynamics/elements/element_energy.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/elastic_body.h"
+#include "tests/support/material_models.h"
 
 using namespace skerry;
 using test::ElasticBody;
@@ -13,8 +14,6 @@ namespace accuracy = test::accuracy;
 using accuracy::Tolerance;
 
 namespace {
-
-constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean};
 
 Mat3 random_matrix(std::mt19937_64& random) {
     Mat3 m;
@@ -26,7 +25,7 @@ Mat3 random_matrix(std::mt19937_64& random) {
 
 TEST_CASE("stress is the derivative of the energy density", "[property]") {
     std::mt19937_64 random(1);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         const MaterialConstants material = material_constants(model, 1, 0.4, 1);
         for (int trial = 0; trial < 300; ++trial) {
             Mat3 F = Mat3::Identity() + (trial % 2 ? 1.0 : 0.2) * random_matrix(random);
@@ -47,20 +46,24 @@ TEST_CASE("stress is the derivative of the energy density", "[property]") {
 }
 
 TEST_CASE("small strains meet the Lame moduli", "[property][accuracy]") {
-    // methods.md 8.19: dP/dF at rest is lambda I:dF + 2 mu sym(dF); 1e-6 for the differences.
+    // docs/methods/accuracy.md 19: dP/dF at rest is lambda I:dF + 2 mu sym(dF); 1e-6 for the differences.
     std::mt19937_64 random(2);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         const MaterialConstants material = material_constants(model, 1e5, 0.4, 1000);
         Real worst = 0;
         for (int trial = 0; trial < 20; ++trial) {
             const Mat3 d = random_matrix(random);
             constexpr Real step = 1e-5;
-            const Mat3 slope = (stress(material, Mat3::Identity() + step * d) - stress(material, Mat3::Identity() - step * d)) / (2 * step);
-            const Mat3 expected = material.lame_lambda * d.trace() * Mat3::Identity() + material.shear_modulus * (d + d.transpose());
+            const Mat3 slope =
+                (stress(material, Mat3::Identity() + step * d) - stress(material, Mat3::Identity() - step * d)) /
+                (2 * step);
+            const Mat3 expected =
+                material.lame_lambda * d.trace() * Mat3::Identity() + material.shear_modulus * (d + d.transpose());
             worst = std::max(worst, (slope - expected).norm() / expected.norm());
         }
         accuracy::check({.item = 19,
-                         .name = "slope of the stress at rest, relative error, worst of 20 directions, " + std::string(name_of(model)),
+                         .name = "slope of the stress at rest, relative error, worst of 20 directions, " +
+                                 std::string(name_of(model)),
                          .formula = "lambda tr(dF) I + mu (dF + dF^T)",
                          .found = worst,
                          .tolerance = 1e-6,
@@ -70,7 +73,7 @@ TEST_CASE("small strains meet the Lame moduli", "[property][accuracy]") {
 
 TEST_CASE("nodal forces are minus the derivative of the elastic energy", "[property]") {
     const auto executor = make_executor(Backend::serial, 1);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0.25, 3), material_constants(model, 1e5, 0.4, 1000));
         std::mt19937_64 random(4);
         for (Vec3& x : body.position) x += 0.015 * test::random_vector(random);
@@ -93,7 +96,7 @@ TEST_CASE("nodal forces are minus the derivative of the elastic energy", "[prope
 
 TEST_CASE("internal forces have no sum and, rotation-invariant models, no torque", "[property]") {
     const auto executor = make_executor(Backend::serial, 1);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({3, 3, 3}, 0.1, 0.25, 5), material_constants(model, 1e5, 0.4, 1000));
         std::mt19937_64 random(6);
         for (Vec3& x : body.position) x = Vec3(1, 2, 3) + x + 0.03 * test::random_vector(random);
@@ -115,16 +118,18 @@ TEST_CASE("internal forces have no sum and, rotation-invariant models, no torque
     }
 }
 
-TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one stress everywhere", "[property][accuracy]") {
-    // methods.md 8.17: interior forces <= 1e-12 E h^2.
+TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one stress everywhere",
+          "[property][accuracy]") {
+    // docs/methods/accuracy.md 17: interior forces <= 1e-12 E h^2.
     const auto executor = make_executor(Backend::serial, 1);
     Mat3 A;
     A << 1.1, 0.05, 0, 0.02, 0.95, 0.03, -0.04, 0, 1.2;
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({4, 4, 4}, 0.1, 0.25, 7), material_constants(model, 1e5, 0.4, 1000));
         std::vector<bool> inside;
         for (std::size_t n = 0; n < body.position.size(); ++n) {
-            const Index i = static_cast<Index>(n) % 5, j = static_cast<Index>(n) / 5 % 5, k = static_cast<Index>(n) / 25;
+            const Index i = static_cast<Index>(n) % 5, j = static_cast<Index>(n) / 5 % 5,
+                        k = static_cast<Index>(n) / 25;
             inside.push_back(i % 4 != 0 && j % 4 != 0 && k % 4 != 0);
             body.position[n] = A * body.position[n] + Vec3(1, 2, 3);
         }
@@ -151,11 +156,12 @@ TEST_CASE("patch test: a homogeneous deformation leaves no force inside and one 
     }
 }
 
-TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells by the known amount", "[property][accuracy]") {
-    // methods.md 8.18.
+TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells by the known amount",
+          "[property][accuracy]") {
+    // docs/methods/accuracy.md 18.
     const auto executor = make_executor(Backend::serial, 1);
     std::mt19937_64 random(8);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         const MaterialConstants material = material_constants(model, 1e5, 0.4, 1000);
         ElasticBody body(jittered_box({3, 3, 3}, 0.1, 0.2, 9), material);
         const std::vector<Vec3> rest = body.position;
@@ -171,9 +177,11 @@ TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells 
             } else {
                 const Mat3 R = turn.toRotationMatrix();
                 const Mat3 strain = 0.5 * (R + R.transpose()) - Mat3::Identity();
-                const Real density =
-                    material.shear_modulus * strain.squaredNorm() + 0.5 * material.lame_lambda * strain.trace() * strain.trace();
-                worst = std::max(worst, std::abs(elastic_energy(body.inputs(), body.blocks, body.position) / (volume * density) - 1));
+                const Real density = material.shear_modulus * strain.squaredNorm() +
+                                     0.5 * material.lame_lambda * strain.trace() * strain.trace();
+                worst = std::max(
+                    worst,
+                    std::abs(elastic_energy(body.inputs(), body.blocks, body.position) / (volume * density) - 1));
             }
         }
         if (model == MaterialModel::linear)
@@ -185,12 +193,13 @@ TEST_CASE("a turned body feels nothing, but for linear elasticity, which swells 
                              .kind = Tolerance::absolute,
                              .note = "Linear elasticity is not invariant; it fails by the amount that theory gives."});
         else
-            accuracy::check({.item = 18,
-                             .name = "turned body, largest force over mu h^2, worst of 20 turns, " + std::string(name_of(model)),
-                             .formula = "0",
-                             .found = worst,
-                             .tolerance = 1e-12,
-                             .kind = Tolerance::absolute});
+            accuracy::check(
+                {.item = 18,
+                 .name = "turned body, largest force over mu h^2, worst of 20 turns, " + std::string(name_of(model)),
+                 .formula = "0",
+                 .found = worst,
+                 .tolerance = 1e-12,
+                 .kind = Tolerance::absolute});
     }
 }
 
@@ -205,6 +214,7 @@ TEST_CASE("forces turn with the body", "[property]") {
         const Eigen::AngleAxis<Real> turn(2.2, Vec3(3, -1, 2).normalized());
         for (Vec3& x : body.position) x = turn * x;
         body.compute_forces(*executor);
-        for (std::size_t n = 0; n < before.size(); ++n) CHECK((body.force[n] - turn * before[n]).norm() <= 1e-11 * 1e5 * 0.01);
+        for (std::size_t n = 0; n < before.size(); ++n)
+            CHECK((body.force[n] - turn * before[n]).norm() <= 1e-11 * 1e5 * 0.01);
     }
 }

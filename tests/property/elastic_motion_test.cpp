@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"
-#include "systems/dynamics/element_energy.h"
-#include "systems/dynamics/stable_step.h"
+#include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/stability/stable_step.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/elastic_body.h"
 #include "tests/support/frequency.h"
@@ -31,8 +31,8 @@ struct Motion {
     }
 };
 
-/// One element, all corners pinned but the last: an oscillator with a known frequency along x, sqrt(k / m), k = V mu |g|^2 for motion across its
-/// gradient g = z / h.
+/// One element, all corners pinned but the last: an oscillator with a known frequency along x, sqrt(k / m), k = V mu
+/// |g|^2 for motion across its gradient g = z / h.
 ElasticBody oscillator() {
     const test::TetMesh one{{Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0), Vec3(0, 0, 0.1)}, {{0, 1, 2, 3}}};
     ElasticBody body(one, material_constants(MaterialModel::linear, 1e5, 0.3, 1000));
@@ -58,7 +58,7 @@ Momenta momenta(const ElasticBody& body) {
 }  // namespace
 
 TEST_CASE("the discrete frequency is 2/h asin(omega h / 2)", "[property][accuracy]") {
-    // methods.md 8.4. A sampled harmonic obeys x_n+1 + x_n-1 = 2 cos(omega_num h) x_n exactly.
+    // docs/methods/accuracy.md 4. A sampled harmonic obeys x_n+1 + x_n-1 = 2 cos(omega_num h) x_n exactly.
     ElasticBody body = oscillator();
     const Real omega = omega_of(body), h = 0.5 / omega;
     Motion motion{body};
@@ -69,7 +69,8 @@ TEST_CASE("the discrete frequency is 2/h asin(omega h / 2)", "[property][accurac
         motion.predict(h);
         motion.advance(h);
         const Real after = body.position[3].x();
-        if (n > 0 && std::abs(now) > 1e-4) worst = std::max(worst, std::abs(std::acos((after + before) / (2 * now)) / (h * expected) - 1));
+        if (n > 0 && std::abs(now) > 1e-4)
+            worst = std::max(worst, std::abs(std::acos((after + before) / (2 * now)) / (h * expected) - 1));
         before = now;
         now = after;
     }
@@ -82,7 +83,7 @@ TEST_CASE("the discrete frequency is 2/h asin(omega h / 2)", "[property][accurac
 }
 
 TEST_CASE("the stability edge is omega h = 2", "[property][accuracy]") {
-    // methods.md 8.5.
+    // docs/methods/accuracy.md 5.
     for (Real edge : {1.99, 2.01}) {
         ElasticBody body = oscillator();
         const Real h = edge / omega_of(body);
@@ -116,11 +117,13 @@ TEST_CASE("the stability edge is omega h = 2", "[property][accuracy]") {
 }
 
 TEST_CASE("plane waves have the speeds of the bulk", "[property][accuracy]") {
-    // methods.md 8.12. Nodes move along one axis only, as they would within an endless body: a standing wave of one length over 20 elements.
+    // docs/methods/accuracy.md 12. Nodes move along one axis only, as they would within an endless body: a standing
+    // wave of one length over 20 elements.
     constexpr Index n = 20;
     constexpr Real h_element = 0.1, nu = 0.3, density = 1000;
     for (bool pressure : {true, false}) {
-        ElasticBody body(jittered_box({1, 1, n}, h_element, 0, 1), material_constants(MaterialModel::linear, 1e5, nu, density));
+        ElasticBody body(jittered_box({1, 1, n}, h_element, 0, 1),
+                         material_constants(MaterialModel::linear, 1e5, nu, density));
         const int axis = pressure ? 2 : 0;
         std::vector<Real> part;
         std::vector<Vec3> rest = body.position;
@@ -130,7 +133,8 @@ TEST_CASE("plane waves have the speeds of the bulk", "[property][accuracy]") {
         }
         std::vector<Real> scratch(rest.size());
         const Real h = 0.5 * stable_step(body.inputs(), body.blocks, body.position, body.mass, scratch).step;
-        const Real modulus = body.constants[0].shear_modulus * (pressure ? 2 : 1) + (pressure ? body.constants[0].lame_lambda : 0);
+        const Real modulus =
+            body.constants[0].shear_modulus * (pressure ? 2 : 1) + (pressure ? body.constants[0].lame_lambda : 0);
         const Real expected = std::sqrt(modulus / density), wave = 2 * M_PI / (n * h_element);
         Motion motion{body};
         std::vector<Real> sample;
@@ -139,7 +143,8 @@ TEST_CASE("plane waves have the speeds of the bulk", "[property][accuracy]") {
             for (Vec3& v : motion.next) v = Vec3::Unit(axis) * v[axis];
             motion.advance(h);
             Real sum = 0;
-            for (std::size_t k = 0; k < rest.size(); ++k) sum += body.mass[k] * part[k] * (body.position[k] - rest[k])[axis];
+            for (std::size_t k = 0; k < rest.size(); ++k)
+                sum += body.mass[k] * part[k] * (body.position[k] - rest[k])[axis];
             sample.push_back(sum);
         }
         accuracy::check({.item = 12,
@@ -156,8 +161,8 @@ TEST_CASE("a body runs at its stable step and keeps its momenta", "[property]") 
     for (MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
         ElasticBody body(jittered_box({4, 2, 2}, 0.1, 0.25, 1, 0.02), material_constants(model, 1e5, 0.45, 1000));
         for (std::size_t n = 0; n < body.position.size(); ++n)
-            body.velocity[n] =
-                Vec3(1, -0.5, 0.2) + Vec3(2, 3, -4).cross(body.position[n]) + 0.3 * Vec3(std::sin(30 * body.position[n].x()), 0, 0);
+            body.velocity[n] = Vec3(1, -0.5, 0.2) + Vec3(2, 3, -4).cross(body.position[n]) +
+                               0.3 * Vec3(std::sin(30 * body.position[n].x()), 0, 0);
         std::vector<Real> scratch(body.position.size());
         const Real h = stable_step(body.inputs(), body.blocks, body.position, body.mass, scratch).step;
         const Momenta start = momenta(body);
@@ -172,7 +177,7 @@ TEST_CASE("a body runs at its stable step and keeps its momenta", "[property]") 
         const Momenta end = momenta(body);
         INFO(name_of(model));
         CHECK(largest < 10);  // it started with 2.5
-        // methods.md 8.3: 1e-12 a step; symplectic Euler keeps x cross m v exactly.
+        // docs/methods/accuracy.md 3: 1e-12 a step; symplectic Euler keeps x cross m v exactly.
         CHECK((end.linear - start.linear).norm() <= 1e-13 * steps * start.linear.norm());
         CHECK((end.angular - start.angular).norm() <= 1e-12 * steps * start.angular.norm());
     }

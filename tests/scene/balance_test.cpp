@@ -8,7 +8,8 @@ using namespace skerry::test;
 
 namespace {
 
-/// Everything that exchanges momentum and energy with the outside: loads, weight, a moving collider, a held and a led face, contact between bodies.
+/// Everything that exchanges momentum and energy with the outside: loads, weight, a moving collider, a held and a led
+/// face, contact between bodies.
 World busy_world(Real step_safety, Real damping = 0) {
     Settings settings;
     settings.step_safety = step_safety;
@@ -17,8 +18,10 @@ World busy_world(Real step_safety, Real damping = 0) {
     world.add_collider(Plane{}, {.motion = {.velocity = {0.2, 0, 0.05}}});
     const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
     const auto low = world.add_body(block, {.material = rubber, .position = {0, 0, 0.055}, .contact_distance = 0.002});
-    world.add_body(block, {.material = rubber, .position = {0.02, 0, 0.2}, .velocity = {0, 0.3, -1}, .contact_distance = 0.002});
-    const auto bar = world.add_body(mesh::box({0.4, 0.05, 0.05}, {8, 1, 1}), {.material = rubber, .position = {0, 1, 0.4}});
+    world.add_body(
+        block, {.material = rubber, .position = {0.02, 0, 0.2}, .velocity = {0, 0.3, -1}, .contact_distance = 0.002});
+    const auto bar =
+        world.add_body(mesh::box({0.4, 0.05, 0.05}, {8, 1, 1}), {.material = rubber, .position = {0, 1, 0.4}});
     std::vector<Index> left, right;
     const auto nodes = world.positions(bar);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -42,7 +45,8 @@ TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the err
         CHECK(report.balanced_steps == report.steps);
         REQUIRE(report.mean_contacts > 5);
         REQUIRE(report.energy.dissipated > 0.1);
-        CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));  // rounding adds up as a random walk
+        // rounding adds up as a random walk
+        CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));
         error.push_back(report.energy_error_share);
     }
     // symplectic Euler: of first order, and the worst of all looks is noisy
@@ -50,7 +54,8 @@ TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the err
     CHECK(error[2] < 0.5 * error[0]);
 }
 
-TEST_CASE("a change from outside starts the balance afresh, and a held body that is damped leaves the momentum open", "[scene]") {
+TEST_CASE("a change from outside starts the balance afresh, and a held body that is damped leaves the momentum open",
+          "[scene]") {
     World world = busy_world(1);
     REQUIRE(world.advance(0.2).ok());
     const std::uint64_t before = world.report().balanced_steps;
@@ -74,7 +79,8 @@ TEST_CASE("a report names the body and the element that turned inside out", "[sc
     World world(settings);
     const auto rubber = world.add_material({.young_modulus = 1e4});
     world.add_body(mesh::ball(0.1, 3), {.material = rubber, .position = {1, 0, 0}});
-    const Mesh one{.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, .tetrahedra = {{1, 2, 3, 4}, {0, 1, 2, 3}}};
+    const Mesh one{.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}},
+                   .tetrahedra = {{1, 2, 3, 4}, {0, 1, 2, 3}}};
     const auto body = world.add_body(one, {.material = rubber, .position = {5, 0, 0}, .name = "two tetrahedra"});
     CHECK(world.report().inverted == 0);
     const std::vector<Index> fixed{0, 1, 2}, led{3};

@@ -14,10 +14,12 @@ struct Dropped {
     BodyHandle ball;
     Real lowest = 1e9;  // m, over the run
 
-    Dropped(const Shape& shape, const ColliderSettings& collider, const Vec3& from, Real seconds, const Vec3& velocity = Vec3::Zero()) {
+    Dropped(const Shape& shape, const ColliderSettings& collider, const Vec3& from, Real seconds,
+            const Vec3& velocity = Vec3::Zero()) {
         const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = 200});
         world.add_collider(shape, collider);
-        ball = world.add_body(mesh::ball(0.05, 6), {.material = material, .position = from, .velocity = velocity, .name = "ball"});
+        ball = world.add_body(mesh::ball(0.05, 6),
+                              {.material = material, .position = from, .velocity = velocity, .name = "ball"});
         for (Real t = 0; t < seconds; t += 0.01) {
             const StepReport report = world.advance(0.01);
             REQUIRE(report.ok());
@@ -116,8 +118,8 @@ TEST_CASE("a scene in which nothing is close skips the contact branch", "[scene]
     CHECK(report.max_contacts == 0);
     for (const StageReport& stage : report.stages) {
         INFO(stage.name);
-        if (stage.name == "collision/find_contacts" || stage.name == "contact/separate_regions" || stage.name == "solver/solve_regions" ||
-            stage.name == "contact/match_warm_start")
+        if (stage.name == "collision/find_contacts" || stage.name == "contact/separate_regions" ||
+            stage.name == "solver/solve_regions" || stage.name == "contact/match_warm_start")
             CHECK(stage.skipped == report.steps);
         if (stage.name == "collision/find_candidates") CHECK(stage.skipped >= report.steps - 50);
     }
@@ -129,7 +131,8 @@ TEST_CASE("bodies can be removed and added in mid-run while other handles stay v
     world.add_collider(Plane{});
     std::vector<BodyHandle> balls;
     for (int i = 0; i < 4; ++i)
-        balls.push_back(world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {0.2 * i, 0, 0.06}, .name = "ball"}));
+        balls.push_back(world.add_body(mesh::ball(0.05, 5),
+                                       {.material = material, .position = {0.2 * i, 0, 0.06}, .name = "ball"}));
     REQUIRE(world.advance(0.3).ok());
     const std::vector<Vec3> kept(world.positions(balls[3]).begin(), world.positions(balls[3]).end());
     world.remove(balls[1]);
@@ -149,8 +152,9 @@ TEST_CASE("bodies can be removed and added in mid-run while other handles stay v
 TEST_CASE("a refused step shows no contacts, the next one that is taken does", "[scene]") {
     World world;
     world.add_collider(Plane{});
-    const auto block = world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}),
-                                      {.material = world.add_material({}), .position = {0, 0, 0.5}, .contact_distance = {}});
+    const auto block =
+        world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}),
+                       {.material = world.add_material({}), .position = {0, 0, 0.5}, .contact_distance = {}});
     REQUIRE(world.advance(world.stable_step()).ok());
     CHECK_FALSE(world.contacts().empty());
     std::vector<Vec3> load(world.positions(block).size(), Vec3(0, 0, -1e308));
@@ -163,10 +167,12 @@ TEST_CASE("a refused step shows no contacts, the next one that is taken does", "
     CHECK_FALSE(world.contacts().empty());
 }
 
-TEST_CASE("a step with a load that is not finite is refused where it is set, and an overflow changes nothing", "[scene]") {
+TEST_CASE("a step with a load that is not finite is refused where it is set, and an overflow changes nothing",
+          "[scene]") {
     World world;
     const auto material = world.add_material({.young_modulus = 5e4});
-    const auto ball = world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {0, 0, 0.2}, .name = "ball"});
+    const auto ball =
+        world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {0, 0, 0.2}, .name = "ball"});
     world.add_collider(Plane{});
     std::vector<Vec3> load(world.positions(ball).size(), Vec3(std::nan(""), 0, 0));
     CHECK_THROWS_AS(world.set_loads(ball, load), SceneError);
@@ -184,7 +190,8 @@ TEST_CASE("a step with a load that is not finite is refused where it is set, and
     world.set_loads(ball, load);
     World untouched;
     const auto same = untouched.add_material({.young_modulus = 5e4});
-    const auto twin = untouched.add_body(mesh::ball(0.05, 5), {.material = same, .position = {0, 0, 0.2}, .name = "ball"});
+    const auto twin =
+        untouched.add_body(mesh::ball(0.05, 5), {.material = same, .position = {0, 0, 0.2}, .name = "ball"});
     untouched.add_collider(Plane{});
     REQUIRE(world.advance(0.5).ok());
     REQUIRE(untouched.advance(0.5).ok());

@@ -25,7 +25,8 @@ std::vector<Index> rim_of(const Mesh& sheet) {
     for (const Vec3& x : sheet.nodes) half = std::max(half, x.x());
     std::vector<Index> rim;
     for (std::size_t n = 0; n < sheet.nodes.size(); ++n)
-        if (std::max(std::abs(sheet.nodes[n].x()), std::abs(sheet.nodes[n].y())) > 0.999 * half) rim.push_back(static_cast<Index>(n));
+        if (std::max(std::abs(sheet.nodes[n].x()), std::abs(sheet.nodes[n].y())) > 0.999 * half)
+            rim.push_back(static_cast<Index>(n));
     return rim;
 }
 
@@ -38,7 +39,9 @@ TEST_CASE("a scene without fast pairs never looks at the motion of a feature", "
     const Mesh ball = mesh::ball(0.05, 6);
     // Shells 2 mm thick, falls of 1 mm: they meet at 0.15 m/s, less than 0.1 mm a step.
     for (int i = 0; i < 6; ++i)
-        world.add_body(ball, {.material = rubber, .position = {0.103 * (i % 3), 0.0, 0.052 + 0.104 * (i / 3)}, .contact_distance = 0.002});
+        world.add_body(ball, {.material = rubber,
+                              .position = {0.103 * (i % 3), 0.0, 0.052 + 0.104 * (i / 3)},
+                              .contact_distance = 0.002});
     REQUIRE(world.advance(1.0).ok());
     const WorldReport report = world.report();
     CHECK(report.max_contacts > 20);
@@ -56,7 +59,8 @@ TEST_CASE("a sheet pinched hard between two balls stays between them", "[scene]"
     const Mesh round = mesh::ball(0.04, 4);
     std::vector<BodyHandle> balls;
     for (Real side : {-1.0, 1.0}) {
-        balls.push_back(world.add_body(round, {.material = rubber, .position = {0.003 * side, 0.002, 0.045 * side}, .name = "ball"}));
+        balls.push_back(world.add_body(
+            round, {.material = rubber, .position = {0.003 * side, 0.002, 0.045 * side}, .name = "ball"}));
         std::vector<Index> cap;
         for (std::size_t n = 0; n < round.nodes.size(); ++n)
             if (side * round.nodes[n].z() > 0.02) cap.push_back(static_cast<Index>(n));
@@ -80,8 +84,8 @@ TEST_CASE("a body put half into another leaves it about as slowly as it is pushe
     const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3});
     const auto lower = world.add_body(mesh::box({0.1, 0.1, 0.1}, {4, 4, 4}), {.material = rubber, .name = "lower"});
     // More than half of the upper one is inside, its corners between the nodes of the lower one.
-    const auto upper =
-        world.add_body(mesh::box({0.04, 0.04, 0.04}, {2, 2, 2}), {.material = rubber, .position = {0.003, 0.004, 0.045}, .name = "upper"});
+    const auto upper = world.add_body(mesh::box({0.04, 0.04, 0.04}, {2, 2, 2}),
+                                      {.material = rubber, .position = {0.003, 0.004, 0.045}, .name = "upper"});
     REQUIRE(crossings(surface_of(world, lower), surface_of(world, upper)) > 0);
     Real most = 0;
     for (int frame = 0; frame < 100; ++frame) {
@@ -91,8 +95,8 @@ TEST_CASE("a body put half into another leaves it about as slowly as it is pushe
     }
     CHECK(crossings(surface_of(world, lower), surface_of(world, upper)) == 0);
     CHECK(world.center_of_mass(upper).z() > 0.069);  // out, through the face that was nearest
-    // The push moves positions only, at no more than half a metre a second. What it bends springs back: that is all the energy there is, and
-    // less than both would have if they moved as fast.
+    // The push moves positions only, at no more than half a metre a second. What it bends springs back: that is all the
+    // energy there is, and less than both would have if they moved as fast.
     const Vec3 before = world.center_of_mass(upper);
     REQUIRE(world.advance(0.01).ok());
     // 0.57 m/s was measured: the push speed and some of what it had bent.
@@ -112,9 +116,10 @@ TEST_CASE("steps that are tried again are the same bits on any number of workers
         for (int i = 0; i < 3; ++i) {
             const auto sheet = world.add_body(thin, {.material = soft, .position = {0.3 * i, 0, 0}});
             world.attach(sheet, rim_of(thin));
-            world.add_body(
-                mesh::box({0.03, 0.03, 0.03}, {2, 2, 2}),
-                {.material = hard, .position = {0.3 * i, 0.01 * i, 0.03}, .rotation = {0.5, 0.3 * i, 0.2}, .velocity = {0, 3, -40}});
+            world.add_body(mesh::box({0.03, 0.03, 0.03}, {2, 2, 2}), {.material = hard,
+                                                                      .position = {0.3 * i, 0.01 * i, 0.03},
+                                                                      .rotation = {0.5, 0.3 * i, 0.2},
+                                                                      .velocity = {0, 3, -40}});
         }
         REQUIRE(world.advance(0.004).ok());
         CHECK(world.report().retried > 0);

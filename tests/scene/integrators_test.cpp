@@ -1,4 +1,5 @@
-// Orders of the integrators, measured against closed forms and against very small steps (methods.md 4.1).
+// Orders of the integrators, measured against closed forms and against very small steps
+// (docs/methods/time_stepping.md 1).
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -11,8 +12,8 @@ using namespace skerry::test;
 
 namespace {
 
-/// One tetrahedron whose three nodes at the bottom are held. The gradient of the fourth is along z, so that it swings there with
-/// m x'' = -V (lambda + 2 mu) g^2 x, V g^2 / m = 4 / rho for unit edges: one mode, in closed form.
+/// One tetrahedron whose three nodes at the bottom are held. The gradient of the fourth is along z, so that it swings
+/// there with m x'' = -V (lambda + 2 mu) g^2 x, V g^2 / m = 4 / rho for unit edges: one mode, in closed form.
 struct Oscillator {
     World world;
     BodyHandle body;
@@ -22,14 +23,18 @@ struct Oscillator {
     Oscillator(Integrator integrator, Real step, Real damping = 0) : world(settings_of(integrator, step)) {
         const Real modulus = 1e5, poisson = 0.25, density = 1000;
         const Real mu = modulus / (2 * (1 + poisson)), lambda = modulus * poisson / ((1 + poisson) * (1 - 2 * poisson));
-        const auto material = world.add_material(
-            {.young_modulus = modulus, .poisson_ratio = poisson, .density = density, .damping = damping, .model = MaterialModel::linear});
+        const auto material = world.add_material({.young_modulus = modulus,
+                                                  .poisson_ratio = poisson,
+                                                  .density = density,
+                                                  .damping = damping,
+                                                  .model = MaterialModel::linear});
         Mesh mesh;
         mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         mesh.tetrahedra = {{0, 1, 2, 3}};
         body = world.add_body(mesh, {.material = material});
         world.attach(body, std::vector<Index>{0, 1, 2});
-        world.set_velocities(body, std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3(0, 0, start_speed)});
+        world.set_velocities(body,
+                             std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3(0, 0, start_speed)});
         omega = std::sqrt(4 * (lambda + 2 * mu) / density);
     }
 
@@ -69,7 +74,8 @@ std::vector<Vec3> block_after(Integrator integrator, int steps, bool in_one_call
     const Mesh mesh = mesh::box({0.2, 0.1, 0.1}, {3, 2, 2});
     const auto body = world.add_body(mesh, {.material = material, .angular_velocity = {0, 3, 4}});
     std::vector<Vec3> velocity(world.velocities(body).begin(), world.velocities(body).end());
-    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] += 4 * Vec3(mesh.nodes[n].x(), -mesh.nodes[n].y(), mesh.nodes[n].x());
+    for (std::size_t n = 0; n < velocity.size(); ++n)
+        velocity[n] += 4 * Vec3(mesh.nodes[n].x(), -mesh.nodes[n].y(), mesh.nodes[n].x());
     world.set_velocities(body, velocity);
     if (in_one_call) {
         REQUIRE(world.advance(seconds).steps == steps);
@@ -111,17 +117,19 @@ Rebound rebound(Integrator integrator, int steps) {
 }  // namespace
 
 TEST_CASE("one mode converges with order 1 by symplectic Euler and with order 2 by leapfrog", "[scene]") {
-    for (const auto& [integrator, order] : {std::pair{Integrator::symplectic_euler, 1.0}, std::pair{Integrator::leapfrog, 2.0}}) {
+    for (const auto& [integrator, order] :
+         {std::pair{Integrator::symplectic_euler, 1.0}, std::pair{Integrator::leapfrog, 2.0}}) {
         INFO(name_of(integrator));
         const Real coarse = oscillator_error(integrator, 400), middle = oscillator_error(integrator, 800),
                    fine = oscillator_error(integrator, 1600);
-        // The next term of the error of symplectic Euler is omega h = 0.03 of it at the coarsest: its order comes as near.
+        // The next term of the error of symplectic Euler is omega h = 0.03 of it at the coarsest: its order comes as
+        // near.
         CHECK(std::log2(coarse / middle) == Approx(order).margin(0.03));
         CHECK(std::log2(middle / fine) == Approx(order).margin(0.015));
     }
 }
 
-TEST_CASE("leapfrog has the closed frequency error of methods.md 4.1", "[scene]") {
+TEST_CASE("leapfrog has the closed frequency error of a sampled oscillation", "[scene]") {
     // sin(omega_h h / 2) = omega h / 2: after a time t the phase is ahead by omega t (omega h)^2 / 24.
     const int steps = 200;
     Oscillator one(Integrator::leapfrog, run_length / steps);
@@ -131,9 +139,9 @@ TEST_CASE("leapfrog has the closed frequency error of methods.md 4.1", "[scene]"
     CHECK(one.speed() / Oscillator::start_speed == Approx(std::cos(phase)).margin(1e-10));
 }
 
-TEST_CASE("the literal integrator grows by |1 + i omega h| a step, whatever the step", "[scene]") {
+TEST_CASE("forward Euler grows by |1 + i omega h| a step, whatever the step", "[scene]") {
     for (const int steps : {50, 400}) {
-        Oscillator one(Integrator::literal, run_length / steps);
+        Oscillator one(Integrator::forward_euler, run_length / steps);
         REQUIRE(one.world.advance(run_length).ok());
         const Real wh = one.omega * run_length / steps;
         const Real size = std::hypot(one.position() / one.amplitude(), one.speed() / Oscillator::start_speed);
@@ -144,9 +152,11 @@ TEST_CASE("the literal integrator grows by |1 + i omega h| a step, whatever the 
 
 TEST_CASE("a ringing block converges with order 1 by symplectic Euler and with order 2 by leapfrog", "[scene]") {
     const std::vector<Vec3> reference = block_after(Integrator::leapfrog, 6400);
-    for (const auto& [integrator, order] : {std::pair{Integrator::symplectic_euler, 1.0}, std::pair{Integrator::leapfrog, 2.0}}) {
+    for (const auto& [integrator, order] :
+         {std::pair{Integrator::symplectic_euler, 1.0}, std::pair{Integrator::leapfrog, 2.0}}) {
         INFO(name_of(integrator));
-        const Real coarse = distance(block_after(integrator, 100), reference), middle = distance(block_after(integrator, 200), reference),
+        const Real coarse = distance(block_after(integrator, 100), reference),
+                   middle = distance(block_after(integrator, 200), reference),
                    fine = distance(block_after(integrator, 400), reference);
         CHECK(std::log2(coarse / middle) == Approx(order).margin(0.2));
         CHECK(std::log2(middle / fine) == Approx(order).margin(0.1));
@@ -170,8 +180,9 @@ TEST_CASE("leapfrog keeps order 2 when the length of the step changes all the ti
 }
 
 TEST_CASE("after an impact symplectic Euler converges with order 1 and leapfrog no slower", "[scene]") {
-    // When the surface is met within a step changes the errors from step length to step length, so the order is taken over a factor of
-    // eight. A single soft touch such as this one leaves leapfrog nearly its second order; only order 1 is asked of it.
+    // When the surface is met within a step changes the errors from step length to step length, so the order is taken
+    // over a factor of eight. A single soft touch such as this one leaves leapfrog nearly its second order; only order
+    // 1 is asked of it.
     const Rebound reference = rebound(Integrator::leapfrog, 25600);
     std::array<Real, 2> order{};
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
@@ -222,8 +233,8 @@ TEST_CASE("a block on a scripted floor rests on it by leapfrog, and the floor is
     Motion up;
     up.velocity = {0, 0, 0.1};
     world.add_collider(Plane{}, {.motion = up});
-    const auto body =
-        world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = material, .position = {0, 0, 0.051}, .contact_distance = 0.002});
+    const auto body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}),
+                                     {.material = material, .position = {0, 0, 0.051}, .contact_distance = 0.002});
     REQUIRE(world.advance(1).ok());
     CHECK(world.time() == Approx(1));
     Real lowest = 1;

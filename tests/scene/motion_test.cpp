@@ -24,7 +24,8 @@ TEST_CASE("two bodies that collide keep their common momentum", "[scene]") {
     World world(settings);
     const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.6});
     world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {-0.06, 0, 0}, .velocity = {1, 0, 0}});
-    world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {0.06, 0.03, 0.01}, .velocity = {-1, 0.5, 0}});
+    world.add_body(mesh::ball(0.05, 5),
+                   {.material = material, .position = {0.06, 0.03, 0.01}, .velocity = {-1, 0.5, 0}});
     const WorldReport before = world.report();
     REQUIRE(world.advance(0.15).ok());
     const WorldReport after = world.report();
@@ -45,7 +46,8 @@ TEST_CASE("pinned nodes stay where they are", "[scene]") {
     REQUIRE(top.size() == 9);
     world.attach(bar, top);
     REQUIRE(world.advance(0.5).ok());
-    for (Index n : top) CHECK(world.positions(bar)[static_cast<std::size_t>(n)] == mesh.nodes[static_cast<std::size_t>(n)]);
+    for (Index n : top)
+        CHECK(world.positions(bar)[static_cast<std::size_t>(n)] == mesh.nodes[static_cast<std::size_t>(n)]);
     CHECK(world.center_of_mass(bar).z() < -1e-3);  // the rest hangs
 }
 
@@ -73,13 +75,15 @@ TEST_CASE("an attachment follows its keys, and a released body is free again", "
     CHECK((world.center_of_mass(body) - before - Vec3(0, 0.25, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("an element that one step would throw inside out is stopped by its own stiffness in shorter ones", "[scene]") {
+TEST_CASE("an element that one step would throw inside out is stopped by its own stiffness in shorter ones",
+          "[scene]") {
     Settings settings;
     settings.gravity = Vec3::Zero();
     settings.max_strain_step = 100;  // else the step would be refused for its speed
     World world(settings);
-    const auto body = world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}},
-                                     {.material = world.add_material({.young_modulus = 1e5}), .contact_distance = {}, .name = "tet"});
+    const auto body =
+        world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}},
+                       {.material = world.add_material({.young_modulus = 1e5}), .contact_distance = {}, .name = "tet"});
     const Real h = world.stable_step();
     std::vector<Vec3> velocity(4, Vec3::Zero());
     velocity[3] = {0, 0, -1.05 / h};  // 5 % beyond the face opposite
@@ -94,8 +98,10 @@ TEST_CASE("an element that one step would throw inside out is stopped by its own
 TEST_CASE("an element that is pressed inside out is reported with its body, and the step is taken", "[scene]") {
     World world(Settings{.gravity = Vec3::Zero()});
     const auto material = world.add_material({.young_modulus = 1e5});
-    world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}), {.material = material, .position = {5, 0, 0}, .contact_distance = {}});
-    const auto body = world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}}, {.material = material, .name = "tet"});
+    world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}),
+                   {.material = material, .position = {5, 0, 0}, .contact_distance = {}});
+    const auto body = world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}},
+                                     {.material = material, .name = "tet"});
     const std::array<Index, 3> ground{0, 1, 2};
     const std::array<Index, 1> apex{3};
     world.attach(body, ground, Motion{});
@@ -107,7 +113,8 @@ TEST_CASE("an element that is pressed inside out is reported with its body, and 
     CHECK(report.inverted == 1);
     CHECK(report.inverted_body == body);
     CHECK(report.inverted_element == 0);
-    CHECK_THAT(report.warning(), Catch::Contains("1 elements turned inside out, the first of them element 0 of body 'tet'"));
+    CHECK_THAT(report.warning(),
+               Catch::Contains("1 elements turned inside out, the first of them element 0 of body 'tet'"));
     CHECK(report.shortened >= 2);  // to a quarter of the stable step, then it is let happen
     CHECK(world.report().inversions == 1);
     CHECK(world.report().inverted == 1);
@@ -132,7 +139,8 @@ TEST_CASE("a push out of a step that was refused is not made in a later one", "[
     const std::vector<Vec3> before(world.positions(body).begin(), world.positions(body).end());
     REQUIRE(world.advance(1e-3).ok());
     Real moved = 0;
-    for (std::size_t n = 0; n < before.size(); ++n) moved = std::max(moved, (world.positions(body)[n] - before[n]).norm());
+    for (std::size_t n = 0; n < before.size(); ++n)
+        moved = std::max(moved, (world.positions(body)[n] - before[n]).norm());
     CHECK(moved < 1e-14);
 }
 
@@ -141,7 +149,8 @@ TEST_CASE("a mesh collider that goes leaves bodies and attachments that came aft
     const auto material = world.add_material({.young_modulus = 1e5});
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
     const auto collider = world.add_collider(
-        SurfaceMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}, {.position = {5, 0, 0}});
+        SurfaceMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}},
+        {.position = {5, 0, 0}});
     const auto body = world.add_body(mesh, {.material = material});
     const std::array<Index, 3> some{0, 1, 2};
     const std::array<Index, 1> other{5};

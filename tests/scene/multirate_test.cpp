@@ -1,4 +1,4 @@
-// Multirate stepping: fewer element forces, the same motion (methods.md 4.4, docs/integration.md).
+// Multirate stepping: fewer element forces, the same motion (docs/methods/stable_step.md 7, docs/integration.md).
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -24,12 +24,13 @@ const Mesh& sliver_mesh() {
 void stir(World& world, BodyHandle body, const Mesh& mesh, Real speed = 0.3) {
     std::vector<Vec3> velocity;
     for (const Vec3& x : mesh.nodes)
-        velocity.push_back(speed * Vec3(std::sin(30 * x.y()), 20 * x.z(), std::cos(25 * x.x())) + Vec3(1, 2, 3).cross(x));
+        velocity.push_back(speed * Vec3(std::sin(30 * x.y()), 20 * x.z(), std::cos(25 * x.x())) +
+                           Vec3(1, 2, 3).cross(x));
     world.set_velocities(body, velocity);
 }
 
-World sliver_world(bool multirate, MaterialModel model = MaterialModel::stable_neo_hookean, Backend backend = Backend::automatic,
-                   int threads = 0) {
+World sliver_world(bool multirate, MaterialModel model = MaterialModel::stable_neo_hookean,
+                   Backend backend = Backend::automatic, int threads = 0) {
     Settings settings;
     settings.gravity = Vec3::Zero();
     settings.multirate = multirate;
@@ -52,8 +53,10 @@ World stiff_on_soft(bool multirate, Backend backend = Backend::automatic, int th
     const auto soft = world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2});
     const auto stiff = world.add_material({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2});
     world.add_collider(Plane{});
-    world.add_body(mesh::box({0.2, 0.2, 0.1}, {6, 6, 3}), {.material = soft, .position = {0, 0, 0.052}, .name = "soft"});
-    world.add_body(mesh::ball(0.04, 4), {.material = stiff, .position = {0.01, 0, 0.15}, .velocity = {0.2, 0, -0.5}, .name = "stiff"});
+    world.add_body(mesh::box({0.2, 0.2, 0.1}, {6, 6, 3}),
+                   {.material = soft, .position = {0, 0, 0.052}, .name = "soft"});
+    world.add_body(mesh::ball(0.04, 4),
+                   {.material = stiff, .position = {0.01, 0, 0.15}, .velocity = {0.2, 0, -0.5}, .name = "stiff"});
     return world;
 }
 
@@ -99,7 +102,8 @@ TEST_CASE("elements of many levels keep momentum and angular momentum to roundin
     const WorldReport after = world.report();
     REQUIRE(after.level_elements.size() >= 4);
     const Real steps = static_cast<Real>(after.steps);
-    // Rounding of one step times the number of steps. The box has no momentum as a whole: its size is sum m |v| = mass * 0.3 m/s.
+    // Rounding of one step times the number of steps. The box has no momentum as a whole: its size is sum m |v| = mass
+    // * 0.3 m/s.
     const Real mass = world.mass(world.bodies()[0]);
     CHECK((after.momentum - before.momentum).norm() <= 1e-13 * mass * 0.3 * steps);
     // A corotational element's frame is found to 1e-10, and so is its torque: it has the tolerance of that.
@@ -112,9 +116,11 @@ TEST_CASE("without slivers to care for, multirate changes no bit", "[scene]") {
         Settings settings;
         settings.multirate = multirate;
         World world(settings);
-        const auto material = world.add_material({.young_modulus = 1e5, .friction = 0.5, .model = MaterialModel::corotational});
+        const auto material =
+            world.add_material({.young_modulus = 1e5, .friction = 0.5, .model = MaterialModel::corotational});
         world.add_collider(Plane{});
-        const auto body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = material, .position = {0, 0, 0.06}});
+        const auto body =
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = material, .position = {0, 0, 0.06}});
         REQUIRE(world.advance(0.15).ok());
         REQUIRE(world.report().max_contacts > 0);
         if (multirate) REQUIRE(world.report().level_elements.size() == 1);
@@ -144,7 +150,8 @@ TEST_CASE("multirate on slivers converges with order 2, with the error of a mesh
         return rms_distance(positions(mesh, multirate, safety, Integrator::symplectic_euler),
                             positions(mesh, false, fine, Integrator::leapfrog));
     };
-    const Real coarse = error(sliver_mesh(), true, 1), middle = error(sliver_mesh(), true, 0.5), without = error(regular, false, 1);
+    const Real coarse = error(sliver_mesh(), true, 1), middle = error(sliver_mesh(), true, 0.5),
+               without = error(regular, false, 1);
     INFO(coarse << " m, at half the step " << middle << " m; one step without slivers " << without << " m");
     // One step for all, sixteen times shorter than good elements need, has an error far below: that is what it wastes.
     CHECK(coarse < without);
@@ -158,8 +165,8 @@ TEST_CASE("energy stays where it is over 1e5 steps with slivers of all frequenci
         const StepReport report = world.advance(1e4 * h);
         REQUIRE(report.ok());
         REQUIRE(report.shortened == 0);
-        // Symplectic: what is not lost to the slivers' viscosity (1 % in all here) oscillates by less than 1 %. Resonance would double the energy
-        // of a sliver some twenty times in this run.
+        // Symplectic: what is not lost to the slivers' viscosity (1 % in all here) oscillates by less than 1 %.
+        // Resonance would double the energy of a sliver some twenty times in this run.
         CHECK(total_energy(world) < 1.01 * start);
         CHECK(total_energy(world) > 0.97 * start);
     }
@@ -179,12 +186,14 @@ TEST_CASE("a soft block under a stiff ball is looked at seldom and moves as it s
     // Where the ball has bounced to differs by what the two make of the impact; with half the step by a quarter.
     const auto apart = [](const World& a, const World& b) {
         Real most = 0;
-        for (const BodyHandle body : a.bodies()) most = std::max(most, (a.center_of_mass(body) - b.center_of_mass(body)).norm());
+        for (const BodyHandle body : a.bodies())
+            most = std::max(most, (a.center_of_mass(body) - b.center_of_mass(body)).norm());
         return most;
     };
     const Real coarse = apart(multirate, single);
     CHECK(coarse < 1.5e-3);
-    World fine_multirate = stiff_on_soft(true, Backend::automatic, 0, 0.5), fine_single = stiff_on_soft(false, Backend::automatic, 0, 0.5);
+    World fine_multirate = stiff_on_soft(true, Backend::automatic, 0, 0.5),
+          fine_single = stiff_on_soft(false, Backend::automatic, 0, 0.5);
     REQUIRE(fine_multirate.advance(seconds).ok());
     REQUIRE(fine_single.advance(seconds).ok());
     CHECK(apart(fine_multirate, fine_single) < std::min(0.4 * coarse, 5e-4));
@@ -215,7 +224,8 @@ TEST_CASE("stresses and surfaces of a body sorted by level are those of its tetr
     const std::vector<Real> stress = world.von_mises_stress(body), expected = single.von_mises_stress(same);
     const Real scale = *std::max_element(expected.begin(), expected.end());
     REQUIRE(scale > 0);
-    // After one cycle the states differ by what one impulse in the middle differs from many. Slivers magnify that: most are compared.
+    // After one cycle the states differ by what one impulse in the middle differs from many. Slivers magnify that: most
+    // are compared.
     std::size_t near = 0;
     for (std::size_t t = 0; t < stress.size(); ++t) near += std::abs(stress[t] - expected[t]) < 0.02 * scale;
     CHECK(100 * near > 97 * stress.size());
@@ -226,7 +236,8 @@ TEST_CASE("bodies come and go between steps of many levels", "[scene]") {
     const auto first = world.bodies()[0];
     REQUIRE(world.advance(0.003).ok());
     const auto material = world.add_material({.young_modulus = 1e6});
-    const auto second = world.add_body(sliver_mesh(), {.material = material, .position = {0.5, 0, 0}, .velocity = {1, 0, 0}});
+    const auto second =
+        world.add_body(sliver_mesh(), {.material = material, .position = {0.5, 0, 0}, .velocity = {1, 0, 0}});
     REQUIRE(world.advance(0.003).ok());
     const WorldReport both = world.report();
     world.remove(first);
@@ -241,8 +252,8 @@ TEST_CASE("bodies come and go between steps of many levels", "[scene]") {
 }
 
 TEST_CASE("steps shortened within a cycle, and a call broken off, lose no impulse", "[scene]") {
-    // A hammer blow in mid-run makes steps too long; momentum tells of every impulse given twice or not at all to one of its four corners,
-    // and the height of a resting block of every imbalance between weight, floor and elements.
+    // A hammer blow in mid-run makes steps too long; momentum tells of every impulse given twice or not at all to one
+    // of its four corners, and the height of a resting block of every imbalance between weight, floor and elements.
     World world = sliver_world(true);
     const auto body = world.bodies()[0];
     const Real h = world.stable_step();
@@ -270,9 +281,9 @@ TEST_CASE("steps shortened within a cycle, and a call broken off, lose no impuls
     CHECK(world.advance(64 * h).ok());
 }
 
-TEST_CASE("the literal integrator and multirate exclude each other, and the message says why", "[scene]") {
+TEST_CASE("forward Euler and multirate exclude each other, and the message says why", "[scene]") {
     Settings settings;
-    settings.integrator = Integrator::literal;
+    settings.integrator = Integrator::forward_euler;
     settings.multirate = true;
-    CHECK_THROWS_WITH(World(settings), Catch::Contains("multirate") && Catch::Contains("literal"));
+    CHECK_THROWS_WITH(World(settings), Catch::Contains("multirate") && Catch::Contains("forward_euler"));
 }

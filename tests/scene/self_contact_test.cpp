@@ -29,7 +29,8 @@ struct Driven {
         return settings;
     }
     Driven(const Mesh& mesh, bool self_contact, Real young_modulus) : world(weightless()) {
-        const auto rubber = world.add_material({.young_modulus = young_modulus, .poisson_ratio = 0.3, .friction = 0.3, .damping = 30});
+        const auto rubber =
+            world.add_material({.young_modulus = young_modulus, .poisson_ratio = 0.3, .friction = 0.3, .damping = 30});
         body = world.add_body(mesh, {.material = rubber, .self_contact = self_contact, .name = "driven"});
     }
     void run(Real seconds) {
@@ -47,8 +48,10 @@ Driven twisted_bar(bool self_contact) {
     Driven driven(bar, self_contact, 2e5);
     const auto left = nodes_where(bar, [](const Vec3& x) { return x.x() < -0.199; });
     const auto right = nodes_where(bar, [](const Vec3& x) { return x.x() > 0.199; });
-    driven.world.attach(driven.body, left, {.velocity = {0.12, 0, 0}, .angular_velocity = {-2 * pi, 0, 0}}, {-0.2, 0, 0});
-    driven.world.attach(driven.body, right, {.velocity = {-0.12, 0, 0}, .angular_velocity = {2 * pi, 0, 0}}, {0.2, 0, 0});
+    driven.world.attach(driven.body, left, {.velocity = {0.12, 0, 0}, .angular_velocity = {-2 * pi, 0, 0}},
+                        {-0.2, 0, 0});
+    driven.world.attach(driven.body, right, {.velocity = {-0.12, 0, 0}, .angular_velocity = {2 * pi, 0, 0}},
+                        {0.2, 0, 0});
     driven.run(1.2);
     return driven;
 }
@@ -66,7 +69,8 @@ Driven folded_sheet(bool self_contact) {
     driven.world.attach(driven.body, right);
     driven.world.add_collider(Plane{.normal = {0, 0, 1}, .point = {0, 0, -0.01}});
     // Its lower side stops 9 mm above the floor: less than the two layers of 6 mm need.
-    driven.world.add_collider(Box{{0.16, 0.2, 0.05}}, {.position = {0.02, 0, 0.105}, .motion = {.velocity = {0, 0, -0.27}}});
+    driven.world.add_collider(Box{{0.16, 0.2, 0.05}},
+                              {.position = {0.02, 0, 0.105}, .motion = {.velocity = {0, 0, -0.27}}});
     driven.run(0.3);
     return driven;
 }

@@ -33,7 +33,8 @@ Real mean_edge(const World& world) {
 
 }  // namespace
 
-TEST_CASE("the ball strikes the skittles down, surfaces never overlap, and every number stays finite", "[scene][slow]") {
+TEST_CASE("the ball strikes the skittles down, surfaces never overlap, and every number stays finite",
+          "[scene][slow]") {
     Scene scene = open_scene("skittles");
     World& world = scene.world;
     REQUIRE(world.report().elements >= 5000);
@@ -45,11 +46,13 @@ TEST_CASE("the ball strikes the skittles down, surfaces never overlap, and every
     CHECK(worst < 0.02 * mean_edge(world));
     CHECK(world.report().worst_volume_ratio > 0);
     int moved = 0;
-    for (std::size_t b = 0; b < start.size(); ++b) moved += (world.center_of_mass(world.bodies()[b]) - start[b]).norm() > 0.02;
+    for (std::size_t b = 0; b < start.size(); ++b)
+        moved += (world.center_of_mass(world.bodies()[b]) - start[b]).norm() > 0.02;
     CHECK(moved == 11);
 }
 
-TEST_CASE("skittles end with the same state hash on 1, 2, 3 and 4 threads and on every backend", "[scene][determinism][slow]") {
+TEST_CASE("skittles end with the same state hash on 1, 2, 3 and 4 threads and on every backend",
+          "[scene][determinism][slow]") {
     const auto hash = [](Backend backend, int threads) {
         SceneOverrides overrides;
         overrides.backend = backend;

@@ -91,7 +91,13 @@ Target random_target(std::mt19937_64& random) {
         case 4:
             return {"ball", mesh::ball(0.03, 4), {}, false, 0.025, 80, 0.03};
         case 5:
-            return {"thin mesh collider", {}, mesh::boundary(mesh::box({0.2, 0.2, 0.002}, {3, 3, 1})), false, 0.06, 70, 0.001};
+            return {"thin mesh collider",
+                    {},
+                    mesh::boundary(mesh::box({0.2, 0.2, 0.002}, {3, 3, 1})),
+                    false,
+                    0.06,
+                    70,
+                    0.001};
         case 6:
             return {"ridge", {}, pyramid({0.1, 0.04, 0.05}, true), false, 0.03, 60, 0.01};
         default:
@@ -113,17 +119,18 @@ public:
         target_ = random_target(random_);
         frame_ = rotation_matrix(std::acos(-1.0) * fraction(random_) * random_direction(random_));
         speed_ = 3 * std::pow(100.0 / 3, fraction(random_));
-        const Real own = std::pow(10.0, 4.7 + 4.3 * fraction(random_)), other = std::pow(10.0, 4.7 + 4.3 * fraction(random_));
+        const Real own = std::pow(10.0, 4.7 + 4.3 * fraction(random_)),
+                   other = std::pow(10.0, 4.7 + 4.3 * fraction(random_));
         build(own, other);
         std::ostringstream text;
-        text << "shot " << number << ": " << shot_.name << " (E " << own << " Pa) at " << speed_ << " m/s onto " << target_.name << " (E "
-             << other << " Pa)";
+        text << "shot " << number << ": " << shot_.name << " (E " << own << " Pa) at " << speed_ << " m/s onto "
+             << target_.name << " (E " << other << " Pa)";
         outcome_.description = text.str();
     }
 
     Outcome fly() {
-        // A shot moves by less than a sixth of its radius between two looks: nothing goes through another unseen. Long enough for the shot to
-        // come, to be stopped and to leave again.
+        // A shot moves by less than a sixth of its radius between two looks: nothing goes through another unseen. Long
+        // enough for the shot to come, to be stopped and to leave again.
         const Real look = 0.15 * radius_ / speed_;
         const Real end = 2 * (start_ + 4 * radius_) / speed_;
         for (Real t = 0; t < end && outcome_.failure.empty(); t += look) {
@@ -145,7 +152,8 @@ private:
     }
 
     void build(Real own_modulus, Real other_modulus) {
-        const auto own = world_.add_material({.young_modulus = own_modulus, .poisson_ratio = 0.3, .friction = 0.6 * fraction(random_)});
+        const auto own = world_.add_material(
+            {.young_modulus = own_modulus, .poisson_ratio = 0.3, .friction = 0.6 * fraction(random_)});
         const auto other = world_.add_material({.young_modulus = other_modulus, .poisson_ratio = 0.3, .friction = 0.3});
         if (target_.mesh.nodes.empty()) {
             ColliderSettings placed;
@@ -154,13 +162,15 @@ private:
             for (const Vec3& x : target_.surface.nodes) fixed_.push_back(frame_ * x);
             faces_ = target_.surface.triangles;
         } else {
-            target_body_ = world_.add_body(target_.mesh, {.material = other, .rotation = rotation_vector(frame_), .name = "target"});
+            target_body_ = world_.add_body(target_.mesh,
+                                           {.material = other, .rotation = rotation_vector(frame_), .name = "target"});
             if (target_.held) hold_rim();
             faces_.assign(world_.surface(target_body_).begin(), world_.surface(target_body_).end());
         }
         radius_ = 0;
         for (const Vec3& x : shot_.mesh.nodes) radius_ = std::max(radius_, x.norm());
-        const Real tilt = target_.steepest / 180 * std::acos(-1.0) * fraction(random_), turn = 2 * std::acos(-1.0) * fraction(random_);
+        const Real tilt = target_.steepest / 180 * std::acos(-1.0) * fraction(random_),
+                   turn = 2 * std::acos(-1.0) * fraction(random_);
         const Vec3 from(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
         const Vec3 aim = target_.aim * Vec3(uniform(random_), uniform(random_), 0);
         start_ = (target_.reach + 1.1 * radius_) / std::cos(tilt);
@@ -179,7 +189,8 @@ private:
         std::vector<Index> rim;
         for (std::size_t n = 0; n < target_.mesh.nodes.size(); ++n) {
             const Vec3& x = target_.mesh.nodes[n];
-            if (std::abs(x.x()) > 0.999 * half.x() || std::abs(x.y()) > 0.999 * half.y()) rim.push_back(static_cast<Index>(n));
+            if (std::abs(x.x()) > 0.999 * half.x() || std::abs(x.y()) > 0.999 * half.y())
+                rim.push_back(static_cast<Index>(n));
         }
         world_.attach(target_body_, rim);
     }

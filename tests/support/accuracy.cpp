@@ -11,8 +11,8 @@ void check(const Quantity& q) {
     INFO("item " << q.item << ": " << q.name << " = " << q.formula);
     REQUIRE(std::isfinite(q.found));
     const Real scale = q.kind == Tolerance::relative ? std::abs(q.expected) : 1;
-    INFO("expected " << q.expected << ", found " << q.found << ", error " << std::abs(q.found - q.expected) / scale << ", tolerance "
-                     << q.tolerance);
+    INFO("expected " << q.expected << ", found " << q.found << ", error " << std::abs(q.found - q.expected) / scale
+                     << ", tolerance " << q.tolerance);
     REQUIRE(std::abs(q.found - q.expected) <= q.tolerance * scale);
     RecordLine()
         .add("item", q.item)

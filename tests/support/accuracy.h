@@ -1,4 +1,5 @@
-// One line of the accuracy table (docs/accuracy.md): a quantity that has a closed form, what the engine finds, and how far apart they may be.
+// One line of the accuracy table (docs/accuracy.md): a quantity that has a closed form, what the engine finds, and how
+// far apart they may be.
 #pragma once
 
 #include <string>
@@ -21,8 +22,8 @@ struct Quantity {
     std::string note{};  // why it is tested in this way, where that is not plain
 };
 
-/// Requires that found is within the tolerance of expected, and records the line (tests/support/record.h): scripts/accuracy makes the table of
-/// these.
+/// Requires that found is within the tolerance of expected, and records the line (tests/support/record.h):
+/// scripts/accuracy makes the table of these.
 void check(const Quantity& quantity);
 
 }  // namespace skerry::test::accuracy

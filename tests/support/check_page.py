@@ -1,8 +1,9 @@
-"""Opens pages of PageWriter in headless Chromium: check_page.py FOLDER, which holds page.html and empty.html of output_sample_files.
+"""Opens pages of PageWriter in headless Chromium: check_page.py FOLDER, which holds page.html and empty.html of
+output_sample_files.
 
-A page marks its root element: data-ready after the first picture, data-error after a failure or a blocked request. The script asks for
-several states by URL fragment, reads the marks back, and looks at the picture itself. Pictures stay in the folder.
-Ends with 77 (skipped, for CTest) when there is no Chromium.
+A page marks its root element: data-ready after the first picture, data-error after a failure or a blocked request. The
+script asks for several states by URL fragment, reads the marks back, and looks at the picture itself. Pictures stay in
+the folder. Ends with 77 (skipped, for CTest) when there is no Chromium.
 """
 import os
 import re
@@ -27,9 +28,10 @@ def chromium():
 def browse(page, fragment, picture=None, size=(1440, 900), seconds=2):
     """The page as the browser has it after that many seconds of its own time, and its picture if a name is given."""
     with tempfile.TemporaryDirectory() as profile:
-        command = [chromium(), "--headless", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-                   "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}",
-                   f"--virtual-time-budget={1000 * seconds}", "--dump-dom"]
+        command = [chromium(), "--headless", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader",
+                   "--enable-unsafe-swiftshader",
+                   "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={profile}",
+                   f"--window-size={size[0]},{size[1]}", f"--virtual-time-budget={1000 * seconds}", "--dump-dom"]
         if picture:
             command.append(f"--screenshot={picture}")
         result = subprocess.run(command + [f"file://{page}{fragment}"], capture_output=True, text=True, timeout=200)
@@ -98,11 +100,14 @@ def main(folder):
         assert not re.search(outside, text.split("<script>")[0]), f"the page refers to something outside: {outside}"
 
     ready = {"ready": "true", "frames": "120"}
-    first = check(folder, "page.html", "#frame=0", {**ready, "frame": "0", "bodies": "7", "color": "speed"}, "frame_0.png")
-    later = check(folder, "page.html", "#frame=30&color=stress", {**ready, "frame": "30", "bodies": "7", "color": "stress"}, "frame_30.png")
+    first = check(folder, "page.html", "#frame=0", {**ready, "frame": "0", "bodies": "7", "color": "speed"},
+                  "frame_0.png")
+    later = check(folder, "page.html", "#frame=30&color=stress",
+                  {**ready, "frame": "30", "bodies": "7", "color": "stress"}, "frame_30.png")
     switched = "#frame=60&color=body&contacts=region&xray=1&wire=1&flat=1"
     check(folder, "page.html", switched, {**ready, "bodies": "8", "color": "body"}, "frame_60.png")
-    check(folder, "page.html", "#frame=119&colliders=0&contacts=off", {**ready, "frame": "119", "bodies": "7"}, "frame_119.png")
+    check(folder, "page.html", "#frame=119&colliders=0&contacts=off", {**ready, "frame": "119", "bodies": "7"},
+          "frame_119.png")
     check(folder, "page.html", "#frame=70", ready, "narrow.png", (520, 1100))
     for seconds in [2, 8, 32]:  # on a machine with other work the browser's own time passes between few pictures
         playing = marks(browse(page, "#play=1&frame=0&rate=1", seconds=seconds))

@@ -1,4 +1,5 @@
-"""Reads a series of VtkWriter with VTK and compares every number: check_vtk.py FOLDER, which holds expected.json beside the series.
+"""Reads a series of VtkWriter with VTK and compares every number: check_vtk.py FOLDER, which holds expected.json beside
+the series.
 
 Ends with 77 (skipped, for CTest) when Python has no VTK.
 """
@@ -97,9 +98,11 @@ def check_colliders(path):
     ids = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     bucket = place[np.unique(ids[numbers == 1])]
     # Floor at 0.005 with 0.02 of wall and floor around an inner radius of 0.48 and an inner height of 0.25.
-    same("bucket", [bucket[:, 2].min(), bucket[:, 2].max(), np.hypot(bucket[:, 0], bucket[:, 1]).max()], [-0.015, 0.255, 0.5], 1e-12)
+    same("bucket", [bucket[:, 2].min(), bucket[:, 2].max(), np.hypot(bucket[:, 0], bucket[:, 1]).max()],
+         [-0.015, 0.255, 0.5], 1e-12)
     plane = place[np.unique(ids[numbers == 0])]
-    assert np.abs(plane[:, 2]).max() == 0 and np.ptp(plane[:, 0]) > 0.5, "the plane is flat and reaches beyond the bodies"
+    flat = np.abs(plane[:, 2]).max() == 0
+    assert flat and np.ptp(plane[:, 0]) > 0.5, "the plane is flat and reaches beyond the bodies"
     capsule = place[np.unique(ids[numbers == 3])]
     # Turned by 90 degrees about x: along y, 0.1 + 0.05 to either side of its place.
     same("capsule", [capsule[:, 1].min(), capsule[:, 1].max()], [-0.35, -0.05], 1e-9)
@@ -119,9 +122,11 @@ def main(folder):
         check_bodies(files["bodies"], frame)
         contacts += check_contacts(files["contacts"], frame)
         check_colliders(files["colliders"])
-    assert contacts > 0 and any(not frame["contacts"] for frame in expected["frames"]), "frames with and without contacts"
+    without = any(not frame["contacts"] for frame in expected["frames"])
+    assert contacts > 0 and without, "frames with and without contacts"
     assert not [name for name in os.listdir(folder) if name.endswith(".part")], "no half-written file left"
-    print(f"{len(expected['frames'])} frames, {contacts} contacts: the same as written (VTK {vtk.vtkVersion().GetVTKVersion()})")
+    print(f"{len(expected['frames'])} frames, {contacts} contacts: the same as written (VTK "
+          f"{vtk.vtkVersion().GetVTKVersion()})")
 
 
 if __name__ == "__main__":

@@ -35,8 +35,16 @@ struct CollisionWorld {
     CollisionWorld() { settings.gravity = 9.81; }
 
     CollisionInputs inputs() const {
-        return {body,           collider,           surface, nodes.inverse_mass, material, bvh.node, bvh_leaves.triangle, nodes.position,
-                nodes.velocity, nodes.rest_position};
+        return {body,
+                collider,
+                surface,
+                nodes.inverse_mass,
+                material,
+                bvh.node,
+                bvh_leaves.triangle,
+                nodes.position,
+                nodes.velocity,
+                nodes.rest_position};
     }
 
     static RigidMotion at(const Vec3& position, const Mat3& rotation = Mat3::Identity()) {
@@ -45,7 +53,7 @@ struct CollisionWorld {
 
     Index add_collider(ColliderShape shape, const Vec3& size, const RigidMotion& motion) {
         const std::size_t row = collider.slot.size();
-        collider.for_each_row_column([row](const char*, auto& column) { column.resize(row + 1); });
+        collider.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
         collider.slot[row] = next_slot++;
         collider.geometry[row] = {shape, size};
         collider.motion[row] = collider.initial[row] = motion;
@@ -55,7 +63,8 @@ struct CollisionWorld {
     }
 
     /// A surface whose nodes are moved by hand: the body part of a mesh collider.
-    Index add_kinematic(const std::vector<Vec3>& points, const std::vector<BoundaryTriangle>& triangles, Real contact_distance) {
+    Index add_kinematic(const std::vector<Vec3>& points, const std::vector<BoundaryTriangle>& triangles,
+                        Real contact_distance) {
         const Index c = add_collider(ColliderShape::mesh, Vec3::Zero(), at(Vec3::Zero()));
         const Index b = add(points, triangles, contact_distance, BodyKind::kinematic);
         body.slot[b] = collider.slot[c];
@@ -103,10 +112,11 @@ struct CollisionWorld {
     const Vec3& node(Index b, Index local) const { return nodes.position[body.nodes[b].begin + local]; }
 
 private:
-    Index add(const std::vector<Vec3>& points, const std::vector<BoundaryTriangle>& triangles, Real contact_distance, BodyKind kind) {
+    Index add(const std::vector<Vec3>& points, const std::vector<BoundaryTriangle>& triangles, Real contact_distance,
+              BodyKind kind) {
         const Index first = static_cast<Index>(nodes.position.size());
         const std::size_t row = body.slot.size();
-        body.for_each_column([row](const char*, auto& column) { column.resize(row + 1); });
+        body.for_each_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
         for (const Vec3& x : points) {
             nodes.position.push_back(x);
             nodes.rest_position.push_back(x);

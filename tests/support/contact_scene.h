@@ -42,7 +42,9 @@ struct ContactScene {
         restitution.push_back(0);
         return stencil.size() - 1;
     }
-    std::size_t touch_floor(Index node, Real mu) { return touch({{node, node, node, node}, {1, 0, 0, 0}}, Vec3::UnitZ(), mu); }
+    std::size_t touch_floor(Index node, Real mu) {
+        return touch({{node, node, node, node}, {1, 0, 0, 0}}, Vec3::UnitZ(), mu);
+    }
     std::size_t touch_node(Index first, Index second, const Vec3& along, Real mu) {
         return touch({{first, second, first, first}, {1, -1, 0, 0}}, along, mu);
     }
@@ -58,7 +60,8 @@ struct ContactScene {
         result.push_out.assign(velocity.size(), Vec3::Zero());
         SolverMemory solver;
         const auto executor = make_executor(backend, workers);
-        solve_regions(*executor, inputs(), settings, h, solver, result.regions, {result.impulse, result.velocity, result.push_out});
+        solve_regions(*executor, inputs(), settings, h, solver, result.regions,
+                      {result.impulse, result.velocity, result.push_out});
         return result;
     }
     RegionInputs inputs() const {
@@ -67,7 +70,8 @@ struct ContactScene {
     }
     Vec3 relative_velocity(std::size_t contact, const std::vector<Vec3>& v) const {
         Vec3 u = -surface_velocity[contact];
-        for (std::size_t a = 0; a < 4; ++a) u += stencil[contact].weight[a] * v[static_cast<std::size_t>(stencil[contact].node[a])];
+        for (std::size_t a = 0; a < 4; ++a)
+            u += stencil[contact].weight[a] * v[static_cast<std::size_t>(stencil[contact].node[a])];
         return u;
     }
     Real kinetic_energy(const std::vector<Vec3>& v) const {
@@ -78,17 +82,22 @@ struct ContactScene {
     }
 };
 
-/// Adds two sheets of size x size points, each inner point against a triangle of the other: 2 (size - 2)^2 contacts in one region, an
-/// oblique impact with uneven masses (methods.md, appendix A: "patch").
+/// Adds two sheets of size x size points, each inner point against a triangle of the other: 2 (size - 2)^2 contacts in
+/// one region, an oblique impact with uneven masses (docs/methods/measuring.md 4.1).
 inline void add_sheets(ContactScene& scene, int size, Real mu, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<Real> noise;
     std::uniform_real_distribution<Real> unit(0, 1);
     const Index first = static_cast<Index>(scene.inverse_mass.size());
-    const auto node = [&](int layer, int i, int j) { return first + static_cast<Index>((layer * size + i) * size + j); };
-    const auto noisy = [&](Real scale) { return Vec3(scale * noise(random), scale * noise(random), scale * noise(random)); };
+    const auto node = [&](int layer, int i, int j) {
+        return first + static_cast<Index>((layer * size + i) * size + j);
+    };
+    const auto noisy = [&](Real scale) {
+        return Vec3(scale * noise(random), scale * noise(random), scale * noise(random));
+    };
     for (int layer = 0; layer < 2; ++layer)
-        for (int k = 0; k < size * size; ++k) scene.add_node(std::exp(0.5 * noise(random)), Vec3(layer * Vec3(0.4, 0.1, -1) + noisy(0.15)));
+        for (int k = 0; k < size * size; ++k)
+            scene.add_node(std::exp(0.5 * noise(random)), Vec3(layer * Vec3(0.4, 0.1, -1) + noisy(0.15)));
     for (int layer = 0; layer < 2; ++layer)
         for (int i = 1; i + 1 < size; ++i)
             for (int j = 1; j + 1 < size; ++j) {
@@ -98,7 +107,8 @@ inline void add_sheets(ContactScene& scene, int size, Real mu, unsigned seed) {
                     b = 1 - b;
                 }
                 const int other = 1 - layer;
-                scene.touch({{node(layer, i, j), node(other, i, j), node(other, i + 1, j), node(other, i, j + 1)}, {1, a + b - 1, -a, -b}},
+                scene.touch({{node(layer, i, j), node(other, i, j), node(other, i + 1, j), node(other, i, j + 1)},
+                             {1, a + b - 1, -a, -b}},
                             Vec3(0, 0, layer == 0 ? -1 : 1) + noisy(0.05), mu);
             }
 }

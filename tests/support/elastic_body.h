@@ -6,8 +6,8 @@
 
 #include "components/body_table.h"
 #include "components/node_table.h"
-#include "systems/dynamics/build_elements.h"
-#include "systems/dynamics/compute_element_forces.h"
+#include "systems/dynamics/elements/build_elements.h"
+#include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/material/material_law.h"
 #include "tests/support/jittered_box.h"
 #include "tests/support/node_forces.h"
@@ -36,12 +36,17 @@ struct ElasticBody {
         build_corners(elements.node, elements.volume, n, corners);
     }
 
-    ElementInputs inputs() const { return {elements.node, elements.inverse_rest, elements.volume, elements.material, constants}; }
+    ElementInputs inputs() const {
+        return {elements.node, elements.inverse_rest, elements.volume, elements.material, constants};
+    }
 
     void compute_elements(Executor& executor) {
-        compute_element_forces(executor, inputs(), position, velocity, elements.rotation, elements.rotation_next, elements.force);
+        compute_element_forces(executor, inputs(), position, velocity, elements.rotation, elements.rotation_next,
+                               elements.force);
     }
-    void gather(const Vec3& gravity = Vec3::Zero()) { gather_node_forces(corners.view(), elements.force, mass, gravity, load, force); }
+    void gather(const Vec3& gravity = Vec3::Zero()) {
+        gather_node_forces(corners.view(), elements.force, mass, gravity, load, force);
+    }
     void compute_forces(Executor& executor, const Vec3& gravity = Vec3::Zero()) {
         compute_elements(executor);
         gather(gravity);
@@ -51,7 +56,9 @@ struct ElasticBody {
     /// F of one element by the textbook, for comparison with the kernels.
     Mat3 deformation(std::size_t element) const {
         const std::size_t b = element / element_lanes, l = element % element_lanes;
-        const auto at = [&](std::size_t a) -> const Vec3& { return position[static_cast<std::size_t>(elements.node[b][a][l])]; };
+        const auto at = [&](std::size_t a) -> const Vec3& {
+            return position[static_cast<std::size_t>(elements.node[b][a][l])];
+        };
         Mat3 Ds, B;
         Ds << at(1) - at(0), at(2) - at(0), at(3) - at(0);
         for (std::size_t i = 0; i < 9; ++i) B.data()[i] = elements.inverse_rest[b][i][l];

@@ -1,15 +1,17 @@
-// The exact limit of the step, by differences and a dense eigenvalue solver: what the bound of stable_step is compared with.
+// The exact limit of the step, by differences and a dense eigenvalue solver: what the bound of stable_step is compared
+// with.
 #pragma once
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "systems/dynamics/stable_step.h"
+#include "systems/dynamics/stability/stable_step.h"
 #include "tests/support/elastic_body.h"
 
 namespace skerry::test {
 
-/// Largest eigenvalue of M^-1/2 K M^-1/2 of the whole mesh in its present shape, K by central differences of the nodal forces.
+/// Largest eigenvalue of M^-1/2 K M^-1/2 of the whole mesh in its present shape, K by central differences of the nodal
+/// forces.
 inline Real exact_frequency_squared(ElasticBody& body) {
     const auto executor = make_executor(Backend::serial, 1);
     const Eigen::Index size = 3 * static_cast<Eigen::Index>(body.position.size());
@@ -26,8 +28,10 @@ inline Real exact_frequency_squared(ElasticBody& body) {
     for (Eigen::Index j = 0; j < size; ++j) K.col(j) = (forces(j, -step) - forces(j, step)) / (2 * step);
     for (Eigen::Index i = 0; i < size; ++i)
         for (Eigen::Index j = 0; j < size; ++j)
-            K(i, j) /= std::sqrt(body.mass[static_cast<std::size_t>(i / 3)] * body.mass[static_cast<std::size_t>(j / 3)]);
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (K + K.transpose()), Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
+            K(i, j) /=
+                std::sqrt(body.mass[static_cast<std::size_t>(i / 3)] * body.mass[static_cast<std::size_t>(j / 3)]);
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (K + K.transpose()), Eigen::EigenvaluesOnly)
+        .eigenvalues()[size - 1];
 }
 
 /// The step at which symplectic Euler turns unstable, s.

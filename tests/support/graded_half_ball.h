@@ -10,15 +10,18 @@
 
 namespace skerry::test {
 
-/// Half a ball below z = 0, centred at the origin: shells of a block of cubes, drawn onto half spheres. `fine` shells make up the radius a, so
-/// that elements there are a / fine thick; beyond a they grow by a factor of e^(growth / fine) from shell to shell until the radius is reached.
+/// Half a ball below z = 0, centred at the origin: shells of a block of cubes, drawn onto half spheres. `fine` shells
+/// make up the radius a, so that elements there are a / fine thick; beyond a they grow by a factor of e^(growth / fine)
+/// from shell to shell until the radius is reached.
 struct HalfBallShape {
     Real a = 1;  // m
     int fine = 4;
     Real growth = 4;   // per a of even shells
     Real radius = 30;  // m, at least
 
-    int shells() const { return fine + static_cast<int>(std::ceil(fine * std::log1p(growth * (radius / a - 1)) / growth)); }
+    int shells() const {
+        return fine + static_cast<int>(std::ceil(fine * std::log1p(growth * (radius / a - 1)) / growth));
+    }
     Real shell_radius(int shell) const {
         const Real s = Real(shell) / fine;
         return a * (s <= 1 ? s : 1 + std::expm1(growth * (s - 1)) / growth);
@@ -47,8 +50,9 @@ inline void orient(Mesh& mesh) {
     }
 }
 
-/// Inverts the half ball so that its flat face becomes the sphere of the given radius that touches z = 0 at the origin from above, and its
-/// fine middle the lowest point: an angle-preserving map. The top, where the far shell ends up, is cut off.
+/// Inverts the half ball so that its flat face becomes the sphere of the given radius that touches z = 0 at the origin
+/// from above, and its fine middle the lowest point: an angle-preserving map. The top, where the far shell ends up, is
+/// cut off.
 inline void roll_up(Mesh& mesh, Real radius) {
     const Vec3 top(0, 0, 2 * radius);
     for (Vec3& x : mesh.nodes) x = top + 4 * radius * radius / (x - top).squaredNorm() * (x - top);

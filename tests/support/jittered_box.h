@@ -31,15 +31,18 @@ inline Vec3 random_vector(std::mt19937_64& random) {
     return {x, y, z};
 }
 
-/// Cells of edge h, six tetrahedra each (Kuhn), the lower corner at the origin. Every node is moved by up to jitter h in each direction, unless
-/// that would leave a tetrahedron less than `flattest` of its volume: jitter 0.3 with flattest 0.01 gives slivers.
-inline TetMesh jittered_box(const std::array<Index, 3>& cells, Real h, Real jitter, std::uint64_t seed, Real flattest = 0.05) {
+/// Cells of edge h, six tetrahedra each (Kuhn), the lower corner at the origin. Every node is moved by up to jitter h
+/// in each direction, unless that would leave a tetrahedron less than `flattest` of its volume: jitter 0.3 with
+/// flattest 0.01 gives slivers.
+inline TetMesh jittered_box(const std::array<Index, 3>& cells, Real h, Real jitter, std::uint64_t seed,
+                            Real flattest = 0.05) {
     const auto row = [&](Index i, Index j, Index k) { return (k * (cells[1] + 1) + j) * (cells[0] + 1) + i; };
     TetMesh mesh;
     for (Index k = 0; k <= cells[2]; ++k)
         for (Index j = 0; j <= cells[1]; ++j)
             for (Index i = 0; i <= cells[0]; ++i) mesh.nodes.push_back(h * Vec3(i, j, k));
-    constexpr std::array<std::array<int, 3>, 6> path{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+    constexpr std::array<std::array<int, 3>, 6> path{
+        {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
     for (Index k = 0; k < cells[2]; ++k)
         for (Index j = 0; j < cells[1]; ++j)
             for (Index i = 0; i < cells[0]; ++i)

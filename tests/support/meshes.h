@@ -22,8 +22,10 @@ inline SolidMesh box_mesh(const std::array<Index, 3>& cells, const Vec3& size) {
     for (Index k = 0; k <= cells[2]; ++k)
         for (Index j = 0; j <= cells[1]; ++j)
             for (Index i = 0; i <= cells[0]; ++i)
-                mesh.nodes.push_back(Vec3(Real(i) / cells[0] - 0.5, Real(j) / cells[1] - 0.5, Real(k) / cells[2] - 0.5).cwiseProduct(size));
-    constexpr std::array<std::array<std::size_t, 3>, 6> path{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+                mesh.nodes.push_back(Vec3(Real(i) / cells[0] - 0.5, Real(j) / cells[1] - 0.5, Real(k) / cells[2] - 0.5)
+                                         .cwiseProduct(size));
+    constexpr std::array<std::array<std::size_t, 3>, 6> path{
+        {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
     for (Index k = 0; k < cells[2]; ++k)
         for (Index j = 0; j < cells[1]; ++j)
             for (Index i = 0; i < cells[0]; ++i)

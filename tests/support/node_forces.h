@@ -9,8 +9,9 @@
 namespace skerry::test {
 
 /// force = sum of the forces of all corners around the node + mass gravity + load.
-inline void gather_node_forces(RaggedView<Index> corners, std::span<const ElementForces> element_force, std::span<const Real> mass,
-                               const Vec3& gravity, std::span<const Vec3> load, std::span<Vec3> force) {
+inline void gather_node_forces(RaggedView<Index> corners, std::span<const ElementForces> element_force,
+                               std::span<const Real> mass, const Vec3& gravity, std::span<const Vec3> load,
+                               std::span<Vec3> force) {
     for (std::size_t n = 0; n < force.size(); ++n) {
         Vec3 sum = Vec3::Zero();
         for (const Index corner : corners[n]) {
@@ -22,8 +23,8 @@ inline void gather_node_forces(RaggedView<Index> corners, std::span<const Elemen
 }
 
 /// velocity_next = velocity + h force / mass where there is freedom.
-inline void kick(std::span<const Vec3> force, std::span<const Real> inverse_mass, std::span<const Vec3> velocity, Real h,
-                 std::span<Vec3> velocity_next) {
+inline void kick(std::span<const Vec3> force, std::span<const Real> inverse_mass, std::span<const Vec3> velocity,
+                 Real h, std::span<Vec3> velocity_next) {
     for (std::size_t n = 0; n < force.size(); ++n)
         velocity_next[n] = inverse_mass[n] > 0 ? Vec3(velocity[n] + (h * inverse_mass[n]) * force[n]) : velocity[n];
 }

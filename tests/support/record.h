@@ -13,8 +13,8 @@ public:
     RecordLine& add(const char* key, Real number);  // finite
     RecordLine& add(const char* key, int number);
 
-    /// Appends the line to the file of this process in the folder that the environment variable SKERRY_RECORD names; without it, does
-    /// nothing. One file a process: test programs may run side by side.
+    /// Appends the line to the file of this process in the folder that the environment variable SKERRY_RECORD names;
+    /// without it, does nothing. One file a process: test programs may run side by side.
     void write() const;
 
 private:

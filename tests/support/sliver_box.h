@@ -10,9 +10,10 @@
 
 namespace skerry::test {
 
-/// The box mesh of cubic cells with `share` of its tetrahedra made flat: a node inside is moved close to the middle of the opposite face of one of
-/// its tetrahedra, to `flatness` of the altitude. Faces lie in common planes, so that some four to eight tetrahedra become flat at once. No two
-/// nodes of a tetrahedron are moved. Fewer than asked for where there is no room.
+/// The box mesh of cubic cells with `share` of its tetrahedra made flat: a node inside is moved close to the middle of
+/// the opposite face of one of its tetrahedra, to `flatness` of the altitude. Faces lie in common planes, so that some
+/// four to eight tetrahedra become flat at once. No two nodes of a tetrahedron are moved. Fewer than asked for where
+/// there is no room.
 inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uint64_t seed = 1) {
     Mesh mesh = mesh::box({size, size, size}, {cells, cells, cells});
     std::vector<std::vector<std::size_t>> around(mesh.nodes.size());
@@ -38,7 +39,8 @@ inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uin
         for (std::size_t t : around[static_cast<std::size_t>(n)])
             for (Index other : mesh.tetrahedra[t]) free = free && !taken[static_cast<std::size_t>(other)];
         if (!free) continue;
-        const Vec3 &a = node(corners[(moved + 1) % 4]), &b = node(corners[(moved + 2) % 4]), &c = node(corners[(moved + 3) % 4]);
+        const Vec3 &a = node(corners[(moved + 1) % 4]), &b = node(corners[(moved + 2) % 4]),
+                   &c = node(corners[(moved + 3) % 4]);
         const Vec3 normal = (b - a).cross(c - a).normalized();
         node(n) = (a + b + c) / 3 + flatness * normal.dot(old - a) * normal;
         std::size_t flat = 0;

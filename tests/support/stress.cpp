@@ -20,7 +20,8 @@ void judge(const Outcome& outcome, const std::source_location& place) {
         .add("file", std::filesystem::path(place.file_name()).filename().string())
         .add("test", Catch::getResultCapture().getCurrentTestName())
         .write();
-    INFO("item " << outcome.item << ", " << outcome.what << ": asked for " << outcome.criterion << ", found " << outcome.found);
+    INFO("item " << outcome.item << ", " << outcome.what << ": asked for " << outcome.criterion << ", found "
+                 << outcome.found);
     CHECK(outcome.held);
 }
 
@@ -30,11 +31,13 @@ std::string text(Real value) {
     return digits;
 }
 
-void at_most(int item, const std::string& what, const std::string& quantity, Real found, Real limit, const std::source_location& place) {
+void at_most(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
+             const std::source_location& place) {
     judge({item, what, quantity + " <= " + text(limit), text(found), found <= limit}, place);
 }
 
-void at_least(int item, const std::string& what, const std::string& quantity, Real found, Real limit, const std::source_location& place) {
+void at_least(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
+              const std::source_location& place) {
     judge({item, what, quantity + " >= " + text(limit), text(found), found >= limit}, place);
 }
 

@@ -52,7 +52,8 @@ Course follow(World& world, Real seconds, int looks);
 Real mechanical_energy(const World& world);
 bool all_finite(const World& world);
 
-/// Moves the nodes of a body to places of one's own, slowly and by attachments that are removed again; leaves them at rest.
+/// Moves the nodes of a body to places of one's own, slowly and by attachments that are removed again; leaves them at
+/// rest.
 void deform(World& world, BodyHandle body, const std::vector<Vec3>& places, Real seconds);
 
 /// Share of the tetrahedra of a body that are turned inside out.

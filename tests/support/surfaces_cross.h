@@ -25,7 +25,8 @@ inline Real orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 /// Whether the inside of segment pq goes through the inside of triangle abc; what only touches does not count.
 inline bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     for (int i = 0; i < 3; ++i) {
-        if (std::max(p[i], q[i]) < std::min({a[i], b[i], c[i]}) || std::min(p[i], q[i]) > std::max({a[i], b[i], c[i]})) return false;
+        if (std::max(p[i], q[i]) < std::min({a[i], b[i], c[i]}) || std::min(p[i], q[i]) > std::max({a[i], b[i], c[i]}))
+            return false;
     }
     if (!(orientation(a, b, c, p) * orientation(a, b, c, q) < 0)) return false;
     const Real u = orientation(p, q, a, b), v = orientation(p, q, b, c), w = orientation(p, q, c, a);
@@ -40,7 +41,8 @@ inline int crossings(const SurfaceView& first, const SurfaceView& second) {
             for (std::size_t k = 0; k < 3; ++k) {
                 if (e[k] > e[(k + 1) % 3]) continue;  // a closed surface has each edge twice, once in either direction
                 for (const auto& f : faces.triangle)
-                    count += passes_through(edges.at(e[k]), edges.at(e[(k + 1) % 3]), faces.at(f[0]), faces.at(f[1]), faces.at(f[2]));
+                    count += passes_through(edges.at(e[k]), edges.at(e[(k + 1) % 3]), faces.at(f[0]), faces.at(f[1]),
+                                            faces.at(f[2]));
             }
     };
     edges_through(first, second);
@@ -57,7 +59,9 @@ inline int self_crossings(const SurfaceView& surface) {
             if (p > q) continue;
             for (const auto& f : surface.triangle) {
                 const bool shared = f[0] == p || f[1] == p || f[2] == p || f[0] == q || f[1] == q || f[2] == q;
-                if (!shared) count += passes_through(surface.at(p), surface.at(q), surface.at(f[0]), surface.at(f[1]), surface.at(f[2]));
+                if (!shared)
+                    count += passes_through(surface.at(p), surface.at(q), surface.at(f[0]), surface.at(f[1]),
+                                            surface.at(f[2]));
             }
         }
     return count;

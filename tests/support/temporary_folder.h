@@ -8,13 +8,14 @@
 
 namespace skerry {
 
-/// A folder of its own for the files of one test, removed with all in it at the end. Tests of one program run side by side as processes: a
-/// fixed name would be theirs together.
+/// A folder of its own for the files of one test, removed with all in it at the end. Tests of one program run side by
+/// side as processes: a fixed name would be theirs together.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
         static int count = 0;
-        path_ = std::filesystem::temp_directory_path() / ("skerry_test_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+        path_ = std::filesystem::temp_directory_path() /
+                ("skerry_test_" + std::to_string(getpid()) + "_" + std::to_string(count++));
         std::filesystem::create_directories(path_);
     }
     ~TemporaryFolder() {

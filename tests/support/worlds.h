@@ -26,13 +26,15 @@ inline Settings accurate(const Vec3& gravity = {0, 0, -standard_gravity}, Real t
     return settings;
 }
 
-/// Momentum of one body, kg m/s. A world knows masses only as sums, so a test weighs nodes by the tetrahedra around them.
+/// Momentum of one body, kg m/s. A world knows masses only as sums, so a test weighs nodes by the tetrahedra around
+/// them.
 inline std::vector<Real> node_masses(const World& world, BodyHandle body, const Mesh& mesh, Real density) {
     std::vector<Real> mass(world.positions(body).size(), 0);
     for (const auto& t : mesh.tetrahedra) {
         const Vec3 a = mesh.nodes[static_cast<std::size_t>(t[0])];
         Mat3 edges;
-        for (int k = 0; k < 3; ++k) edges.col(k) = mesh.nodes[static_cast<std::size_t>(t[static_cast<std::size_t>(k + 1)])] - a;
+        for (int k = 0; k < 3; ++k)
+            edges.col(k) = mesh.nodes[static_cast<std::size_t>(t[static_cast<std::size_t>(k + 1)])] - a;
         for (Index corner : t) mass[static_cast<std::size_t>(corner)] += density * edges.determinant() / 24;
     }
     return mass;
@@ -49,7 +51,8 @@ inline Vec3 mean_velocity(const World& world, BodyHandle body, std::span<const R
     return momentum / sum;
 }
 
-/// A block lying on the plane z = 0, shell to shell, in a world whose gravity is tilted. Its contact distance is a fiftieth of its height.
+/// A block lying on the plane z = 0, shell to shell, in a world whose gravity is tilted. Its contact distance is a
+/// fiftieth of its height.
 struct BlockOnPlane {
     World world;
     BodyHandle block;
@@ -62,14 +65,16 @@ struct BlockOnPlane {
         const auto rubber = world.add_material(material);
         world.add_collider(Plane{});
         const Real shell = 0.02 * size.z();
-        block = world.add_body(
-            mesh, {.material = rubber, .position = {0, 0, (size.z() + shell) / 2}, .contact_distance = shell, .name = "block"});
+        block = world.add_body(mesh, {.material = rubber,
+                                      .position = {0, 0, (size.z() + shell) / 2},
+                                      .contact_distance = shell,
+                                      .name = "block"});
         mass = node_masses(world, block, mesh, material.density);
     }
 
     Vec3 velocity() const { return mean_velocity(world, block, mass); }
-    /// Lets the weight settle, then turns gravity to where it is asked to be, slowly and with a smooth beginning and end: a sudden change of
-    /// the tilt or of its speed would make the block sway and slip.
+    /// Lets the weight settle, then turns gravity to where it is asked to be, slowly and with a smooth beginning and
+    /// end: a sudden change of the tilt or of its speed would make the block sway and slip.
     void settle(Real seconds, Real ramp = 0.5) {
         const Vec3 tilted = world.settings().gravity;
         world.set_gravity({0, 0, tilted.z()});

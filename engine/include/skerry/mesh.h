@@ -11,7 +11,8 @@
 
 namespace skerry {
 
-/// A tetrahedral mesh in its own frame. Tetrahedra index `nodes`; a positive tetrahedron has det(n1 - n0, n2 - n0, n3 - n0) > 0.
+/// A tetrahedral mesh in its own frame. Tetrahedra index `nodes`; a positive tetrahedron has det(n1 - n0, n2 - n0, n3 -
+/// n0) > 0.
 struct Mesh {
     std::vector<Vec3> nodes;                       // m
     std::vector<std::array<Index, 4>> tetrahedra;  // rows of nodes
@@ -23,29 +24,34 @@ struct SurfaceMesh {
     std::vector<std::array<Index, 3>> triangles;  // rows of nodes
 };
 
-/// Built-in meshes. All are centred at the origin unless said, axes along z, with positive tetrahedra. Lengths in metres. `resolution`
-/// counts elements along the smallest extent unless said. Throw std::invalid_argument for sizes that are not positive and for meshes too
-/// large for 32-bit indices.
+/// Built-in meshes. All are centred at the origin unless said, axes along z, with positive tetrahedra. Lengths in
+/// metres. `resolution` counts elements along the smallest extent unless said. Throw std::invalid_argument for sizes
+/// that are not positive and for meshes too large for 32-bit indices.
 namespace mesh {
 
-/// A box of the given edge lengths, cut into cells (i, j, k) of six tetrahedra each; neighbouring cells mirror each other.
+/// A box of the given edge lengths, cut into cells (i, j, k) of six tetrahedra each; neighbouring cells mirror each
+/// other.
 Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 
-/// A ball: `resolution` elements across the diameter (an odd number counts as the next even one). All boundary nodes lie on the sphere.
+/// A ball: `resolution` elements across the diameter (an odd number counts as the next even one). All boundary nodes
+/// lie on the sphere.
 Mesh ball(Real radius, int resolution);
 
-/// A solid cylinder of the given radius and height: `resolution` elements across the diameter (odd: the next even number).
+/// A solid cylinder of the given radius and height: `resolution` elements across the diameter (odd: the next even
+/// number).
 Mesh cylinder(Real radius, Real height, int resolution);
 
-/// A body of revolution about z: `profile` lists (radius, z) from bottom to top, z ascending and radii positive; between the points the
-/// outline is linear. `resolution` elements across the largest diameter (odd: the next even number), about as long along z; kinks closer
-/// together than that are rounded, and an end narrower than a third of an element closes to a point.
+/// A body of revolution about z: `profile` lists (radius, z) from bottom to top, z ascending and radii positive;
+/// between the points the outline is linear. `resolution` elements across the largest diameter (odd: the next even
+/// number), about as long along z; kinks closer together than that are rounded, and an end narrower than a third of an
+/// element closes to a point.
 Mesh lathe(std::span<const std::array<Real, 2>> profile, int resolution);
 
 /// A skittle (a lathe with the outline of a ninepin) of the given height, standing on z = 0.
 Mesh skittle(Real height, int resolution);
 
-/// A table: a top of size x by y by thickness on four square legs, standing on z = 0. `cells_per_leg` elements across a leg.
+/// A table: a top of size x by y by thickness on four square legs, standing on z = 0. `cells_per_leg` elements across a
+/// leg.
 struct TableShape {
     Real length = 0.5;      // m, along x
     Real width = 0.3;       // m, along y
@@ -56,18 +62,19 @@ struct TableShape {
 };
 Mesh table(const TableShape& shape);
 
-/// Reads Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary) or TetGen .node/.ele (either name). Linear
-/// tetrahedra are taken, other element kinds are passed over, curved tetrahedra refused; nodes no tetrahedron uses are dropped. If no
-/// tetrahedron is positive the file counts the other way round and all are turned over; if some are, the mesh is as in the file and
-/// `inspect` says what is wrong with it. Throws SceneError that names the file, the place and what was found and expected.
+/// Reads Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary) or TetGen .node/.ele (either
+/// name). Linear tetrahedra are taken, other element kinds are passed over, curved tetrahedra refused; nodes no
+/// tetrahedron uses are dropped. If no tetrahedron is positive the file counts the other way round and all are turned
+/// over; if some are, the mesh is as in the file and `inspect` says what is wrong with it. Throws SceneError that names
+/// the file, the place and what was found and expected.
 Mesh read(const std::string& path);
 
-/// Reads the triangles of a file of the same kinds, or of a Wavefront .obj or an STL; of a tetrahedral file its boundary. Polygons fan out
-/// into triangles. Throws SceneError.
+/// Reads the triangles of a file of the same kinds, or of a Wavefront .obj or an STL; of a tetrahedral file its
+/// boundary. Polygons fan out into triangles. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path);
 
-/// The boundary of a tetrahedral mesh. Throws SceneError when a tetrahedron names nodes that do not exist or one twice, or a node is not
-/// finite; so does `inspect`.
+/// The boundary of a tetrahedral mesh. Throws SceneError when a tetrahedron names nodes that do not exist or one twice,
+/// or a node is not finite; so does `inspect`.
 SurfaceMesh boundary(const Mesh& mesh);
 
 }  // namespace mesh
@@ -79,9 +86,10 @@ struct MeshReport {
     Real volume = 0;                                  // m^3
     Real mean_edge = 0, min_edge = 0, max_edge = 0;   // m
     Real min_altitude = 0;                            // m
-    Real min_quality = 0, mean_quality = 0;           // 12 (3 V)^(2/3) / sum of squared edges: 1 is regular, < 0 inverted
-    std::size_t inverted = 0, flat = 0;               // tetrahedra of negative, of no volume
-    bool closed_manifold = false;                     // every boundary edge has two triangles
+    // 12 (3 V)^(2/3) / sum of squared edges: 1 is regular, < 0 inverted
+    Real min_quality = 0, mean_quality = 0;
+    std::size_t inverted = 0, flat = 0;  // tetrahedra of negative, of no volume
+    bool closed_manifold = false;        // every boundary edge has two triangles
 };
 MeshReport inspect(const Mesh& mesh);
 

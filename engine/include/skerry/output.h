@@ -9,9 +9,9 @@
 
 namespace skerry {
 
-/// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (velocity, speed, von Mises stress, body number) and one .vtp of the contacts
-/// (impulse, force, normal, gap, slip, state, region) a frame. Files appear complete or not at all. Throws SceneError when the folder
-/// cannot be written.
+/// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (velocity, speed, von Mises stress, body number)
+/// and one .vtp of the contacts (impulse, force, normal, gap, slip, state, region) a frame. Files appear complete or
+/// not at all. Throws SceneError when the folder cannot be written.
 class VtkWriter {
 public:
     VtkWriter(const std::filesystem::path& folder, const std::string& name);
@@ -25,8 +25,9 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Collects frames and writes one self-contained HTML page that plays the run: bodies coloured by speed or stress, contacts by stick or
-/// slide, play, scrub and orbit, stage times and energies as plots. Works offline; three.js is inlined.
+/// Collects frames and writes one self-contained HTML page that plays the run: bodies coloured by speed or stress,
+/// contacts by stick or slide, play, scrub and orbit, stage times and energies as plots. Works offline; three.js is
+/// inlined.
 class PageWriter {
 public:
     PageWriter(const std::filesystem::path& file, const std::string& title);

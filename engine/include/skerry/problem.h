@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// A local problem: u = W r + q, per contact (normal, tangent 1, tangent 2), K_mu containing r orthogonal to (u_N + mu |u_T|, u_T) in the
-/// dual cone. W in compressed rows of 3x3 blocks.
+/// A local problem: u = W r + q, per contact (normal, tangent 1, tangent 2), K_mu containing r orthogonal to (u_N + mu
+/// |u_T|, u_T) in the dual cone. W in compressed rows of 3x3 blocks.
 struct ContactProblem {
     std::string name;
     std::vector<Index> row_offset;  // contacts + 1
@@ -50,33 +50,35 @@ struct ProblemSolution {
     bool converged = false;
 };
 
-/// Reads the problem of an FCLIB file (HDF5): a local one as it is; a global one (M v = H r + f, u = H^T v + w) condensed to its contacts,
-/// W = H^T M^-1 H and q = H^T M^-1 f + w. Throws SceneError.
+/// Reads the problem of an FCLIB file (HDF5): a local one as it is; a global one (M v = H r + f, u = H^T v + w)
+/// condensed to its contacts, W = H^T M^-1 H and q = H^T M^-1 f + w. Throws SceneError.
 ContactProblem read_problem(const std::filesystem::path& file);
 
-/// Writes a local problem as FCLIB writes it, W in compressed columns, so that other solvers can read it; with reactions (one a contact) a
-/// solution, too. The same problem gives the same bytes. The file appears complete or not at all. Throws SceneError when the problem is
-/// empty, when its arrays disagree, or when the file cannot be written.
-void write_problem(const ContactProblem& problem, const std::filesystem::path& file, std::span<const Vec3> reaction = {});
+/// Writes a local problem as FCLIB writes it, W in compressed columns, so that other solvers can read it; with
+/// reactions (one a contact) a solution, too. The same problem gives the same bytes. The file appears complete or not
+/// at all. Throws SceneError when the problem is empty, when its arrays disagree, or when the file cannot be written.
+void write_problem(const ContactProblem& problem, const std::filesystem::path& file,
+                   std::span<const Vec3> reaction = {});
 
 /// The problem of some contacts alone (in ascending order), the others' reactions taken as zero. Exact for a region.
 ContactProblem part_of(const ContactProblem& problem, std::span<const Index> contacts);
 
-/// Separates the problem into regions and solves them from r = 0. With Friction::pyramid the errors of the solution are those of the
-/// pyramid (the tangential components of the natural map clamped one by one), which is what `converged` asks for. Throws SceneError
-/// when the arrays of the problem disagree, or when the method knows no friction and the problem has some. With Friction::cone_convex the
-/// errors are those of the associated law in the same way; problem_error says how far that is from Coulomb's.
+/// Separates the problem into regions and solves them from r = 0. With Friction::pyramid the errors of the solution are
+/// those of the pyramid (the tangential components of the natural map clamped one by one), which is what `converged`
+/// asks for. Throws SceneError when the arrays of the problem disagree, or when the method knows no friction and the
+/// problem has some. With Friction::cone_convex the errors are those of the associated law in the same way;
+/// problem_error says how far that is from Coulomb's.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
-/// |e| of methods.md 2.1 (FCLIB and Siconos, rho = 1) for given reactions, and the Coulomb gap.
+/// |e| of docs/methods/errors.md 3 (FCLIB and Siconos, rho = 1) for given reactions, and the Coulomb gap.
 struct ProblemError {
     Real absolute, relative, over_q;
     Real energy_gap;  // J
 };
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
 
-/// Contacts between points of mass: u_i = sum_a weight[a] velocity[node[a]] + offset_i, in world axes. An impulse r_i adds
-/// weight[a] inverse_mass[node[a]] r_i to the velocity of node a.
+/// Contacts between points of mass: u_i = sum_a weight[a] velocity[node[a]] + offset_i, in world axes. An impulse r_i
+/// adds weight[a] inverse_mass[node[a]] r_i to the velocity of node a.
 struct LumpedContacts {
     // by contact
     std::vector<std::array<Index, 4>> node;
@@ -89,15 +91,15 @@ struct LumpedContacts {
     std::vector<Vec3> velocity;      // m/s, without the contacts
 };
 
-/// The same as general blocks: the frame of a contact is its normal and two tangents that depend on the normal alone, right-handed. Every
-/// contact needs a node that moves.
+/// The same as general blocks: the frame of a contact is its normal and two tangents that depend on the normal alone,
+/// right-handed. Every contact needs a node that moves.
 ContactProblem assemble_problem(const LumpedContacts& contacts, const std::string& name);
 
 /// A world vector of each contact in its frame.
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
-/// The contact problem of one step of a world, as its solver got it, and the impulses that the step went on with. Contacts that nothing could
-/// move are left out.
+/// The contact problem of one step of a world, as its solver got it, and the impulses that the step went on with.
+/// Contacts that nothing could move are left out.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, from 1
     Real time = 0;               // s, at its start

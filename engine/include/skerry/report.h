@@ -17,15 +17,18 @@ enum class ContactMotion { open, stick, slide };
 
 /// One contact of the last step.
 struct Contact {
-    BodyHandle first{};           // the body of the point, or of the first edge; a stale handle where that is of a mesh collider
-    BodyHandle second{};          // the other body; a stale handle where that is a collider
-    ColliderHandle collider{};    // the collider, or a stale handle
-    std::array<Index, 4> node{};  // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
+    // the body of the point, or of the first edge; a stale handle where that is of a mesh collider
+    BodyHandle first{};
+    BodyHandle second{};        // the other body; a stale handle where that is a collider
+    ColliderHandle collider{};  // the collider, or a stale handle
+    // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
+    std::array<Index, 4> node{};
     std::array<Real, 4> weight{};
-    Vec3 point = Vec3::Zero();    // m
-    Vec3 normal = Vec3::Zero();   // unit, towards the first body
-    Real distance = 0;            // m, between the surfaces; < 0: they overlap
-    Real gap = 0;                 // m, what may still close: distance less the contact distance, or a bit more where edges are nearly flat
+    Vec3 point = Vec3::Zero();   // m
+    Vec3 normal = Vec3::Zero();  // unit, towards the first body
+    Real distance = 0;           // m, between the surfaces; < 0: they overlap
+    // m, what may still close: distance less the contact distance, or a bit more where edges are nearly flat
+    Real gap = 0;
     Vec3 slip = Vec3::Zero();     // m/s, tangential relative velocity after the step
     Vec3 impulse = Vec3::Zero();  // N s, on the first body
     ContactMotion motion = ContactMotion::open;
@@ -54,20 +57,24 @@ public:
     /// Empty when ok; else the body, the stage and the reason.
     std::string message() const;
 
-    /// Empty unless step_size of the settings was too long: then the body that does not stand it, and the step that it stands.
+    /// Empty unless step_size of the settings was too long: then the body that does not stand it, and the step that it
+    /// stands.
     std::string warning() const;
 
     StepStatus status = StepStatus::ok;
     BodyHandle body;     // to blame, when not ok
     Index node = -1;     // local, when one node is to blame
     Index element = -1;  // local, when one element is: the node is a corner of it
-    Real value = 0;      // too_fast: displacement over smallest altitude; too_far: rounding of positions over mean edge;
-                         // too_stiff: stable step, s
+    // too_fast: displacement over smallest altitude; too_far: rounding of positions over mean edge; too_stiff: stable
+    // step, s
+    Real value = 0;
     Real step_size = 0;  // s, of the steps taken
     int steps = 0;       // committed
-    int shortened =
-        0;  // tries given up because a body was too fast, surfaces crossed or an element turned inside out; each was repeated at half the length
-    int retried = 0;         // tries given up because surfaces crossed; each was repeated with the crossings as contacts
+    // tries given up because a body was too fast, surfaces crossed or an element turned inside out; each was repeated
+    // at half the length
+    int shortened = 0;
+    // tries given up because surfaces crossed; each was repeated with the crossings as contacts
+    int retried = 0;
     int limited = 0;         // steps that were shorter than step_size of the settings, which limited_by does not stand
     Real limited_step = 0;   // s, what it stands
     std::string limited_by;  // name of the body
@@ -120,17 +127,19 @@ struct WorldReport {
     std::uint64_t inversions = 0;        // elements that turned inside out, each time that one did
     std::uint64_t retried = 0;           // steps tried again with what crossed in them as contacts
     std::uint64_t limited = 0;           // steps shorter than step_size of the settings, which a body does not stand
-    // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could stop them.
+    // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could
+    // stop them.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
     Energy energy;
     Vec3 momentum = Vec3::Zero();                     // kg m/s
     Vec3 angular_momentum = Vec3::Zero();             // kg m^2/s, about the origin
     Real max_penetration = 0, max_gap_violation = 0;  // m, over the run
-    // How far to trust it. Differences of energy and momentum from what loads, weights, colliders and losses account for, the largest of
-    // the looks taken every 256 steps and now; shares of all that there was to be exchanged.
+    // How far to trust it. Differences of energy and momentum from what loads, weights, colliders and losses account
+    // for, the largest of the looks taken every 256 steps and now; shares of all that there was to be exchanged.
     Real energy_error = 0, energy_error_share = 0;  // J, 1
     Real momentum_error = 0,
-         momentum_error_share = 0;     // kg m/s, 1; not a number where a body that is damped is held: damping takes momentum then
+         // kg m/s, 1; not a number where a body that is damped is held: damping takes momentum then
+        momentum_error_share = 0;
     std::uint64_t balanced_steps = 0;  // steps since the balance was opened: it is closed by changes from outside
     Real worst_volume_ratio = 1;       // smallest det F now; < 0 is inverted
     std::string worst_volume_body;

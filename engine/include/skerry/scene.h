@@ -40,8 +40,8 @@ struct Scene {
     Real probe_step = 1.0 / 60;  // s, between two looks at the probes
 };
 
-/// Reads and builds a scene. Mesh files are looked for beside it. Throws SceneError for anything it does not understand: unknown keys name
-/// the nearest known one.
+/// Reads and builds a scene. Mesh files are looked for beside it. Throws SceneError for anything it does not
+/// understand: unknown keys name the nearest known one.
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
 
 /// The JSON schema of scene files.

@@ -1,5 +1,5 @@
-// What can be set about materials, bodies, colliders and the step. SI units everywhere. Every member has an initialiser, so that naming some of
-// them warns about none.
+// What can be set about materials, bodies, colliders and the step. SI units everywhere. Every member has an
+// initialiser, so that naming some of them warns about none.
 #pragma once
 
 #include <optional>
@@ -91,11 +91,13 @@ struct ColliderSettings {
 
 /// Settings of the world and its step. Defaults work.
 struct Settings {
-    Vec3 gravity = {0, 0, -9.81};     // m/s^2
-    std::optional<Real> step_size{};  // s, at most; by default the stable step of the stiffest body, which is never exceeded
-    Real step_safety = 1.0;           // fraction of the stable step that is used, in (0, 1]
+    Vec3 gravity = {0, 0, -9.81};  // m/s^2
+    // s, at most; by default the stable step of the stiffest body, which is never exceeded
+    std::optional<Real> step_size{};
+    Real step_safety = 1.0;  // fraction of the stable step that is used, in (0, 1]
     Integrator integrator = Integrator::symplectic_euler;
-    bool multirate = false;                // elements that stand longer steps get impulses less often (docs/integration.md)
+    // elements that stand longer steps get impulses less often (docs/integration.md)
+    bool multirate = false;
     Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
     int threads = 0;                       // 0: those of the caller's task arena
     ContactRegions contact_regions = ContactRegions::separate;
@@ -107,21 +109,26 @@ struct Settings {
     bool fixed_iterations = false;  // do exactly max_iterations sweeps
     Real relaxation = 1;            // of the sweeps, > 0 and < 2; only for methods that sweep
     Real restitution_speed = 0.05;  // m/s, >= 0: slower impacts do not bounce, whatever the restitution
-    Real recovery_speed = 0.5;      // m/s, > 0: what overlaps, or lies within the contact distance, is pushed apart no faster
-    Real max_strain_step = 0.2;     // a step that moves nodes by more than this fraction of an element is refused
-    // A body all of whose nodes have been slower than sleep_speed for sleep_time is put to rest, together with all that it touches: it is left
-    // out of the step and its contacts are not reported until something presses on it or changes it. 0: nothing rests.
+    // m/s, > 0: what overlaps, or lies within the contact distance, is pushed apart no faster
+    Real recovery_speed = 0.5;
+    Real max_strain_step = 0.2;  // a step that moves nodes by more than this fraction of an element is refused
+    // A body all of whose nodes have been slower than sleep_speed for sleep_time is put to rest, together with all that
+    // it touches: it is left out of the step and its contacts are not reported until something presses on it or changes
+    // it. 0: nothing rests.
     Real sleep_speed = 0;         // m/s, >= 0
     Real sleep_time = 0.5;        // s, >= 0
     bool contact_budgets = true;  // skip what cannot have come close; off searches everything
-    // A step in which surfaces would go through each other is tried again with what crossed as contacts. Only fast pairs are looked at.
+    // A step in which surfaces would go through each other is tried again with what crossed as contacts. Only fast
+    // pairs are looked at.
     bool continuous_collision = true;
     // What the solver leaves out where it can; off changes no result beyond the tolerance.
-    bool certify_warm_start = true;      // no sweep where last step's impulses still solve a region
-    bool skip_separating = true;         // no impulse where no contact closes
-    bool frictionless_rows = true;       // one row a contact instead of three where there is no friction
-    bool freeze_contacts = false;        // no work on contacts that have come to rest within a solve; pays in no scene measured so far
-    bool small_regions_in_lanes = true;  // regions of 2 to 12 contacts are solved eight at a time (method ags, friction cone)
+    bool certify_warm_start = true;  // no sweep where last step's impulses still solve a region
+    bool skip_separating = true;     // no impulse where no contact closes
+    bool frictionless_rows = true;   // one row a contact instead of three where there is no friction
+    // no work on contacts that have come to rest within a solve; pays in no scene measured so far
+    bool freeze_contacts = false;
+    // regions of 2 to 12 contacts are solved eight at a time (method ags, friction cone)
+    bool small_regions_in_lanes = true;
 };
 
 }  // namespace skerry

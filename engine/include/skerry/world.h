@@ -18,8 +18,8 @@ namespace skerry {
 
 struct StepProblem;  // problem.h
 
-/// A simulation. Not safe for use from several threads at once; different worlds are independent. Functions that take a handle throw
-/// SceneError when it is stale, functions that take settings when a value is out of range.
+/// A simulation. Not safe for use from several threads at once; different worlds are independent. Functions that take a
+/// handle throw SceneError when it is stale, functions that take settings when a value is out of range.
 class World {
 public:
     explicit World(const Settings& settings = {});
@@ -31,9 +31,11 @@ public:
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
-    /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion from now on. Constant velocities
-    /// turn them about `pivot`; keys are poses at absolute times, and the nodes are attached to the pose that the keys have now.
-    AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {}, const Vec3& pivot = Vec3::Zero());
+    /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion from now
+    /// on. Constant velocities turn them about `pivot`; keys are poses at absolute times, and the nodes are attached to
+    /// the pose that the keys have now.
+    AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
+                            const Vec3& pivot = Vec3::Zero());
     void remove(BodyHandle body);
     void remove(ColliderHandle collider);
     void remove(AttachmentHandle attachment);
@@ -42,8 +44,8 @@ public:
     bool alive(AttachmentHandle attachment) const;
 
     // Running.
-    /// Moves time on by dt in equal steps no longer than the stable step. A step that cannot be committed changes nothing and ends
-    /// the call: the report says which body and why.
+    /// Moves time on by dt in equal steps no longer than the stable step. A step that cannot be committed changes
+    /// nothing and ends the call: the report says which body and why.
     StepReport advance(Real dt);
     Real time() const;
     const Settings& settings() const;
@@ -51,7 +53,8 @@ public:
     /// The step that advance would take at most, s.
     Real stable_step() const;
 
-    // State of a body. Spans stay valid until bodies are added or removed; positions and velocities also change with advance.
+    // State of a body. Spans stay valid until bodies are added or removed; positions and velocities also change with
+    // advance.
     std::span<const Vec3> positions(BodyHandle body) const;   // m
     std::span<const Vec3> velocities(BodyHandle body) const;  // m/s
     void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
@@ -80,8 +83,9 @@ public:
     Energy energy() const;
     /// Hash of everything that the next step depends on; equal on any number of threads and on every backend.
     std::uint64_t state_hash() const;
-    /// From now on hands the contact problem of every step whose number is a multiple of `every`, and which has contacts, to `take`: after
-    /// the step, on the thread that advances. Costs a copy of the velocities in these steps. An empty function stops it.
+    /// From now on hands the contact problem of every step whose number is a multiple of `every`, and which has
+    /// contacts, to `take`: after the step, on the thread that advances. Costs a copy of the velocities in these steps.
+    /// An empty function stops it.
     void watch_contact_problems(std::function<void(const StepProblem&)> take, std::uint64_t every = 1);
     /// Starts or stops recording what every worker does.
     void set_tracing(bool on);
@@ -91,6 +95,7 @@ public:
     std::string step_graph() const;
 
 private:
+    friend struct WorldAccess;
     std::unique_ptr<struct WorldState> state_;
 };
 

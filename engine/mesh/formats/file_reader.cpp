@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     constexpr std::size_t longest = 60;
     std::string shown = "\"";
     for (const char c : text.substr(0, longest)) shown += (c >= ' ' && c <= '~') ? c : '?';
@@ -103,10 +103,12 @@ std::string_view FileReader::word(const char* expected) {
 
 Real FileReader::parse_real(std::string_view text, const char* field) const {
     std::string_view digits = text;
-    if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);  // from_chars knows no plus sign
+    // from_chars knows no plus sign
+    if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
     Real value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) complain(field, quoted(text), "a number");
+    if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+        complain(field, in_quotes(text), "a number");
     // Out of range: too small is as good as zero, too large is not finite. strtod tells them apart.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
     return value;
@@ -117,7 +119,7 @@ std::int64_t FileReader::parse_integer(std::string_view text, const char* field)
     if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc{} || end != digits.data() + digits.size()) complain(field, quoted(text), "an integer");
+    if (error != std::errc{} || end != digits.data() + digits.size()) complain(field, in_quotes(text), "an integer");
     return value;
 }
 
@@ -148,25 +150,30 @@ std::size_t FileReader::checked_count(std::int64_t count, std::size_t bytes, con
     if (static_cast<std::uint64_t>(count) > fits)
         complain(field, std::to_string(count), "at most " + std::to_string(fits),
                  std::to_string(remaining()) + " bytes are left of the file");
-    if (count > 0x7fffffff / 4) complain(field, std::to_string(count), "at most " + std::to_string(0x7fffffff / 4), "indices have 32 bits");
+    if (count > 0x7fffffff / 4)
+        complain(field, std::to_string(count), "at most " + std::to_string(0x7fffffff / 4), "indices have 32 bits");
     return static_cast<std::size_t>(count);
 }
 
 Real FileReader::finite(Real value, const char* field) const {
-    if (!std::isfinite(value)) complain(field, std::isnan(value) ? "nan" : "a number that is not finite", "a finite number");
+    if (!std::isfinite(value))
+        complain(field, std::isnan(value) ? "nan" : "a number that is not finite", "a finite number");
     return value;
 }
 
 std::string FileReader::place() const {
     if (last_was_binary_) return "byte " + std::to_string(start_);
-    const auto lines = std::count(data_.begin(), data_.begin() + static_cast<std::ptrdiff_t>(std::min(start_, data_.size())), '\n');
+    const auto lines =
+        std::count(data_.begin(), data_.begin() + static_cast<std::ptrdiff_t>(std::min(start_, data_.size())), '\n');
     return "line " + std::to_string(lines + 1);
 }
 
 void FileReader::complain(std::string field, std::string found, std::string expected, std::string hint) const {
     std::string object = section_.empty() ? std::string() : section_ + ", ";
-    if (row_kind_ != nullptr) object += row_kind_ + (" " + std::to_string(row_number_)) + " of " + std::to_string(row_count_) + ", ";
-    Complaint{path_, object + place(), std::move(field), std::move(found), std::move(expected), std::move(hint)}.raise();
+    if (row_kind_ != nullptr)
+        object += row_kind_ + (" " + std::to_string(row_number_)) + " of " + std::to_string(row_count_) + ", ";
+    Complaint{path_, object + place(), std::move(field), std::move(found), std::move(expected), std::move(hint)}
+        .raise();
 }
 
 }  // namespace skerry::mesh

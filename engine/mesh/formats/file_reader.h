@@ -29,7 +29,8 @@ public:
     /// A row of the section, for example "node 3 of 14"; forgotten by set_section.
     void set_row(const char* kind, std::size_t number, std::size_t count);
 
-    // Lines. -----------------------------------------------------------------------------------------------------------------------
+    // Lines.
+    // -----------------------------------------------------------------------------------------------------------------
     /// True when nothing but white space is left.
     bool at_end() const;
     /// The next line, without its end and white space at both sides.
@@ -39,34 +40,39 @@ public:
     /// Words of a line. Valid until the next call.
     const std::vector<std::string_view>& words_of(std::string_view line);
 
-    // Words and numbers of text. ---------------------------------------------------------------------------------------------------
-    /// The next word after white space, which may be on a later line. At the end of the file: complains that `expected` is missing.
+    // Words and numbers of text.
+    // ---------------------------------------------------------------------------------------------------
+    /// The next word after white space, which may be on a later line. At the end of the file: complains that `expected`
+    /// is missing.
     std::string_view word(const char* expected);
     /// The word that word() would give, empty at the end.
     std::string_view peek_word() const;
     Real parse_real(std::string_view text, const char* field) const;
     std::int64_t parse_integer(std::string_view text, const char* field) const;
 
-    // Binary numbers. --------------------------------------------------------------------------------------------------------------
+    // Binary numbers.
+    // --------------------------------------------------------------------------------------------------------------
     void set_foreign_bytes(bool foreign) { foreign_bytes_ = foreign; }
     template <class T>
     T binary(const char* field) {
         T value;
         begin_binary(sizeof(T), field);
         char bytes[sizeof(T)];
-        for (std::size_t i = 0; i < sizeof(T); ++i) bytes[i] = data_[position_ + (foreign_bytes_ ? sizeof(T) - 1 - i : i)];
+        for (std::size_t i = 0; i < sizeof(T); ++i)
+            bytes[i] = data_[position_ + (foreign_bytes_ ? sizeof(T) - 1 - i : i)];
         std::memcpy(&value, bytes, sizeof(T));
         position_ += sizeof(T);
         return value;
     }
     void skip_bytes(std::size_t count, const char* field);
-    /// Goes behind the next occurrence of `mark` that ends a word; it may follow binary numbers without a line end. False, and nothing
-    /// moves, when there is none.
+    /// Goes behind the next occurrence of `mark` that ends a word; it may follow binary numbers without a line end.
+    /// False, and nothing moves, when there is none.
     bool skip_behind(std::string_view mark);
 
-    // Checks. ----------------------------------------------------------------------------------------------------------------------
-    /// A count as read: not negative, and so many rows of at least `bytes` bytes must fit into what is left of the file, so that a
-    /// false count cannot ask for more memory than a small multiple of the file.
+    // Checks.
+    // -----------------------------------------------------------------------------------------------------------------
+    /// A count as read: not negative, and so many rows of at least `bytes` bytes must fit into what is left of the
+    /// file, so that a false count cannot ask for more memory than a small multiple of the file.
     std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
     /// Complains unless the number is finite.
     Real finite(Real value, const char* field) const;
@@ -89,6 +95,6 @@ private:
 };
 
 /// A word of the file, fit for a message: quoted, short, printable.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace skerry::mesh

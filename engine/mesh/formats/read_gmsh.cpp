@@ -5,7 +5,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Nodes of an element by Gmsh type, 0: unknown here (type 0, and gaps). Lines, triangles, quadrangles, tetrahedra, hexahedra, prisms, pyramids, points.
+// Nodes of an element by Gmsh type, 0: unknown here (type 0, and gaps). Lines, triangles, quadrangles, tetrahedra,
+// hexahedra, prisms, pyramids, points.
 constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 constexpr std::int64_t triangle_type = 2, tetrahedron_type = 4;
@@ -21,11 +22,12 @@ bool is_curved_triangle(std::int64_t type) {
 
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
     if (is_curved_tetrahedron(type))
-        reader.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order", "linear tetrahedra (type 4)",
-                        "in Gmsh: Mesh.ElementOrder = 1");
+        reader.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
+                        "linear tetrahedra (type 4)", "in Gmsh: Mesh.ElementOrder = 1");
     if (type == 92 || type == 93) return type == 92 ? 64 : 125;
-    const std::size_t count =
-        type > 0 && type < static_cast<std::int64_t>(nodes_of_type.size()) ? nodes_of_type[static_cast<std::size_t>(type)] : 0;
+    const std::size_t count = type > 0 && type < static_cast<std::int64_t>(nodes_of_type.size())
+                                  ? nodes_of_type[static_cast<std::size_t>(type)]
+                                  : 0;
     if (count == 0) reader.complain("type", std::to_string(type), "an element type of Gmsh: 1 to 31, 92 or 93");
     return count;
 }
@@ -53,7 +55,7 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
 std::vector<std::int64_t> integer_line(FileReader& reader, std::size_t count, const char* field, const char* meaning) {
     const std::string_view text = reader.filled_line(meaning);
     const std::vector<std::string_view>& words = reader.words_of(text);
-    if (words.size() != count) reader.complain(field, quoted(text), meaning);
+    if (words.size() != count) reader.complain(field, in_quotes(text), meaning);
     std::vector<std::int64_t> numbers;
     for (const std::string_view word : words) numbers.push_back(reader.parse_integer(word, field));
     return numbers;
@@ -71,7 +73,7 @@ Header read_header(FileReader& reader) {
     reader.set_section("$MeshFormat");
     const std::string_view text = reader.filled_line("version, file type and data size");
     const std::vector<std::string_view>& words = reader.words_of(text);
-    if (words.size() != 3) reader.complain({}, quoted(text), "version, file type and data size");
+    if (words.size() != 3) reader.complain({}, in_quotes(text), "version, file type and data size");
     const std::string version(words[0]);
     Header header;
     if (version == "4.1")
@@ -79,8 +81,10 @@ Header read_header(FileReader& reader) {
     else if (version == "2" || version == "2.0" || version == "2.1" || version == "2.2")
         header.version = 2;
     else
-        reader.complain("version", quoted(version), "1, 2.0 to 2.2, or 4.1", "gmsh OLD.msh -3 -format msh41 -o NEW.msh writes it anew");
-    const std::int64_t type = reader.parse_integer(words[1], "file type"), size = reader.parse_integer(words[2], "data size");
+        reader.complain("version", in_quotes(version), "1, 2.0 to 2.2, or 4.1",
+                        "gmsh OLD.msh -3 -format msh41 -o NEW.msh writes it anew");
+    const std::int64_t type = reader.parse_integer(words[1], "file type"),
+                       size = reader.parse_integer(words[2], "data size");
     if (type != 0 && type != 1) reader.complain("file type", std::to_string(type), "0 (ASCII) or 1 (binary)");
     header.binary = type == 1;
     if (header.binary && size != 8) reader.complain("data size", std::to_string(size), "8 bytes");
@@ -91,13 +95,13 @@ Header read_header(FileReader& reader) {
         reader.set_foreign_bytes(one != 1);
     }
     if (const std::string_view end = reader.filled_line("$EndMeshFormat"); end != "$EndMeshFormat")
-        reader.complain({}, quoted(end), "$EndMeshFormat");
+        reader.complain({}, in_quotes(end), "$EndMeshFormat");
     return header;
 }
 
 void require_end(FileReader& reader, const std::string& mark) {
     if (const std::string_view end = reader.filled_line(mark.c_str()); end != mark)
-        reader.complain({}, quoted(end), mark, "more rows than the section announces?");
+        reader.complain({}, in_quotes(end), mark, "more rows than the section announces?");
 }
 
 }  // namespace
@@ -108,7 +112,8 @@ RawMesh read_gmsh(FileReader& reader) {
     Header header;
     bool has_nodes = false, has_elements = false;
     std::string_view name = reader.filled_line("$MeshFormat or $NOD");
-    if (name != "$MeshFormat" && name != "$NOD") reader.complain({}, quoted(name), "$MeshFormat or $NOD", "is this a Gmsh file?");
+    if (name != "$MeshFormat" && name != "$NOD")
+        reader.complain({}, in_quotes(name), "$MeshFormat or $NOD", "is this a Gmsh file?");
     if (name == "$MeshFormat")
         header = read_header(reader);
     else
@@ -146,7 +151,8 @@ RawMesh read_gmsh(FileReader& reader) {
     }
     reader.set_section({});
     if (!has_nodes) reader.complain({}, "no nodes", header.version == 1 ? "a section $NOD" : "a section $Nodes");
-    if (!has_elements) reader.complain({}, "no elements", header.version == 1 ? "a section $ELM" : "a section $Elements");
+    if (!has_elements)
+        reader.complain({}, "no elements", header.version == 1 ? "a section $ELM" : "a section $Elements");
     return mesh;
 }
 

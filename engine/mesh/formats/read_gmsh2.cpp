@@ -9,11 +9,12 @@ constexpr std::size_t binary_node = 4 + 3 * 8;  // bytes
 /// Words of the next line. A new section here means that rows are missing.
 const std::vector<std::string_view>& row_words(FileReader& reader, const char* expected) {
     const std::string_view text = reader.filled_line(expected);
-    if (text.front() == '$') reader.complain({}, quoted(text), expected, "fewer rows than the section announces");
+    if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");
     return reader.words_of(text);
 }
 
-std::vector<std::int64_t> parse_nodes(const FileReader& reader, const std::vector<std::string_view>& words, std::size_t begin) {
+std::vector<std::int64_t> parse_nodes(const FileReader& reader, const std::vector<std::string_view>& words,
+                                      std::size_t begin) {
     std::vector<std::int64_t> nodes;
     for (std::size_t i = begin; i < words.size(); ++i) nodes.push_back(reader.parse_integer(words[i], "node"));
     return nodes;
@@ -41,7 +42,8 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Raw
             require_words(reader, words.size(), 4, "number x y z");
             numbers.add(reader.parse_integer(words[0], "number"), reader);
             for (std::size_t a = 0; a < 3; ++a)
-                x[static_cast<Eigen::Index>(a)] = reader.finite(reader.parse_real(words[a + 1], "position"), "position");
+                x[static_cast<Eigen::Index>(a)] =
+                    reader.finite(reader.parse_real(words[a + 1], "position"), "position");
         }
         mesh.nodes.push_back(x);
     }
@@ -49,16 +51,20 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Raw
 }
 
 void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
-    const std::size_t count =
-        reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0], 2 * shortest_row - 4, "count");
+    const std::size_t count = reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0],
+                                                   2 * shortest_row - 4, "count");
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("element", i + 1, count);
-        const std::vector<std::string_view>& words = row_words(reader, "number type physical elementary node-count nodes");
-        if (words.size() < 5) require_words(reader, words.size(), 6, "number type physical elementary node-count nodes");
+        const std::vector<std::string_view>& words =
+            row_words(reader, "number type physical elementary node-count nodes");
+        if (words.size() < 5)
+            require_words(reader, words.size(), 6, "number type physical elementary node-count nodes");
         const std::int64_t type = reader.parse_integer(words[1], "type");
         const std::size_t nodes = gmsh_node_count(type, reader);
-        if (const std::int64_t given = reader.parse_integer(words[4], "node count"); given != static_cast<std::int64_t>(nodes))
-            reader.complain("node count", std::to_string(given), std::to_string(nodes) + " for type " + std::to_string(type));
+        if (const std::int64_t given = reader.parse_integer(words[4], "node count");
+            given != static_cast<std::int64_t>(nodes))
+            reader.complain("node count", std::to_string(given),
+                            std::to_string(nodes) + " for type " + std::to_string(type));
         require_words(reader, words.size(), 5 + nodes, "number type physical elementary node-count nodes");
         take_gmsh_element(type, parse_nodes(reader, words, 5), numbers, reader, mesh);
     }
@@ -80,7 +86,8 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, RawMesh&
 }
 
 /// Elements of one type with equally many tags behind one header. Returns how many.
-std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers, RawMesh& mesh) {
+std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers,
+                              RawMesh& mesh) {
     const auto type = reader.binary<std::int32_t>("type");
     const std::size_t nodes = gmsh_node_count(type, reader);
     const auto announced = reader.binary<std::int32_t>("elements of a block");
@@ -88,7 +95,8 @@ std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t 
     const std::size_t tag_count = reader.checked_count(tags, 4, "tag count");
     const std::size_t rows = reader.checked_count(announced, 4 * (1 + tag_count + nodes), "elements of a block");
     if (rows == 0 || rows > count - done)
-        reader.complain("elements of a block", std::to_string(rows), "1 to " + std::to_string(count - done), "the rest of the section");
+        reader.complain("elements of a block", std::to_string(rows), "1 to " + std::to_string(count - done),
+                        "the rest of the section");
     std::vector<std::int64_t> node_numbers(nodes);
     for (std::size_t i = 0; i < rows; ++i) {
         reader.set_row("element", done + i + 1, count);
@@ -102,7 +110,8 @@ std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t 
 }  // namespace
 
 void read_gmsh2_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, RawMesh& mesh) {
-    const std::size_t count = reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0], 8, "count");
+    const std::size_t count =
+        reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0], 8, "count");
     for (std::size_t done = 0; done < count;) {
         reader.set_row("element", done + 1, count);
         if (binary) {

@@ -9,12 +9,13 @@ namespace {
 using Numbers4 = std::array<std::int64_t, 4>;
 
 /// Four numbers: in text a line of their own, in binary of the given sizes (4 or 8 bytes).
-Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& sizes, const char* field, const char* meaning) {
+Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& sizes, const char* field,
+                   const char* meaning) {
     Numbers4 numbers;
     if (binary) {
         for (std::size_t i = 0; i < 4; ++i)
-            numbers[i] =
-                sizes[i] == 8 ? static_cast<std::int64_t>(reader.binary<std::uint64_t>(field)) : reader.binary<std::int32_t>(field);
+            numbers[i] = sizes[i] == 8 ? static_cast<std::int64_t>(reader.binary<std::uint64_t>(field))
+                                       : reader.binary<std::int32_t>(field);
     } else {
         const std::vector<std::int64_t> line = integer_line(reader, 4, field, meaning);
         std::copy(line.begin(), line.end(), numbers.begin());
@@ -24,8 +25,8 @@ Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& si
 
 /// "blocks, rows, smallest and largest number": the first line of both sections.
 Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_bytes) {
-    const Numbers4 header =
-        read_four(reader, binary, {8, 8, 8, 8}, "header", "4 integers: count of blocks, count of rows, smallest and largest number");
+    const Numbers4 header = read_four(reader, binary, {8, 8, 8, 8}, "header",
+                                      "4 integers: count of blocks, count of rows, smallest and largest number");
     reader.checked_count(header[0], binary ? 20 : 8, "count of blocks");
     reader.checked_count(header[1], row_bytes, "count of rows");
     return header;
@@ -41,7 +42,7 @@ Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning)
 /// A word of the rows of a section; a new section here means that rows are missing.
 std::string_view row_word(FileReader& reader, const char* expected) {
     const std::string_view text = reader.word(expected);
-    if (text.front() == '$') reader.complain({}, quoted(text), expected, "fewer rows than the section announces");
+    if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");
     return text;
 }
 
@@ -52,8 +53,8 @@ void require_total(const FileReader& reader, std::size_t found, std::int64_t ann
 }
 
 /// Numbers, then positions of the nodes of a block.
-void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::size_t parameters, std::size_t total, NodeNumbers& numbers,
-                     std::array<std::int64_t, 2>& range, RawMesh& mesh) {
+void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::size_t parameters, std::size_t total,
+                     NodeNumbers& numbers, std::array<std::int64_t, 2>& range, RawMesh& mesh) {
     const std::size_t first = mesh.nodes.size();
     for (std::size_t i = 0; i < rows; ++i) {
         reader.set_row("number of node", first + i + 1, total);
@@ -66,7 +67,8 @@ void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::siz
         reader.set_row("position of node", first + i + 1, total);
         Vec3 x;
         for (std::size_t a = 0; a < 3 + parameters; ++a) {
-            const Real value = binary ? reader.binary<double>("position") : reader.parse_real(row_word(reader, "a coordinate"), "position");
+            const Real value = binary ? reader.binary<double>("position")
+                                      : reader.parse_real(row_word(reader, "a coordinate"), "position");
             if (a < 3) x[static_cast<Eigen::Index>(a)] = reader.finite(value, "position");
         }
         mesh.nodes.push_back(x);
@@ -78,10 +80,12 @@ void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::siz
 void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, RawMesh& mesh) {
     const std::size_t row_bytes = binary ? 32 : 8;
     const Numbers4 header = read_section_header(reader, binary, row_bytes);
-    std::array<std::int64_t, 2> range{std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min()};
+    std::array<std::int64_t, 2> range{std::numeric_limits<std::int64_t>::max(),
+                                      std::numeric_limits<std::int64_t>::min()};
     for (std::int64_t b = 0; b < header[0]; ++b) {
         reader.set_row("block", static_cast<std::size_t>(b) + 1, static_cast<std::size_t>(header[0]));
-        const Numbers4 block = read_block_header(reader, binary, "4 integers: dimension, tag, parametric, nodes of the block");
+        const Numbers4 block =
+            read_block_header(reader, binary, "4 integers: dimension, tag, parametric, nodes of the block");
         const std::size_t rows = reader.checked_count(block[3], row_bytes, "nodes of the block");
         const std::size_t parameters = block[2] != 0 ? static_cast<std::size_t>(block[0]) : 0;
         read_node_block(reader, binary, rows, parameters, static_cast<std::size_t>(header[1]), numbers, range, mesh);
@@ -98,21 +102,26 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
     std::size_t total = 0;
     for (std::int64_t b = 0; b < header[0]; ++b) {
         reader.set_row("block", static_cast<std::size_t>(b) + 1, static_cast<std::size_t>(header[0]));
-        const Numbers4 block = read_block_header(reader, binary, "4 integers: dimension, tag, type, elements of the block");
+        const Numbers4 block =
+            read_block_header(reader, binary, "4 integers: dimension, tag, type, elements of the block");
         const std::size_t nodes = gmsh_node_count(block[2], reader);
-        const std::size_t rows = reader.checked_count(block[3], (nodes + 1) * (binary ? 8 : 2), "elements of the block");
+        const std::size_t rows =
+            reader.checked_count(block[3], (nodes + 1) * (binary ? 8 : 2), "elements of the block");
         std::vector<std::int64_t> node_numbers(nodes);
         for (std::size_t i = 0; i < rows; ++i) {
             reader.set_row("element", ++total, static_cast<std::size_t>(header[1]));
             if (binary) {
                 reader.skip_bytes(8, "number");
-                for (std::int64_t& number : node_numbers) number = static_cast<std::int64_t>(reader.binary<std::uint64_t>("node"));
+                for (std::int64_t& number : node_numbers)
+                    number = static_cast<std::int64_t>(reader.binary<std::uint64_t>("node"));
             } else {
                 const std::string_view text = reader.filled_line("number and nodes of an element");
                 if (text.front() == '$')
-                    reader.complain({}, quoted(text), "number and nodes of an element", "fewer rows than the section announces");
+                    reader.complain({}, in_quotes(text), "number and nodes of an element",
+                                    "fewer rows than the section announces");
                 const std::vector<std::string_view>& words = reader.words_of(text);
-                if (words.size() != nodes + 1) reader.complain({}, quoted(text), std::to_string(nodes + 1) + " integers: number and nodes");
+                if (words.size() != nodes + 1)
+                    reader.complain({}, in_quotes(text), std::to_string(nodes + 1) + " integers: number and nodes");
                 for (std::size_t a = 0; a < nodes; ++a) node_numbers[a] = reader.parse_integer(words[a + 1], "node");
             }
             take_gmsh_element(block[2], node_numbers, numbers, reader, mesh);

@@ -1,6 +1,7 @@
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Wavefront .obj: lines "v x y z" and "f a b c ..."; anything else (normals, texture, groups, materials, lines) is passed over.
+// Wavefront .obj: lines "v x y z" and "f a b c ..."; anything else (normals, texture, groups, materials, lines) is
+// passed over.
 namespace skerry::mesh {
 namespace {
 
@@ -10,7 +11,8 @@ Index parse_corner(const FileReader& reader, std::string_view word, std::size_t 
     const auto count = static_cast<std::int64_t>(node_count);
     const std::int64_t row = number < 0 ? count + number : number - 1;
     if (row < 0 || row >= count)
-        reader.complain("node", std::to_string(number), "1 to " + std::to_string(count) + ", the nodes so far, or the same from the end");
+        reader.complain("node", std::to_string(number),
+                        "1 to " + std::to_string(count) + ", the nodes so far, or the same from the end");
     return static_cast<Index>(row);
 }
 
@@ -26,13 +28,15 @@ RawMesh read_obj(FileReader& reader) {
             if (words.size() < 4) reader.complain({}, std::to_string(words.size() - 1) + " coordinates", "at least 3");
             Vec3 x;
             for (std::size_t a = 0; a < 3; ++a)
-                x[static_cast<Eigen::Index>(a)] = reader.finite(reader.parse_real(words[a + 1], "position"), "position");
+                x[static_cast<Eigen::Index>(a)] =
+                    reader.finite(reader.parse_real(words[a + 1], "position"), "position");
             mesh.nodes.push_back(x);
         } else if (words[0] == "f") {
             reader.set_section("face");
             if (words.size() < 4) reader.complain({}, std::to_string(words.size() - 1) + " corners", "at least 3");
             corners.clear();
-            for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(parse_corner(reader, words[i], mesh.nodes.size()));
+            for (std::size_t i = 1; i < words.size(); ++i)
+                corners.push_back(parse_corner(reader, words[i], mesh.nodes.size()));
             for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
                 const std::array<Index, 3> nodes{corners[0], corners[i], corners[i + 1]};
                 require_different(nodes, reader);

@@ -2,7 +2,8 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// STL repeats the corners of each triangle: equal positions become one node, and triangles of which that leaves no three are dropped.
+// STL repeats the corners of each triangle: equal positions become one node, and triangles of which that leaves no
+// three are dropped.
 namespace skerry::mesh {
 namespace {
 
@@ -21,7 +22,8 @@ public:
 
 private:
     Index node(const Vec3& x) {
-        const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));  // -0 equals 0
+        // -0 equals 0
+        const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));
         if (added) mesh_.nodes.push_back(x);
         return place->second;
     }
@@ -41,26 +43,28 @@ void read_binary(FileReader& reader, Welder& welder) {
         reader.skip_bytes(12, "normal");
         std::array<Vec3, 3> corners;
         for (Vec3& x : corners)
-            for (Real& value : x) value = reader.finite(static_cast<Real>(reader.binary<float>("position")), "position");
+            for (Real& value : x)
+                value = reader.finite(static_cast<Real>(reader.binary<float>("position")), "position");
         reader.skip_bytes(2, "attributes");
         welder.add(corners);
     }
 }
 
 void require_word(FileReader& reader, const char* expected) {
-    if (const std::string_view found = reader.word(expected); found != expected) reader.complain({}, quoted(found), expected);
+    if (const std::string_view found = reader.word(expected); found != expected)
+        reader.complain({}, in_quotes(found), expected);
 }
 
 void read_ascii(FileReader& reader, Welder& welder) {
     while (!reader.at_end()) {
         reader.set_section("solid");
         const std::vector<std::string_view>& words = reader.words_of(reader.filled_line("solid"));
-        if (words[0] != "solid") reader.complain({}, quoted(words[0]), "solid");
+        if (words[0] != "solid") reader.complain({}, in_quotes(words[0]), "solid");
         for (std::size_t i = 1;; ++i) {
             const std::string_view key = reader.word("facet or endsolid");
             if (key == "endsolid") break;
             reader.set_section("facet " + std::to_string(i));
-            if (key != "facet") reader.complain({}, quoted(key), "facet or endsolid");
+            if (key != "facet") reader.complain({}, in_quotes(key), "facet or endsolid");
             require_word(reader, "normal");
             for (int a = 0; a < 3; ++a) reader.word("a normal");  // not needed, and often zero or wrong
             require_word(reader, "outer");
@@ -68,7 +72,8 @@ void read_ascii(FileReader& reader, Welder& welder) {
             std::array<Vec3, 3> corners;
             for (Vec3& x : corners) {
                 require_word(reader, "vertex");
-                for (Real& value : x) value = reader.finite(reader.parse_real(reader.word("a coordinate"), "position"), "position");
+                for (Real& value : x)
+                    value = reader.finite(reader.parse_real(reader.word("a coordinate"), "position"), "position");
             }
             require_word(reader, "endloop");
             require_word(reader, "endfacet");

@@ -30,18 +30,22 @@ void require_end(FileReader& reader, const char* rows) {
     while (!reader.at_end()) {
         const std::string_view text = reader.line();
         if (const std::string_view content = text.substr(0, text.find('#')); !reader.words_of(content).empty())
-            reader.complain({}, quoted(text), "the end of the file", std::string("more ") + rows + " than the header announces");
+            reader.complain({}, in_quotes(text), "the end of the file",
+                            std::string("more ") + rows + " than the header announces");
     }
 }
 
-void require_words(const FileReader& reader, std::size_t found, std::size_t least, std::size_t most, const char* meaning) {
+void require_words(const FileReader& reader, std::size_t found, std::size_t least, std::size_t most,
+                   const char* meaning) {
     if (found < least || found > most)
         reader.complain({}, std::to_string(found) + " numbers",
-                        least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most), meaning);
+                        least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most),
+                        meaning);
 }
 
 void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
-    const auto [announced, dimension, attributes, markers] = read_header(reader, 4, "nodes, dimension, attributes, markers");
+    const auto [announced, dimension, attributes, markers] =
+        read_header(reader, 4, "nodes, dimension, attributes, markers");
     const std::size_t count = reader.checked_count(announced, 8, "nodes");
     if (dimension != 3 && dimension != 0) reader.complain("dimension", std::to_string(dimension), "3");
     if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
@@ -66,10 +70,12 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
 }
 
 void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
-    const auto [announced, corners, attributes, unused] = read_header(reader, 3, "tetrahedra, nodes of each, attributes");
+    const auto [announced, corners, attributes, unused] =
+        read_header(reader, 3, "tetrahedra, nodes of each, attributes");
     (void)unused;
     const std::size_t count = reader.checked_count(announced, 10, "tetrahedra");
-    if (corners == 10) reader.complain("nodes of each", "10, tetrahedra of second order", "4", "run tetgen without -o2");
+    if (corners == 10)
+        reader.complain("nodes of each", "10, tetrahedra of second order", "4", "run tetgen without -o2");
     if (corners != 4 && corners != 0) reader.complain("nodes of each", std::to_string(corners), "4");
     if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
     reader.set_section("tetrahedra");
@@ -77,7 +83,8 @@ void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& me
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("tetrahedron", i + 1, count);
         const std::vector<std::string_view>& words = row_words(reader, "number and four nodes");
-        require_words(reader, words.size(), 5, 5 + static_cast<std::size_t>(attributes), "number, four nodes, attributes");
+        require_words(reader, words.size(), 5, 5 + static_cast<std::size_t>(attributes),
+                      "number, four nodes, attributes");
         std::array<Index, 4> nodes;
         for (std::size_t a = 0; a < 4; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
         require_different(nodes, reader);

@@ -39,17 +39,17 @@ private:
         reader_.set_section("header");
         const std::string_view magic = reader_.filled_line("# vtk DataFile Version");
         if (!magic.starts_with("# vtk DataFile Version"))
-            reader_.complain({}, quoted(magic), "# vtk DataFile Version", "only legacy VTK files are read");
+            reader_.complain({}, in_quotes(magic), "# vtk DataFile Version", "only legacy VTK files are read");
         reader_.line();  // title
         const std::string_view format = reader_.filled_line("ASCII or BINARY");
-        if (format != "ASCII" && format != "BINARY") reader_.complain("format", quoted(format), "ASCII or BINARY");
+        if (format != "ASCII" && format != "BINARY") reader_.complain("format", in_quotes(format), "ASCII or BINARY");
         binary_ = format == "BINARY";
         reader_.set_foreign_bytes(std::endian::native == std::endian::little);  // VTK writes big-endian
         const std::string_view key = reader_.word("DATASET");
-        if (key != "DATASET") reader_.complain({}, quoted(key), "DATASET");
+        if (key != "DATASET") reader_.complain({}, in_quotes(key), "DATASET");
         dataset_ = reader_.word("the kind of data set");
         if (dataset_ != "UNSTRUCTURED_GRID" && dataset_ != "POLYDATA")
-            reader_.complain("DATASET", quoted(dataset_), "UNSTRUCTURED_GRID or POLYDATA");
+            reader_.complain("DATASET", in_quotes(dataset_), "UNSTRUCTURED_GRID or POLYDATA");
     }
 
     /// One section behind its name. False when the data of points and cells begin: nothing of the mesh follows them.
@@ -71,7 +71,8 @@ private:
         else if (name == "METADATA")
             skip_metadata();
         else
-            reader_.complain({}, quoted(name), "POINTS, CELLS, CELL_TYPES, POLYGONS, FIELD, METADATA, CELL_DATA or POINT_DATA");
+            reader_.complain({}, in_quotes(name),
+                             "POINTS, CELLS, CELL_TYPES, POLYGONS, FIELD, METADATA, CELL_DATA or POINT_DATA");
         return true;
     }
 
@@ -88,7 +89,8 @@ private:
 
     NumberType read_type(const char* field) {
         std::string name(reader_.word(field));
-        std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        std::transform(name.begin(), name.end(), name.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         struct Name {
             const char* name;
             NumberType type;
@@ -107,7 +109,8 @@ private:
                                                      {"unsigned_short", {Kind::uint16, 2}},
                                                      {"vtktypeint32", {Kind::int32, 4}}}};
         const auto found = std::find_if(names.begin(), names.end(), [&](const Name& n) { return name == n.name; });
-        if (found == names.end()) reader_.complain(field, quoted(name), "a number type of VTK, for example float or double");
+        if (found == names.end())
+            reader_.complain(field, in_quotes(name), "a number type of VTK, for example float or double");
         return found->type;
     }
 
@@ -216,9 +219,10 @@ private:
         if (offsets_.empty()) offsets_.push_back(0);
         reader_.set_section("CONNECTIVITY");
         if (offsets_.back() != size)
-            reader_.complain("last offset", std::to_string(offsets_.back()), std::to_string(size) + ", the size of CONNECTIVITY");
+            reader_.complain("last offset", std::to_string(offsets_.back()),
+                             std::to_string(size) + ", the size of CONNECTIVITY");
         if (const std::string_view key = reader_.word("CONNECTIVITY"); key != "CONNECTIVITY")
-            reader_.complain({}, quoted(key), "CONNECTIVITY");
+            reader_.complain({}, in_quotes(key), "CONNECTIVITY");
         const NumberType node_type = read_type("type");
         begin_rows();
         for (std::size_t i = 0; i < size; ++i) {
@@ -275,10 +279,12 @@ private:
             const std::size_t begin = offsets_[c], nodes = offsets_[c + 1] - begin;
             const std::int64_t type = types_[c];
             if (type == 24 || type == 71 || type == 78)
-                reader_.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order", "linear tetrahedra (type 10)");
+                reader_.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
+                                 "linear tetrahedra (type 10)");
             if (type == 10) {
                 if (nodes != 4) reader_.complain("node count", std::to_string(nodes), "4 for a tetrahedron");
-                const std::array<Index, 4> t{cell_nodes_[begin], cell_nodes_[begin + 1], cell_nodes_[begin + 2], cell_nodes_[begin + 3]};
+                const std::array<Index, 4> t{cell_nodes_[begin], cell_nodes_[begin + 1], cell_nodes_[begin + 2],
+                                             cell_nodes_[begin + 3]};
                 require_different(t, reader_);
                 mesh_.tetrahedra.push_back(t);
             } else if (type == 5) {

@@ -16,15 +16,18 @@ void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes) {
 
 void require_size(const char* name, Real value) {
     if (!(std::isfinite(value) && value > 0))
-        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) + ", expected metres above 0");
+        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) +
+                                    ", expected metres above 0");
 }
 
 void require_count(const char* name, int value) {
-    if (value < 1) throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) + ", expected at least 1");
+    if (value < 1)
+        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) + ", expected at least 1");
 }
 
 void require_fits(const char* name, double tetrahedra) {
-    if (!(tetrahedra <= 0x7fffffff / 4))
+    constexpr int most = 0x7fffffff / 4;  // rows of the table of corners
+    if (!(tetrahedra <= most))
         throw std::invalid_argument(std::string(name) + ": too fine, about " + std::to_string(tetrahedra) +
                                     " tetrahedra do not fit a 32-bit index");
 }

@@ -8,8 +8,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// An icosahedron cut from its centre into 20 nearly regular tetrahedra, each of them into n^3, with the shells rounded to spheres. Every shell
-/// s has 10 s^2 + 2 nodes; six fivefold axes and no direction that a grid would prefer.
+/// An icosahedron cut from its centre into 20 nearly regular tetrahedra, each of them into n^3, with the shells rounded
+/// to spheres. Every shell s has 10 s^2 + 2 nodes; six fivefold axes and no direction that a grid would prefer.
 class BallBuilder {
 public:
     BallBuilder(Real radius, int shells) : radius_(radius), shells_(shells) {
@@ -18,8 +18,10 @@ public:
         corner_[0] = Vec3(0, 0, -1);
         corner_[11] = Vec3(0, 0, 1);
         for (int i = 0; i < 5; ++i) {
-            corner_[static_cast<std::size_t>(1 + i)] = Vec3(wide * std::cos(fifth * i), wide * std::sin(fifth * i), -height);
-            corner_[static_cast<std::size_t>(6 + i)] = Vec3(wide * std::cos(fifth * (i + 0.5)), wide * std::sin(fifth * (i + 0.5)), height);
+            corner_[static_cast<std::size_t>(1 + i)] =
+                Vec3(wide * std::cos(fifth * i), wide * std::sin(fifth * i), -height);
+            corner_[static_cast<std::size_t>(6 + i)] =
+                Vec3(wide * std::cos(fifth * (i + 0.5)), wide * std::sin(fifth * (i + 0.5)), height);
         }
         angle_ = std::atan(2.0);  // between neighbouring corners, seen from the centre
     }
@@ -37,8 +39,10 @@ public:
     }
 
 private:
-    using Steps = std::array<int, 4>;                // barycentric: towards the three corners of the sector and (last) towards the centre
-    using Key = std::array<std::pair<int, int>, 3>;  // (corner, steps), sorted: the same from every sector that has the node
+    // barycentric: towards the three corners of the sector and (last) towards the centre
+    using Steps = std::array<int, 4>;
+    // (corner, steps), sorted: the same from every sector that has the node
+    using Key = std::array<std::pair<int, int>, 3>;
 
     Index node(const std::array<int, 3>& sector, const Steps& steps) {
         const int shell = steps[0] + steps[1] + steps[2];
@@ -51,7 +55,8 @@ private:
             // On an edge this is exactly an even division of the arc; inside it stays close to even.
             Vec3 direction = Vec3::Zero();
             for (const auto& [corner, count] : key)
-                if (count > 0) direction += std::sin(angle_ * count / shell) * corner_[static_cast<std::size_t>(corner)];
+                if (count > 0)
+                    direction += std::sin(angle_ * count / shell) * corner_[static_cast<std::size_t>(corner)];
             mesh_.nodes.push_back(radius_ * shell / shells_ * direction.normalized());
         }
         return place->second;
@@ -67,22 +72,26 @@ private:
                 for (int j = 0; i + j <= sum; ++j)
                     for (int k = 0; i + j + k <= sum; ++k) {
                         const Steps base{i, j, k, sum - i - j - k};
-                        if (sum == shells_ - 1) add_tetrahedron(mesh_, {at(base, {0}), at(base, {1}), at(base, {2}), at(base, {3})});
+                        if (sum == shells_ - 1)
+                            add_tetrahedron(mesh_, {at(base, {0}), at(base, {1}), at(base, {2}), at(base, {3})});
                         if (sum == shells_ - 2)
-                            split_octahedron({at(base, {0, 1}), at(base, {2, 3}), at(base, {0, 2}), at(base, {1, 3}), at(base, {0, 3}),
-                                              at(base, {1, 2})});
+                            split_octahedron({at(base, {0, 1}), at(base, {2, 3}), at(base, {0, 2}), at(base, {1, 3}),
+                                              at(base, {0, 3}), at(base, {1, 2})});
                         if (sum == shells_ - 3)
-                            add_tetrahedron(mesh_, {at(base, {0, 1, 2}), at(base, {0, 1, 3}), at(base, {0, 2, 3}), at(base, {1, 2, 3})});
+                            add_tetrahedron(mesh_, {at(base, {0, 1, 2}), at(base, {0, 1, 3}), at(base, {0, 2, 3}),
+                                                    at(base, {1, 2, 3})});
                     }
     }
 
-    /// Four tetrahedra about the shortest of the three diagonals (ends at places 2 d and 2 d + 1; of equal ones the first).
+    /// Four tetrahedra about the shortest of the three diagonals (ends at places 2 d and 2 d + 1; of equal ones the
+    /// first).
     void split_octahedron(const std::array<Index, 6>& n) {
         std::size_t best = 0;
         Real shortest = 0;
         for (std::size_t d = 0; d < 3; ++d) {
             const Real length =
-                (mesh_.nodes[static_cast<std::size_t>(n[2 * d])] - mesh_.nodes[static_cast<std::size_t>(n[2 * d + 1])]).norm();
+                (mesh_.nodes[static_cast<std::size_t>(n[2 * d])] - mesh_.nodes[static_cast<std::size_t>(n[2 * d + 1])])
+                    .norm();
             // Symmetric sectors have equal diagonals up to rounding: the margin makes the choice the same everywhere.
             if (d == 0 || length < shortest * (1 - 1e-9)) {
                 best = d;
@@ -91,7 +100,8 @@ private:
         }
         const std::size_t p = 2 * ((best + 1) % 3), q = 2 * ((best + 2) % 3);
         const std::array<Index, 4> belt{n[p], n[q], n[p + 1], n[q + 1]};
-        for (std::size_t a = 0; a < 4; ++a) add_tetrahedron(mesh_, {n[2 * best], n[2 * best + 1], belt[a], belt[(a + 1) % 4]});
+        for (std::size_t a = 0; a < 4; ++a)
+            add_tetrahedron(mesh_, {n[2 * best], n[2 * best + 1], belt[a], belt[(a + 1) % 4]});
     }
 
     Real radius_;

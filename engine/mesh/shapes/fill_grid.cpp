@@ -15,8 +15,9 @@ Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>
     std::vector<Index> row(lines[0].size() * lines[1].size() * lines[2].size(), no_index);
     Mesh mesh;
     const auto node_at = [&](const std::array<int, 3>& p) {
-        const auto place = (static_cast<std::size_t>(p[2]) * lines[1].size() + static_cast<std::size_t>(p[1])) * lines[0].size() +
-                           static_cast<std::size_t>(p[0]);
+        const auto place =
+            (static_cast<std::size_t>(p[2]) * lines[1].size() + static_cast<std::size_t>(p[1])) * lines[0].size() +
+            static_cast<std::size_t>(p[0]);
         if (row[place] == no_index) {
             row[place] = static_cast<Index>(mesh.nodes.size());
             mesh.nodes.emplace_back(lines[0][static_cast<std::size_t>(p[0])], lines[1][static_cast<std::size_t>(p[1])],
@@ -26,7 +27,8 @@ Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>
     };
 
     // Each order of the three axes is a walk along edges from one end of the diagonal to the other: one tetrahedron.
-    constexpr std::array<std::array<std::size_t, 3>, 6> walks{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+    constexpr std::array<std::array<std::size_t, 3>, 6> walks{
+        {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
     std::array<int, 3> cell;
     for (cell[2] = 0; cell[2] + 1 < lines_along(2); ++cell[2])
         for (cell[1] = 0; cell[1] + 1 < lines_along(1); ++cell[1])

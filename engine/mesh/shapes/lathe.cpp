@@ -19,11 +19,13 @@ constexpr Real point_radius = 0.3;  // over the distance of rings: narrower ends
 
 void check_profile(std::span<const ProfilePoint> profile) {
     if (profile.size() < 2)
-        throw std::invalid_argument("lathe profile: found " + std::to_string(profile.size()) + " points, expected at least 2");
+        throw std::invalid_argument("lathe profile: found " + std::to_string(profile.size()) +
+                                    " points, expected at least 2");
     for (std::size_t i = 0; i < profile.size(); ++i) {
         require_size("lathe radius", profile[i][0]);
         if (!std::isfinite(profile[i][1]) || (i > 0 && !(profile[i][1] > profile[i - 1][1])))
-            throw std::invalid_argument("lathe profile: z of point " + std::to_string(i) + " is not above the one before");
+            throw std::invalid_argument("lathe profile: z of point " + std::to_string(i) +
+                                        " is not above the one before");
     }
 }
 
@@ -34,12 +36,15 @@ Real radius_at(std::span<const ProfilePoint> profile, Real z) {
     return (1 - t) * profile[i - 1][0] + t * profile[i][0];
 }
 
-/// Ends of the outline and its sharp kinks, sharpest first, as far as they leave room for layers between them. Ascending.
+/// Ends of the outline and its sharp kinks, sharpest first, as far as they leave room for layers between them.
+/// Ascending.
 std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacing) {
     std::vector<Real> turn(profile.size(), 0);
     std::vector<std::size_t> order;
     for (std::size_t i = 1; i + 1 < profile.size(); ++i) {
-        const auto slope = [&](std::size_t j) { return std::atan2(profile[j + 1][0] - profile[j][0], profile[j + 1][1] - profile[j][1]); };
+        const auto slope = [&](std::size_t j) {
+            return std::atan2(profile[j + 1][0] - profile[j][0], profile[j + 1][1] - profile[j][1]);
+        };
         turn[i] = std::abs(slope(i) - slope(i - 1));
         if (turn[i] > sharp_turn) order.push_back(i);
     }
@@ -47,7 +52,8 @@ std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacin
     std::vector<Real> breaks{profile.front()[1], profile.back()[1]};
     for (const std::size_t i : order) {
         const Real z = profile[i][1];
-        if (std::all_of(breaks.begin(), breaks.end(), [&](Real other) { return std::abs(z - other) >= least_layer * spacing; }))
+        if (std::all_of(breaks.begin(), breaks.end(),
+                        [&](Real other) { return std::abs(z - other) >= least_layer * spacing; }))
             breaks.push_back(z);
     }
     std::sort(breaks.begin(), breaks.end());
@@ -61,7 +67,8 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
     for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
         Real layers = std::max(Real{1}, std::round((breaks[b + 1] - breaks[b]) / (layer_height * spacing)));
         // A body pointed at both ends needs a plane between them.
-        if (breaks.size() == 2 && pointed(profile.front()) && pointed(profile.back())) layers = std::max(layers, Real{2});
+        if (breaks.size() == 2 && pointed(profile.front()) && pointed(profile.back()))
+            layers = std::max(layers, Real{2});
         require_fits("lathe layers", layers);
         const auto count = static_cast<int>(layers);
         for (int i = 1; i < count; ++i) planes.push_back(breaks[b] + (breaks[b + 1] - breaks[b]) * i / count);
@@ -76,15 +83,18 @@ std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing
     // A pointed end is one point: planes that are as narrow beside it would only hold tiny elements.
     while (planes.size() > 3 && profile.back()[0] < narrow && radius_at(profile, planes[planes.size() - 2]) < narrow)
         planes.erase(planes.end() - 2);
-    while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow) planes.erase(planes.begin() + 1);
+    while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow)
+        planes.erase(planes.begin() + 1);
     std::vector<Disc> discs;
     for (std::size_t i = 0; i < planes.size(); ++i) {
         const Real radius = radius_at(profile, planes[i]);
         const bool end = i == 0 || i + 1 == planes.size();
         const int least = end && radius < narrow ? 0 : 1;
-        discs.push_back({planes[i], radius, std::clamp(static_cast<int>(std::lround(radius / spacing)), least, most_rings)});
+        discs.push_back(
+            {planes[i], radius, std::clamp(static_cast<int>(std::lround(radius / spacing)), least, most_rings)});
     }
-    // Neighbours differ by one ring at most, as stack_discs needs it. The wider one gives way: elements may be longer, not shorter.
+    // Neighbours differ by one ring at most, as stack_discs needs it. The wider one gives way: elements may be longer,
+    // not shorter.
     for (std::size_t i = 1; i < discs.size(); ++i) discs[i].rings = std::min(discs[i].rings, discs[i - 1].rings + 1);
     for (std::size_t i = discs.size() - 1; i-- > 0;) discs[i].rings = std::min(discs[i].rings, discs[i + 1].rings + 1);
     return discs;

@@ -10,8 +10,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Numbers of a disc's nodes: the centre, then ring after ring, counter-clockwise from the x axis. They do not depend on how many rings follow,
-// so node n of a disc stands above node n of the one below.
+// Numbers of a disc's nodes: the centre, then ring after ring, counter-clockwise from the x axis. They do not depend on
+// how many rings follow, so node n of a disc stands above node n of the one below.
 int ring_begin(int ring) {
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
@@ -22,8 +22,9 @@ int disc_size(int rings) {
     return ring_begin(rings + 1);
 }
 
-/// The nodes of a disc are those of a hexagon of the triangular lattice, which three colours paint so that neighbours differ. The colours say
-/// which way the walls between prisms are cut: the same way at each corner of a sixth, so nothing turns the body to one side.
+/// The nodes of a disc are those of a hexagon of the triangular lattice, which three colours paint so that neighbours
+/// differ. The colours say which way the walls between prisms are cut: the same way at each corner of a sixth, so
+/// nothing turns the body to one side.
 std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
@@ -37,8 +38,8 @@ std::vector<int> paint_nodes(int rings) {
     return colour;
 }
 
-/// Visits the triangles between ring - 1 and ring: `wide` ones with an edge on the outer ring (outer, outer, inner), and `narrow` ones
-/// with an edge on the inner ring (inner, inner, outer).
+/// Visits the triangles between ring - 1 and ring: `wide` ones with an edge on the outer ring (outer, outer, inner),
+/// and `narrow` ones with an edge on the inner ring (inner, inner, outer).
 template <class Wide, class Narrow>
 void for_each_triangle(int ring, Wide&& wide, Narrow&& narrow) {
     for (int sector = 0; sector < 6; ++sector)
@@ -70,7 +71,8 @@ private:
         mesh_.nodes.emplace_back(0, 0, disc.z);
         for (int ring = 1; ring <= disc.rings; ++ring)
             for (int place = 0; place < 6 * ring; ++place) {
-                const Real angle = 2 * std::acos(Real{-1}) * place / (6 * ring), radius = disc.radius * ring / disc.rings;
+                const Real angle = 2 * std::acos(Real{-1}) * place / (6 * ring),
+                           radius = disc.radius * ring / disc.rings;
                 mesh_.nodes.emplace_back(radius * std::cos(angle), radius * std::sin(angle), disc.z);
             }
     }
@@ -93,7 +95,8 @@ private:
             [&](int a, int b, int outer) { add_pyramid(layer, a, b, node(wide, outer)); });
     }
 
-    /// A wall of the layer is cut from its lower to its higher colour when one goes up, the other way round in the next layer.
+    /// A wall of the layer is cut from its lower to its higher colour when one goes up, the other way round in the next
+    /// layer.
     bool cut_rises(std::size_t layer, int from, int to) const {
         return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
     }

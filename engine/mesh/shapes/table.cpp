@@ -26,15 +26,16 @@ Mesh table(const TableShape& shape) {
     require_count("table cells per leg", shape.cells_per_leg);
     if (!(2 * shape.leg < shape.length && 2 * shape.leg < shape.width))
         throw std::invalid_argument("table leg: expected less than half the length and the width");
-    if (!(shape.thickness < shape.height)) throw std::invalid_argument("table thickness: expected less than the height");
+    if (!(shape.thickness < shape.height))
+        throw std::invalid_argument("table thickness: expected less than the height");
 
     const Real cell = shape.leg / shape.cells_per_leg;
     const std::array<Real, 2> top{shape.length, shape.width};
     std::array<int, 2> between;  // cells between two legs, along x and y
     for (std::size_t axis = 0; axis < 2; ++axis) between[axis] = cells_in(top[axis] - 2 * shape.leg, cell);
     const int leg_layers = cells_in(shape.height - shape.thickness, cell), top_layers = cells_in(shape.thickness, cell);
-    require_fits("table cells", 6.0 * (between[0] + 2.0 * shape.cells_per_leg) * (between[1] + 2.0 * shape.cells_per_leg) *
-                                    (double{0} + leg_layers + top_layers));
+    require_fits("table cells", 6.0 * (between[0] + 2.0 * shape.cells_per_leg) *
+                                    (between[1] + 2.0 * shape.cells_per_leg) * (double{0} + leg_layers + top_layers));
 
     GridLines lines;
     for (std::size_t axis = 0; axis < 2; ++axis) {

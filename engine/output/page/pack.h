@@ -38,7 +38,8 @@ Code code_of(Real value, Real top) {
     return std::isnan(fraction) ? Code{0} : static_cast<Code>(std::lround(std::clamp<Real>(fraction, 0, 1) * last));
 }
 
-/// Points within their common box: f32 lower[3], f32 extent[3], u16 code[3 n]. 1/65535 of the extent is 15 micrometres in a metre.
+/// Points within their common box: f32 lower[3], f32 extent[3], u16 code[3 n]. 1/65535 of the extent is 15 micrometres
+/// in a metre.
 void put_points(std::string& out, std::span<const Vec3> points);
 
 /// The numbers as they are in memory, in base64 (RFC 4648).

@@ -1,4 +1,5 @@
-// The parts of the page that the build embeds (embed.cmake writes page_assets.cpp), so that an installed library needs no data files.
+// The parts of the page that the build embeds (embed.cmake writes page_assets.cpp), so that an installed library needs
+// no data files.
 #pragma once
 
 #include <string_view>

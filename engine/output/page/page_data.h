@@ -36,10 +36,13 @@ struct PageRow {
 
 /// Packs frames as they come. A packed frame is little-endian, each block filled up to 4 bytes:
 ///   u32 bodies, colliders, contacts
-///   per body: u32 number; f32 top speed (m/s), top stress (Pa); f32 lower[3], extent[3] (m); u16 position[3 n] within that box; u8 speed[n];
-///     u8 stress[n], as fractions of the tops. Boxes and tops by body and frame, so a body far away or one peak costs the others nothing.
+///   per body: u32 number; f32 top speed (m/s), top stress (Pa); f32 lower[3], extent[3] (m); u16 position[3 n] within
+///   that box; u8 speed[n];
+///     u8 stress[n], as fractions of the tops. Boxes and tops by body and frame, so a body far away or one peak costs
+///     the others nothing.
 ///   per collider: u32 number; f32 position[3] (m), rotation[3] (axis times angle)
-///   contacts: f32 unit of force (N), lower[3], extent[3] (m); u16 point[3 m]; i16 force[3 m]; u16 region[m] (modulo 65536, for
+///   contacts: f32 unit of force (N), lower[3], extent[3] (m); u16 point[3 m]; i16 force[3 m]; u16 region[m] (modulo
+///   65536, for
 ///     colours; 65535 none); u8 state[m] (0 open, 1 stick, 2 slide)
 class PageData {
 public:

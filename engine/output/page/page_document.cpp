@@ -31,7 +31,9 @@ std::string packed(const Rows& rows) {
 Json json_of_bodies(const PageData& data) {
     Json list = Json::array();
     for (const PageBody& body : data.bodies())
-        list.push_back({{"name", body.name}, {"vertices", body.node.size()}, {"triangles", packed<std::uint32_t>(body.triangles)}});
+        list.push_back({{"name", body.name},
+                        {"vertices", body.node.size()},
+                        {"triangles", packed<std::uint32_t>(body.triangles)}});
     return list;
 }
 
@@ -68,7 +70,8 @@ Json json_of_report(const PageSummary& summary) {
     const WorldReport& report = summary.report;
     Json stages = Json::array();
     for (const StageReport& stage : report.stages)
-        stages.push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}});
+        stages.push_back(
+            {{"name", stage.name}, {"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}});
     char hash[17];
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(summary.state_hash));
     return {{"time", report.time},
@@ -110,7 +113,8 @@ std::string describe(const PageData& data, const PageSummary& summary) {
                        {"stress", json_of(data.stress())},
                        {"force", json_of(data.force())},
                        {"report", json_of_report(summary)}};
-    // Names are the users' own: bytes that are no UTF-8 become U+FFFD, and no '<' is left that could end the script element.
+    // Names are the users' own: bytes that are no UTF-8 become U+FFFD, and no '<' is left that could end the script
+    // element.
     std::string text;
     for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
         if (c == '<')

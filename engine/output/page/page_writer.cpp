@@ -26,7 +26,8 @@ void PageWriter::add_frame(const World& world) {
 }
 
 void PageWriter::close(const World& world) {
-    write_page(impl_->file, impl_->data, {.title = impl_->title, .report = world.report(), .state_hash = world.state_hash()});
+    write_page(impl_->file, impl_->data,
+               {.title = impl_->title, .report = world.report(), .state_hash = world.state_hash()});
 }
 
 }  // namespace skerry

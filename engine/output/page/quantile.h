@@ -23,7 +23,8 @@ public:
         std::uint64_t below = 0;
         for (const auto& [bin, count] : bins_) {
             below += count;
-            if (static_cast<Real>(below) >= share * static_cast<Real>(count_)) return std::fmin(std::exp((bin + 1) * log_width), max_);
+            if (static_cast<Real>(below) >= share * static_cast<Real>(count_))
+                return std::fmin(std::exp((bin + 1) * log_width), max_);
         }
         return max_;
     }

@@ -19,8 +19,8 @@ VtkFile::VtkFile(std::string_view kind, Real time) : kind_(kind) {
     tags_ = "<?xml version=\"1.0\"?>\n";
     open("VTKFile", "type=\"" + kind_ + "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"");
     open(kind_);
-    tags_ += "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" + number_text(time) +
-             "</DataArray></FieldData>\n";
+    tags_ += "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
+             number_text(time) + "</DataArray></FieldData>\n";
 }
 
 void VtkFile::open(std::string_view tag, std::string_view attributes) {

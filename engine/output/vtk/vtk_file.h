@@ -28,11 +28,13 @@ inline constexpr std::string_view vtk_type<std::uint8_t> = "UInt8";
 /// Shortest text that reads back as the same number, whatever the locale.
 std::string number_text(double value);
 
-/// Put together in the order of the format (VTK file formats, "XML file formats", appended data): tags, and for each array its raw
-/// little-endian bytes behind a count of 64 bits. Raw, not base64: a third smaller, and every reader of VTK's own takes it.
+/// Put together in the order of the format (VTK file formats, "XML file formats", appended data): tags, and for each
+/// array its raw little-endian bytes behind a count of 64 bits. Raw, not base64: a third smaller, and every reader of
+/// VTK's own takes it.
 class VtkFile {
 public:
-    /// `kind` is UnstructuredGrid or PolyData. The time goes into the field data, where ParaView looks for it in a file of its own.
+    /// `kind` is UnstructuredGrid or PolyData. The time goes into the field data, where ParaView looks for it in a file
+    /// of its own.
     VtkFile(std::string_view kind, Real time);
 
     void open(std::string_view tag, std::string_view attributes = "");

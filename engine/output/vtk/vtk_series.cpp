@@ -54,7 +54,8 @@ std::string count_attribute(std::string_view name, std::size_t count) {
 
 }  // namespace
 
-VtkSeries::VtkSeries(std::filesystem::path folder, std::string name) : folder_(std::move(folder)), name_(std::move(name)) {
+VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
+    : folder_(std::move(folder)), name_(std::move(name)) {
     if (name_.empty() || name_.find_first_of("/\\") != std::string::npos)
         Complaint{.file = folder_.string(),
                   .object = "output",
@@ -73,7 +74,8 @@ std::string VtkSeries::frame_file(const char* what, const char* extension) const
 }
 
 void VtkSeries::number(const Frame& frame) {
-    for (const BodyFrame& body : frame.bodies) body_number_.try_emplace(body.handle, static_cast<Index>(body_number_.size()));
+    for (const BodyFrame& body : frame.bodies)
+        body_number_.try_emplace(body.handle, static_cast<Index>(body_number_.size()));
     for (const ColliderFrame& collider : frame.colliders)
         collider_number_.try_emplace(collider.handle, static_cast<Index>(collider_number_.size()));
 }
@@ -117,10 +119,11 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
 
     VtkFile file("UnstructuredGrid", frame.time);
     file.open("Piece", count_attribute("Points", points) + count_attribute("Cells", cells));
-    // Places in double: what people measure from them are differences (gaps, travel, strain), where float leaves few digits. The rest in
-    // float, which is more than the simulation knows.
+    // Places in double: what people measure from them are differences (gaps, travel, strain), where float leaves few
+    // digits. The rest in float, which is more than the simulation knows.
     file.open("Points");
-    file.array<double>("Points", 3, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.position[n]); }));
+    file.array<double>("Points", 3, points,
+                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.position[n]); }));
     file.close("Points");
     file.open("Cells");
     file.array<std::int32_t>("connectivity", 1, 4 * cells, [&](auto put) {
@@ -132,17 +135,21 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
         }
     });
     offsets(file, cells, 4);
-    file.array<std::uint8_t>("types", 1, cells, of_cells([](auto& put, const BodyFrame&, std::size_t) { put(vtk_tetra); }));
+    file.array<std::uint8_t>("types", 1, cells,
+                             of_cells([](auto& put, const BodyFrame&, std::size_t) { put(vtk_tetra); }));
     file.close("Cells");
     file.open("PointData");
     file.array<float>("velocity", 3, points,
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.velocity[n]); }));
-    file.array<float>("speed", 1, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.velocity[n].norm()); }));
+    file.array<float>("speed", 1, points,
+                      of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.velocity[n].norm()); }));
     file.close("PointData");
     file.open("CellData");
-    file.array<float>("von_mises", 1, cells, of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put(b.von_mises[c]); }));
-    file.array<std::int32_t>("body", 1, cells,
-                             of_cells([this](auto& put, const BodyFrame& b, std::size_t) { put(number_of(body_number_, b.handle)); }));
+    file.array<float>("von_mises", 1, cells,
+                      of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put(b.von_mises[c]); }));
+    file.array<std::int32_t>("body", 1, cells, of_cells([this](auto& put, const BodyFrame& b, std::size_t) {
+                                 put(number_of(body_number_, b.handle));
+                             }));
     file.close("CellData");
     file.close("Piece");
     file.write(folder_ / name);
@@ -151,7 +158,8 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
 void VtkSeries::write_contacts(const Frame& frame, const std::string& name) const {
     const std::span<const Contact> rows = frame.contacts;
     VtkFile file("PolyData", frame.time);
-    file.open("Piece", count_attribute("Points", rows.size()) + count_attribute("Verts", rows.size()) + count_attribute("Polys", 0));
+    file.open("Piece", count_attribute("Points", rows.size()) + count_attribute("Verts", rows.size()) +
+                           count_attribute("Polys", 0));
     file.open("Points");
     file.array<double>("Points", 3, rows.size(), [&](auto put) {
         for (const Contact& contact : rows) put_vector(put, contact.point);
@@ -173,8 +181,10 @@ void VtkSeries::write_contacts(const Frame& frame, const std::string& name) cons
     scalars<std::uint8_t>(file, "state", rows, [](const Contact& c) { return c.motion; });
     scalars<std::int32_t>(file, "region", rows, [](const Contact& c) { return c.region; });
     scalars<std::int32_t>(file, "first_body", rows, [&](const Contact& c) { return number_of(body_number_, c.first); });
-    scalars<std::int32_t>(file, "second_body", rows, [&](const Contact& c) { return number_of(body_number_, c.second); });
-    scalars<std::int32_t>(file, "collider", rows, [&](const Contact& c) { return number_of(collider_number_, c.collider); });
+    scalars<std::int32_t>(file, "second_body", rows,
+                          [&](const Contact& c) { return number_of(body_number_, c.second); });
+    scalars<std::int32_t>(file, "collider", rows,
+                          [&](const Contact& c) { return number_of(collider_number_, c.collider); });
     file.close("PointData");
     file.close("Piece");
     file.write(folder_ / name);
@@ -182,7 +192,8 @@ void VtkSeries::write_contacts(const Frame& frame, const std::string& name) cons
 
 bool VtkSeries::colliders_changed(const Frame& frame) {
     const auto same = [](const auto& prev, const ColliderFrame& now) {
-        return prev.first == now.handle && prev.second.position == now.pose.position && prev.second.rotation == now.pose.rotation;
+        return prev.first == now.handle && prev.second.position == now.pose.position &&
+               prev.second.rotation == now.pose.rotation;
     };
     if (std::ranges::equal(colliders_prev_, frame.colliders, same)) return false;
     colliders_prev_.clear();
@@ -240,10 +251,11 @@ void VtkSeries::write_colliders(const Frame& frame, const std::string& name) con
 void VtkSeries::write_index() const {
     static constexpr const char* part_names[] = {"bodies", "contacts", "colliders"};
     write_file(folder_ / (name_ + ".pvd"), [&](std::ostream& out) {
-        out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
+        out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+               "byte_order=\"LittleEndian\">\n<Collection>\n";
         for (const auto& [time, part, file] : entries_)
-            out << "<DataSet timestep=\"" << number_text(time) << "\" group=\"\" part=\"" << part << "\" name=\"" << part_names[part]
-                << "\" file=\"" << escape_markup(file) << "\"/>\n";
+            out << "<DataSet timestep=\"" << number_text(time) << "\" group=\"\" part=\"" << part << "\" name=\""
+                << part_names[part] << "\" file=\"" << escape_markup(file) << "\"/>\n";
         out << "</Collection>\n</VTKFile>\n";
     });
 }

@@ -10,8 +10,9 @@
 
 namespace skerry {
 
-/// NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, whenever a collider came, went or moved, NAME_colliders_0000.vtp; NAME.pvd lists
-/// them by time. Bodies and colliders are numbered in the order in which they were first seen, and keep their number.
+/// NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, whenever a collider came, went or moved, NAME_colliders_0000.vtp;
+/// NAME.pvd lists them by time. Bodies and colliders are numbered in the order in which they were first seen, and keep
+/// their number.
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);

@@ -57,7 +57,8 @@ struct FlatDistance {
     Flat nearest;
 };
 
-/// Distance to r0 <= r <= r1, z0 <= z <= z1; r0 = -infinity for a solid one. Of equally near sides the end faces come first.
+/// Distance to r0 <= r <= r1, z0 <= z <= z1; r0 = -infinity for a solid one. Of equally near sides the end faces come
+/// first.
 FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Real z1) {
     const bool top = p.z >= 0.5 * (z0 + z1);
     const bool outer = r0 == -infinite || p.r >= 0.5 * (r0 + r1);
@@ -137,7 +138,8 @@ SurfacePoint local_distance(const ColliderGeometry& geometry, Index part, const 
         }
         case ColliderShape::bucket: {
             const AxialFrame frame(p);
-            return frame.lift(part == no_index ? distance_to_bucket(size, frame.p) : distance_to_bucket_part(size, part, frame.p));
+            return frame.lift(part == no_index ? distance_to_bucket(size, frame.p)
+                                               : distance_to_bucket_part(size, part, frame.p));
         }
         case ColliderShape::mesh:
             break;
@@ -147,7 +149,8 @@ SurfacePoint local_distance(const ColliderGeometry& geometry, Index part, const 
 
 }  // namespace
 
-SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion, const Vec3& world_point) {
+SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion,
+                                  const Vec3& world_point) {
     return distance_to_collider_part(geometry, motion, no_index, world_point);
 }
 
@@ -155,7 +158,8 @@ Index collider_part_count(ColliderShape shape) {
     return shape == ColliderShape::bucket ? 2 : 1;
 }
 
-SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part, const Vec3& world_point) {
+SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
+                                       const Vec3& world_point) {
     const Vec3 local = motion.rotation.transpose() * (world_point - motion.position);
     const SurfacePoint found = local_distance(geometry, part, local);
     return {found.distance, motion.rotation * found.normal, motion.position + motion.rotation * found.point};

@@ -9,12 +9,13 @@ namespace skerry {
 
 namespace {
 
-// rad: an edge that bends less counts as flat. Left out, it lets two edges come nearer by at most a quarter of this fraction of the width of
-// its faces than the points around show: an eighth of the default contact distance.
+// rad: an edge that bends less counts as flat. Left out, it lets two edges come nearer by at most a quarter of this
+// fraction of the width of its faces than the points around show: an eighth of the default contact distance.
 constexpr Real min_bend = 0.01;
 
-// rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that border exactly. To
-// this comes what the step may turn: where a point is stopped, the edge behind it goes on and can cross another within the same step.
+// rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that
+// border exactly. To this comes what the step may turn: where a point is stopped, the edge behind it goes on and can
+// cross another within the same step.
 constexpr Real border_angle = 0.002;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -59,20 +60,23 @@ public:
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
         convex_ = fall > min_bend * other_width - closing;
         // Taken across from the one face or from the other, the bend is the same.
-        slack_ =
-            other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width / (width + other_width) / 2 : 0;
+        slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
+                                       (width + other_width) / 2
+                                 : 0;
     }
 
     bool convex() const { return convex_; }
 
-    /// m: how much nearer than the contact distance another edge may come, so that an edge that bends by min_bend starts to count where its points
-    /// have left the other, not with a gap below zero: blocks that lie on each other would tremble for ever.
+    /// m: how much nearer than the contact distance another edge may come, so that an edge that bends by min_bend
+    /// starts to count where its points have left the other, not with a gap below zero: blocks that lie on each other
+    /// would tremble for ever.
     Real slack() const { return slack_; }
 
     /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
         // The mean normal tells the outside of a nearly flat edge from its inside, which the borders cannot.
-        return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_[0] && direction.dot(into_[1]) <= border_[1];
+        return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_[0] &&
+               direction.dot(into_[1]) <= border_[1];
     }
 
 private:
@@ -91,8 +95,8 @@ private:
 
 }  // namespace
 
-EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first, Index second,
-                                  const PairScale& scale, Real near, Surfaces surfaces) {
+EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
+                                  Index second, const PairScale& scale, Real near, Surfaces surfaces) {
     const auto &ea = surface.edges.node[first], &eb = surface.edges.node[second];
     const Vec3 &a0 = position[ea[0]], &a1 = position[ea[1]], &b0 = position[eb[0]], &b1 = position[eb[1]];
     EdgeEdgeContact contact;
@@ -113,7 +117,8 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
     if (wedge_b.faces(normal) && wedge_a.faces(-normal)) {
         contact.distance = distance;
         contact.normal = normal;
-    } else if (surfaces == Surfaces::may_overlap && distance <= scale.edge_depth && wedge_b.faces(-normal) && wedge_a.faces(normal)) {
+    } else if (surfaces == Surfaces::may_overlap && distance <= scale.edge_depth && wedge_b.faces(-normal) &&
+               wedge_a.faces(normal)) {
         contact.distance = -distance;  // they have passed each other
         contact.normal = -normal;
     } else {

@@ -1,10 +1,10 @@
-// An edge against an edge (methods.md 6, item 4).
+// An edge against an edge (docs/methods/collision.md 4.4).
 #pragma once
 
 #include <span>
 
 #include "components/surface_table.h"
-#include "systems/collision/contact_reach.h"
+#include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/point_triangle_contact.h"
 #include "systems/geometry/closest_points.h"
 
@@ -19,11 +19,11 @@ struct EdgeEdgeContact {
     Real sleep = 0;  // m: travel after which this may be a contact of gap 0
 };
 
-/// Two edges that cross, each on the outer side of the other. Only edges at which their surface is convex take part, and only where the
-/// normal lies between those of the faces at both edges: elsewhere a point and a face are nearer. Edges inside of a nearly flat face are
-/// left out, their points cover them. Features further than `near` are not looked at closely.
-/// Edges of surfaces that may overlap can also have passed each other.
-EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first, Index second,
-                                  const PairScale& scale, Real near, Surfaces surfaces);
+/// Two edges that cross, each on the outer side of the other. Only edges at which their surface is convex take part,
+/// and only where the normal lies between those of the faces at both edges: elsewhere a point and a face are nearer.
+/// Edges inside of a nearly flat face are left out, their points cover them. Features further than `near` are not
+/// looked at closely. Edges of surfaces that may overlap can also have passed each other.
+EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
+                                  Index second, const PairScale& scale, Real near, Surfaces surfaces);
 
 }  // namespace skerry

@@ -9,13 +9,13 @@ namespace skerry {
 
 namespace {
 
-// A point that is on the border between two features by less than this fraction of its distance (and of an edge) belongs to both: a contact
-// found twice does no harm, one lost by rounding does.
+// A point that is on the border between two features by less than this fraction of its distance (and of an edge)
+// belongs to both: a contact found twice does no harm, one lost by rounding does.
 constexpr Real tie_fraction = 1e-6;
 constexpr Real tie_edge_fraction = 1e-12;
 
-// Nearer to an edge or vertex than this fraction of the contact distance (or of an edge) the direction to the point is not trusted as normal
-// (methods.md 6, item 5).
+// Nearer to an edge or vertex than this fraction of the contact distance (or of an edge) the direction to the point is
+// not trusted as normal (docs/methods/collision.md 4.3).
 constexpr Real normal_distance_fraction = 0.1;
 constexpr Real normal_edge_fraction = 1e-6;
 
@@ -27,7 +27,9 @@ struct Query {
     Real distance;  // m, its length
 
     const Vec3& at(Index node) const { return position[node]; }
-    Real tie(const Vec3& direction) const { return (tie_fraction * distance + tie_edge_fraction * scale.edge) * direction.norm(); }
+    Real tie(const Vec3& direction) const {
+        return (tie_fraction * distance + tie_edge_fraction * scale.edge) * direction.norm();
+    }
     /// Zero for a triangle without area.
     Vec3 unit_normal(Index triangle) const {
         const auto& n = surface.triangles.node[triangle];
@@ -52,8 +54,8 @@ Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face
     return face_normal + q.unit_normal(other);
 }
 
-/// Mean normal of the faces around the nearest vertex, weighted by their angles (Baerentzen, Aanaes 2005: its sign tells inside from
-/// outside); zero when one of the faces comes nearer to the point.
+/// Mean normal of the faces around the nearest vertex, weighted by their angles (Baerentzen, Aanaes 2005: its sign
+/// tells inside from outside); zero when one of the faces comes nearer to the point.
 Vec3 vertex_normal(const Query& q, Index triangle, std::size_t k) {
     const VertexTable& vertices = q.surface.vertices;
     const Index vertex = q.surface.triangles.vertex[triangle][k];
@@ -73,7 +75,8 @@ Vec3 vertex_normal(const Query& q, Index triangle, std::size_t k) {
 }
 
 /// Contact with an edge or a vertex around which the faces have this mean normal.
-void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, Surfaces surfaces, PointTriangleContact& contact) {
+void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, Surfaces surfaces,
+                  PointTriangleContact& contact) {
     const Real length = mean_normal.norm();
     if (!(length > 0)) return;
     const bool outside = q.offset.dot(mean_normal) >= 0;
@@ -87,14 +90,16 @@ void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind,
     if (!outside && q.distance > (straight_behind ? q.scale.face_depth : q.scale.edge_depth)) return;
     contact.side = outside ? Side::outside : Side::behind;
     contact.distance = outside ? q.distance : -q.distance;
-    const bool noise = q.distance <= std::max(normal_distance_fraction * q.scale.contact_distance, normal_edge_fraction * q.scale.edge);
+    const bool noise = q.distance <= std::max(normal_distance_fraction * q.scale.contact_distance,
+                                              normal_edge_fraction * q.scale.edge);
     contact.normal = noise ? Vec3(mean_normal / length) : Vec3(q.offset / contact.distance);
 }
 
 }  // namespace
 
-PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position, const Vec3& point, Index triangle,
-                                            const PairScale& scale, Real near, Surfaces surfaces) {
+PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
+                                            const Vec3& point, Index triangle, const PairScale& scale, Real near,
+                                            Surfaces surfaces) {
     const auto& corner = surface.triangles.node[triangle];
     PointTriangleContact contact;
     contact.closest = closest_point_on_triangle(point, position[corner[0]], position[corner[1]], position[corner[2]]);

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/contact_key.h"
-#include "systems/collision/contact_reach.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/search/step_reach.h"
 #include "systems/collision/tree/box.h"
@@ -47,23 +47,25 @@ Real mean_body_edge(const BodyTable& body) {
 }
 
 /// Boxes of bodies and until when they hold.
-void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real common_travel,
-                    SearchState& search) {
+void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
+                    Real common_travel, SearchState& search) {
     const BodyTable& body = inputs.body;
     SearchMemory& memory = search.memory;
     parallel_for(executor, body.slot.size(), bodies_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
-            const Real travel = is_movable(body, static_cast<Index>(b)) ? settings.broad_skin / 2 * body.mean_edge[b] : common_travel;
-            search.body_valid_until[b] = memory.body_front[b] - 2 * body.drift[b] + travel;
+            const Real travel =
+                is_movable(body, static_cast<Index>(b)) ? settings.broad_skin / 2 * body.mean_edge[b] : common_travel;
+            search.body_valid_until[b] = memory.body_travel_bound[b] - 2 * body.displacement[b] + travel;
             fit(inputs, static_cast<Index>(b), memory.box[b], memory.sphere[b]);
-            const Real margin = memory.body_front[b] - body.travel[b] + travel + body.contact_distance[b] / 2;
+            const Real margin = memory.body_travel_bound[b] - body.travel[b] + travel + body.contact_distance[b] / 2;
             widen(memory.box[b], margin);
             memory.sphere[b].radius += margin;
         }
     });
 }
 
-/// How far the points of a collider that matter are from its origin: its own size; of a plane, the furthest point of any body's box.
+/// How far the points of a collider that matter are from its origin: its own size; of a plane, the furthest point of
+/// any body's box.
 Real collider_extent(const CollisionInputs& inputs, Index collider, std::span<const Aabb> body_box) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
@@ -84,7 +86,7 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     for (std::size_t c = 0; c < collider.slot.size(); ++c) {
         const Index row = static_cast<Index>(c);
         memory.collider_extent[c] = collider_extent(inputs, row, memory.box.span().first(body_count));
-        // Not front minus travel: a shape that turns may have travelled without bounds.
+        // Not travel_bound minus travel: a shape that turns may have travelled without bounds.
         memory.collider_margin[c] = collider_reach(inputs, row, memory.collider_extent[c], h) + common_travel;
         search.collider_valid_until[c] = collider.travel[c] + memory.collider_margin[c];
         memory.box[body_count + c] = collider_box(collider.geometry[c], collider.motion[c]);
@@ -118,7 +120,8 @@ public:
         }
         add_planes();
         add_self_pairs();
-        std::sort(memory_.pairs.begin(), memory_.pairs.end(), [](const FoundPair& a, const FoundPair& b) { return a.key < b.key; });
+        std::sort(memory_.pairs.begin(), memory_.pairs.end(),
+                  [](const FoundPair& a, const FoundPair& b) { return a.key < b.key; });
     }
 
 private:
@@ -130,7 +133,8 @@ private:
         for (std::size_t row = 0; row < memory_.box.size(); ++row) {
             const Index index = static_cast<Index>(row);
             const bool bounded = memory_.box[row].lower.allFinite() && memory_.box[row].upper.allFinite();
-            const bool mesh = index >= body_count() && inputs_.collider.geometry[index - body_count()].shape == ColliderShape::mesh;
+            const bool mesh =
+                index >= body_count() && inputs_.collider.geometry[index - body_count()].shape == ColliderShape::mesh;
             if (bounded && !mesh) memory_.order.push_back(index);
         }
     }
@@ -167,7 +171,8 @@ private:
     }
 
     void add_collider(Index body, Index collider) {
-        add_row(collider_pair_key(inputs_.body.slot[body], inputs_.collider.slot[collider]), PairKind::collider, body, collider);
+        add_row(collider_pair_key(inputs_.body.slot[body], inputs_.collider.slot[collider]), PairKind::collider, body,
+                collider);
     }
 
     /// A new pair is searched at once: only that tells how far apart the two really are.
@@ -181,7 +186,8 @@ private:
             const Real margin = memory_.collider_margin[c];
             for (Index b = 0; b < body_count(); ++b) {
                 if (!is_movable(inputs_.body, b) || inputs_.body.vertices[b].size() == 0) continue;
-                if (distance_to_plane(memory_.box[b], inputs_.collider.motion[c]) <= margin) add_collider(b, static_cast<Index>(c));
+                if (distance_to_plane(memory_.box[b], inputs_.collider.motion[c]) <= margin)
+                    add_collider(b, static_cast<Index>(c));
             }
         }
     }
@@ -197,7 +203,8 @@ private:
     SearchMemory& memory_;
 };
 
-/// Puts memory.pairs in place of the old rows. Pairs that stay take their lists along; the memory of those that went serves new ones.
+/// Puts memory.pairs in place of the old rows. Pairs that stay take their lists along; the memory of those that went
+/// serves new ones.
 void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
     const std::size_t old_count = pairs.size(), count = memory.pairs.size();
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
@@ -235,7 +242,7 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
     pairs.second.resize(count);
     pairs.valid_until.resize(count);
     pairs.state.resize(count);
-    pairs.front.resize(count);
+    pairs.travel_bound.resize(count);
     for (std::size_t row = 0; row < count; ++row) {
         const FoundPair& found = memory.pairs[row];
         pairs.key[row] = found.key;
@@ -249,8 +256,8 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
 
 }  // namespace
 
-void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool afresh,
-                SearchState& search, PairTable& pairs) {
+void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+                bool afresh, SearchState& search, PairTable& pairs) {
     const std::size_t body_count = inputs.body.slot.size(), collider_count = inputs.collider.slot.size();
     search.body_valid_until.resize(body_count);
     search.collider_valid_until.resize(collider_count);

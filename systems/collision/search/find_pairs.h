@@ -3,15 +3,16 @@
 
 #include "components/pair_table.h"
 #include "jobs/executor.h"
-#include "systems/collision/collision_inputs.h"
+#include "systems/collision/inputs/collision_inputs.h"
 
 namespace skerry {
 
-/// Lists every pair whose boxes are nearer than what both may travel until their front reaches body_valid_until or collider_valid_until,
-/// which are set here. Pairs in key order. A pair that stays keeps its candidates, unless everything is searched `afresh`. Left out:
-/// bodies without a surface, pairs without a deformable body. Sweeps along the axis on which the boxes are spread widest; planes are
-/// compared with every body. Wants memory.body_front of this step. Boxes in parallel over bodies.
-void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool afresh,
-                SearchState& search, PairTable& pairs);
+/// Lists every pair whose boxes are nearer than what both may travel until their travel_bound reaches body_valid_until
+/// or collider_valid_until, which are set here. Pairs in key order. A pair that stays keeps its candidates, unless
+/// everything is searched `afresh`. Left out: bodies without a surface, pairs without a deformable body. Sweeps along
+/// the axis on which the boxes are spread widest; planes are compared with every body. Wants memory.body_travel_bound
+/// of this step. Boxes in parallel over bodies.
+void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+                bool afresh, SearchState& search, PairTable& pairs);
 
 }  // namespace skerry

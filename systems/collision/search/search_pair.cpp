@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "components/check.h"
-#include "systems/collision/contact_key.h"
+#include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/tree/leaf_boxes.h"
 #include "systems/geometry/closest_points.h"
@@ -17,7 +17,8 @@ namespace {
 
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
-// Two trees over at most 2^31 triangles are at most 2 * 32 levels deep together, and a level leaves at most two waiting pairs.
+// Two trees over at most 2^31 triangles are at most 2 * 32 levels deep together, and a level leaves at most two waiting
+// pairs.
 constexpr std::size_t max_waiting = 192;
 
 template <std::size_t Size>
@@ -27,7 +28,8 @@ bool share_node(const std::array<Index, Size>& a, Index node) {
 
 class BodySearch {
 public:
-    BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes, Column<FoundCandidate>& found)
+    BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+               Column<FoundCandidate>& found)
         : inputs_(inputs),
           triangle_(inputs.surface.triangles),
           pair_(pair),
@@ -123,8 +125,9 @@ private:
                 if (!(triangle_.owned_vertices[row] >> k & 1)) continue;
                 const Index n = triangle_.node[row][k];
                 const Aabb point{position(n), position(n)};
-                for_each_lane(lanes_near(other, point, radius_squared_),
-                              [&](std::size_t j) { compare_point(n, triangle_.vertex[row][k], leaf_triangle(other)[j], of_second); });
+                for_each_lane(lanes_near(other, point, radius_squared_), [&](std::size_t j) {
+                    compare_point(n, triangle_.vertex[row][k], leaf_triangle(other)[j], of_second);
+                });
             }
         });
     }
@@ -132,10 +135,12 @@ private:
     void compare_point(Index n, Index vertex, Index triangle, bool of_second) {
         const auto& corner = triangle_.node[triangle];
         const Real squared =
-            closest_point_on_triangle(position(n), position(corner[0]), position(corner[1]), position(corner[2])).distance_squared;
+            closest_point_on_triangle(position(n), position(corner[0]), position(corner[1]), position(corner[2]))
+                .distance_squared;
         if (!(squared < radius_squared_) || (self_ && excluded_at_rest(n, corner))) return;
-        add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin, triangle - triangles(of_second).begin), vertex,
-             triangle},
+        add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin,
+                                    triangle - triangles(of_second).begin),
+             vertex, triangle},
             squared, pair_.scale.zone);
     }
 
@@ -163,7 +168,8 @@ private:
                 out.node[out.count++] = ends;
             }
         });
-        for (std::size_t i = out.count; i % leaf_lanes != 0; ++i) set_lane(out.box[i / leaf_lanes], i % leaf_lanes, empty_box());
+        for (std::size_t i = out.count; i % leaf_lanes != 0; ++i)
+            set_lane(out.box[i / leaf_lanes], i % leaf_lanes, empty_box());
     }
 
     /// Edge i of one list with those of the other from `first` on.
@@ -179,14 +185,16 @@ private:
     void compare_edges(const LeafEdges& a, std::size_t i, const LeafEdges& b, std::size_t j) {
         const auto &na = a.node[i], &nb = b.node[j];
         const Real squared =
-            closest_points_of_segments(position(na[0]), position(na[1]), position(nb[0]), position(nb[1])).distance_squared;
+            closest_points_of_segments(position(na[0]), position(na[1]), position(nb[0]), position(nb[1]))
+                .distance_squared;
         if (!(squared < edge_radius_squared_) || (self_ && excluded_at_rest(na, nb))) return;
         add_edges(a.edge[i], b.edge[j], squared);
     }
 
     void add_edges(Index a, Index b, Real squared) {
         if (self_ && a > b) std::swap(a, b);
-        const Index first = a - inputs_.body.edges[pair_.first].begin, second = b - inputs_.body.edges[pair_.second].begin;
+        const Index first = a - inputs_.body.edges[pair_.first].begin,
+                    second = b - inputs_.body.edges[pair_.second].begin;
         add({edge_edge_feature(first, second), a, b}, squared, pair_.scale.edge_depth);
     }
 
@@ -202,7 +210,8 @@ private:
         if (share_node(corner, point)) return true;
         if (inputs_.rest_position.empty()) return false;
         const auto& rest = inputs_.rest_position;
-        const Real squared = closest_point_on_triangle(rest[point], rest[corner[0]], rest[corner[1]], rest[corner[2]]).distance_squared;
+        const Real squared =
+            closest_point_on_triangle(rest[point], rest[corner[0]], rest[corner[1]], rest[corner[2]]).distance_squared;
         return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
@@ -210,13 +219,14 @@ private:
         if (share_node(b, a[0]) || share_node(b, a[1])) return true;
         if (inputs_.rest_position.empty()) return false;
         const auto& rest = inputs_.rest_position;
-        const Real squared = closest_points_of_segments(rest[a[0]], rest[a[1]], rest[b[0]], rest[b[1]]).distance_squared;
+        const Real squared =
+            closest_points_of_segments(rest[a[0]], rest[a[1]], rest[b[0]], rest[b[1]]).distance_squared;
         return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
     /// It sleeps until it may have come within the zone in which it is looked at closely.
     void add(const Candidate& candidate, Real squared, Real zone) {
-        found_.push_back({candidate, pair_.datum + std::sqrt(squared) - zone});
+        found_.push_back({candidate, pair_.travel_base + std::sqrt(squared) - zone});
     }
 
     const CollisionInputs& inputs_;
@@ -233,16 +243,19 @@ private:
     std::size_t waiting_count_ = 0;
 };
 
-Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes, Column<FoundCandidate>& found) {
+Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+                   Column<FoundCandidate>& found) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return infinite;
     const Real apart =
-        std::max(pair.apart, std::sqrt(distance_squared(boxes.node[first.begin], boxes.node[second.begin]))) - pair.scale.zone;
-    if (apart >= pair.margin) return pair.datum + apart;
+        std::max(pair.apart, std::sqrt(distance_squared(boxes.node[first.begin], boxes.node[second.begin]))) -
+        pair.scale.zone;
+    if (apart >= pair.margin) return pair.travel_base + apart;
     BodySearch(inputs, pair, boxes, found).run();
-    std::sort(found.begin(), found.end(),
-              [](const FoundCandidate& a, const FoundCandidate& b) { return a.candidate.feature < b.candidate.feature; });
-    return pair.datum + pair.margin;
+    std::sort(found.begin(), found.end(), [](const FoundCandidate& a, const FoundCandidate& b) {
+        return a.candidate.feature < b.candidate.feature;
+    });
+    return pair.travel_base + pair.margin;
 }
 
 Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found) {
@@ -258,15 +271,17 @@ Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Co
             const Real distance = distance_to_collider_part(geometry, motion, part, point).distance;
             nearest = distance < nearest ? distance : nearest;
             if (!(distance < radius)) continue;
-            found.push_back({{point_collider_feature(v - vertices.begin, part), v, pair.second}, pair.datum + distance - pair.scale.zone});
+            found.push_back({{point_collider_feature(v - vertices.begin, part), v, pair.second},
+                             pair.travel_base + distance - pair.scale.zone});
         }
     }
-    return pair.datum + std::max(pair.margin, nearest - pair.scale.zone);
+    return pair.travel_base + std::max(pair.margin, nearest - pair.scale.zone);
 }
 
 }  // namespace
 
-Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes, Column<FoundCandidate>& found) {
+Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+                 Column<FoundCandidate>& found) {
     found.clear();
     if (pair.kind == PairKind::collider) return search_collider(inputs, pair, found);
     return search_bodies(inputs, pair, boxes, found);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "components/pair_table.h"
-#include "systems/collision/collision_inputs.h"
-#include "systems/collision/contact_reach.h"
+#include "systems/collision/inputs/collision_inputs.h"
+#include "systems/collision/inputs/contact_reach.h"
 
 namespace skerry {
 
@@ -12,14 +12,16 @@ struct PairToSearch {
     Index first;
     Index second;
     PairScale scale;
-    Real datum;   // m, pair_datum of both
-    Real margin;  // m: features nearer than scale.zone + margin are listed
-    Real apart;   // m, a lower bound of the distance of two bodies
+    Real travel_base;  // m, pair_travel_base of both
+    Real margin;       // m: features nearer than scale.zone + margin are listed
+    Real apart;        // m, a lower bound of the distance of two bodies
 };
 
-/// Lists the near features of a pair in feature order, each once: points against triangles both ways and edges against edges (by two trees
-/// whose boxes fit the present positions), or points against the parts of a collider. In a body's pair with itself features that share a
-/// node are left out, and those that are nearer than the contact distance at rest. Returns until which front the list is complete.
-Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes, Column<FoundCandidate>& found);
+/// Lists the near features of a pair in feature order, each once: points against triangles both ways and edges against
+/// edges (by two trees whose boxes fit the present positions), or points against the parts of a collider. In a body's
+/// pair with itself features that share a node are left out, and those that are nearer than the contact distance at
+/// rest. Returns until which travel_bound the list is complete.
+Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+                 Column<FoundCandidate>& found);
 
 }  // namespace skerry

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/collision/contact_reach.h"
+#include "systems/collision/inputs/contact_reach.h"
 
 namespace skerry {
 
@@ -26,7 +26,8 @@ bool stands_still(const RigidMotion& motion) {
 Real body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure, Real h) {
     Real speed = inputs.body.max_speed[body];
     const Index collider = inputs.body.collider[body];
-    const bool scripted = inputs.body.kind[body] == BodyKind::kinematic && !stands_still(inputs.collider.motion[collider]);
+    const bool scripted =
+        inputs.body.kind[body] == BodyKind::kinematic && !stands_still(inputs.collider.motion[collider]);
     if (measure || scripted) speed = std::max(speed, surface_speed(inputs, body));
     // Gravity acts on two bodies alike, yet the other partner may be held: each counts it in full.
     return reach(h, speed, settings.gravity, inputs.body.contact_distance[body] / 2);

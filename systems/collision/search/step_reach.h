@@ -2,13 +2,13 @@
 #pragma once
 
 #include "components/pair_table.h"
-#include "systems/collision/collision_inputs.h"
+#include "systems/collision/inputs/collision_inputs.h"
 
 namespace skerry {
 
-/// What a body may add to the closing of a gap in this step, m: half of a pair's reach. Its speed is that of its last motion, which
-/// check_state measured. `measure`: the velocities of the surface themselves count, too (a body that has not moved yet, or a mesh
-/// collider, whose script may start it at any time).
+/// What a body may add to the closing of a gap in this step, m: half of a pair's reach. Its speed is that of its last
+/// motion, which check_state measured. `measure`: the velocities of the surface themselves count, too (a body that has
+/// not moved yet, or a mesh collider, whose script may start it at any time).
 Real body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure, Real h);
 
 /// The same of a collider whose points of interest are at most `extent` from its origin.

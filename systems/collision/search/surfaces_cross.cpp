@@ -32,20 +32,23 @@ public:
         const BvhNode &own = inputs_.bvh_node[a], &other = inputs_.bvh_node[b];
         if (own.count > 0 && other.count > 0) return leaves_cross(own, other, same);
         if (same) return run(a + 1, a + 1) || run(own.right, own.right) || run(a + 1, own.right);
-        if (other.count > 0 || (own.count == 0 && own.skip - a >= other.skip - b)) return run(a + 1, b) || run(own.right, b);
+        if (other.count > 0 || (own.count == 0 && own.skip - a >= other.skip - b))
+            return run(a + 1, b) || run(own.right, b);
         return run(a, b + 1) || run(a, other.right);
     }
 
 private:
     bool leaves_cross(const BvhNode& own, const BvhNode& other, bool same) const {
-        constexpr Real overlap = std::numeric_limits<Real>::min();  // squared distances are below this; denormal numbers may count as 0
+        // squared distances are below this; denormal numbers may count as 0
+        constexpr Real overlap = std::numeric_limits<Real>::min();
         const LeafBoxes &first = boxes_.leaf[own.leaf], &second = boxes_.leaf[other.leaf];
         bool crossing = false;
         for (std::size_t i = 0; i < static_cast<std::size_t>(own.count) && !crossing; ++i) {
             unsigned lanes = lanes_below(distance_squared(second, lane_of(first, i)), overlap);
             if (same) lanes &= ~0U << (i + 1);  // each pair once
             for_each_lane(lanes, [&](std::size_t j) {
-                crossing = crossing || triangles_cross(inputs_.leaf_triangle[own.leaf][i], inputs_.leaf_triangle[other.leaf][j]);
+                crossing = crossing ||
+                           triangles_cross(inputs_.leaf_triangle[own.leaf][i], inputs_.leaf_triangle[other.leaf][j]);
             });
         }
         return crossing;
@@ -60,7 +63,8 @@ private:
             const Index p = edge[k], q = edge[(k + 1) % 3];
             if (!passes_through(x[p], x[q], x[face[0]], x[face[1]], x[face[2]])) continue;
             if (pair_.kind != PairKind::self) return true;
-            if (was_far_at_rest(inputs_, pair_.scale, p, face) && was_far_at_rest(inputs_, pair_.scale, q, face)) return true;
+            if (was_far_at_rest(inputs_, pair_.scale, p, face) && was_far_at_rest(inputs_, pair_.scale, q, face))
+                return true;
         }
         return false;
     }
@@ -73,7 +77,8 @@ private:
 }  // namespace
 
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes) {
-    return CrossingSearch(inputs, pair, boxes).run(inputs.body.bvh_nodes[pair.first].begin, inputs.body.bvh_nodes[pair.second].begin);
+    return CrossingSearch(inputs, pair, boxes)
+        .run(inputs.body.bvh_nodes[pair.first].begin, inputs.body.bvh_nodes[pair.second].begin);
 }
 
 }  // namespace skerry

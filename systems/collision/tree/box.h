@@ -1,4 +1,5 @@
-// Axis-aligned boxes that stand numbers which are not finite: such a point does not enter a box, and an empty box is far from everything.
+// Axis-aligned boxes that stand numbers which are not finite: such a point does not enter a box, and an empty box is
+// far from everything.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +32,9 @@ inline void grow(Aabb& box, const Aabb& other) {
 
 /// m^2, 0 when they overlap. Written out: half of a search is this, and no loop is unrolled at -O2.
 inline Real distance_squared(const Aabb& a, const Aabb& b) {
-    const auto gap = [&](int i) { return std::max(Real(0), std::max(a.lower[i] - b.upper[i], b.lower[i] - a.upper[i])); };
+    const auto gap = [&](int i) {
+        return std::max(Real(0), std::max(a.lower[i] - b.upper[i], b.lower[i] - a.upper[i]));
+    };
     const Real x = gap(0), y = gap(1), z = gap(2);
     return x * x + y * y + z * z;
 }

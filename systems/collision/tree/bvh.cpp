@@ -22,8 +22,8 @@ struct Build {
         return position[node[0]] + position[node[1]] + position[node[2]];
     }
 
-    /// Splits the triangles first .. end - 1 of `order` about the median of the longest axis, where it leaves full leaves: depth is log2,
-    /// whatever the shape.
+    /// Splits the triangles first .. end - 1 of `order` about the median of the longest axis, where it leaves full
+    /// leaves: depth is log2, whatever the shape.
     void append(Index first, Index end) {
         const Index row = static_cast<Index>(bvh.node.size());
         bvh.node.push_back({row + 1, no_index, no_index, 0});
@@ -74,14 +74,16 @@ Aabb fit_leaf(const LeafTriangles& triangle, Index count, std::span<const std::a
 
 }  // namespace
 
-BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, BvhTable& bvh,
-                     BvhLeafTable& leaves) {
-    const auto first_node = static_cast<Index>(bvh.node.size()), first_leaf = static_cast<Index>(leaves.triangle.size());
+BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node,
+                     std::span<const Vec3> position, BvhTable& bvh, BvhLeafTable& leaves) {
+    const auto first_node = static_cast<Index>(bvh.node.size()),
+               first_leaf = static_cast<Index>(leaves.triangle.size());
     if (triangles.size() == 0) return {{first_node, first_node}, {first_leaf, first_leaf}};
     Build build{triangle_node, position, {}, bvh, leaves};
     for (Index t = triangles.begin; t < triangles.end; ++t) build.order.push_back(t);
     build.append(0, triangles.size());
-    const BvhRanges ranges{{first_node, static_cast<Index>(bvh.node.size())}, {first_leaf, static_cast<Index>(leaves.triangle.size())}};
+    const BvhRanges ranges{{first_node, static_cast<Index>(bvh.node.size())},
+                           {first_leaf, static_cast<Index>(leaves.triangle.size())}};
     refit_bvh(ranges.nodes, bvh.node, leaves.triangle, triangle_node, position, bvh.box, leaves.box);
     return ranges;
 }

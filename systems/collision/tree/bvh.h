@@ -1,4 +1,4 @@
-// Bounding volume hierarchy over the triangles of one body (methods.md 6, item 2).
+// Bounding volume hierarchy over the triangles of one body (docs/methods/collision.md 3).
 #pragma once
 
 #include <span>
@@ -14,10 +14,11 @@ struct BvhRanges {
     Range leaves;  // of BvhLeafTable
 };
 
-/// Appends a tree over the triangles of one body, built from their present positions. A leaf holds up to eight triangles with their boxes side
-/// by side: a search compares one with all of them, and most of its time went into boxes.
-BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, BvhTable& bvh,
-                     BvhLeafTable& leaves);
+/// Appends a tree over the triangles of one body, built from their present positions. A leaf holds up to eight
+/// triangles with their boxes side by side: a search compares one with all of them, and most of its time went into
+/// boxes.
+BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node,
+                     std::span<const Vec3> position, BvhTable& bvh, BvhLeafTable& leaves);
 
 /// Fits the boxes of one tree around the present positions, bottom-up.
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafTriangles> leaf_triangle,

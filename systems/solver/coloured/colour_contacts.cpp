@@ -7,13 +7,13 @@
 namespace skerry {
 namespace {
 
-constexpr Index colour_limit = 64;
+constexpr Index colour_limit = 64;        // bits of ColouringMemory::colours_used
 constexpr Index tail_bin = colour_limit;  // the bins of hubs follow it
 
-/// A colour is split evenly into a number of blocks that 2, 4, 8 or 16 workers can share without remainder, of about 64 contacts: one takes
-/// a microsecond, claiming it a twentieth of that.
+/// A colour is split evenly into a number of blocks that 2, 4, 8 or 16 workers can share without remainder, of about 64
+/// contacts: one takes a microsecond, claiming it a twentieth of that.
 Index blocks_of_colour(Index contacts) {
-    constexpr std::uint32_t most_contacts = 64, even = 16;
+    constexpr std::uint32_t most_contacts = 64, even = 16;  // workers that share a phase evenly
     const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + most_contacts - 1) / most_contacts;
     return static_cast<Index>(least <= even ? std::bit_ceil(least) : (least + even - 1) / even * even);
 }
@@ -49,7 +49,8 @@ void count_degrees(std::span<const ContactNodes> contact, Index node_count, Colo
 
 /// Bins by colour, and by hub for the contacts that have one: the first of theirs. Returns the number of hubs.
 Index fill_bins(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
-    const bool has_hubs = std::any_of(memory.degree.begin(), memory.degree.end(), [](Index degree) { return degree > hub_degree; });
+    const bool has_hubs =
+        std::any_of(memory.degree.begin(), memory.degree.end(), [](Index degree) { return degree > hub_degree; });
     memory.colours_used.assign(static_cast<std::size_t>(node_count), 0);
     memory.bin.resize(contact.size());
     memory.bin_begin.assign(colour_limit + 1, 0);
@@ -85,7 +86,8 @@ Index fill_bins(std::span<const ContactNodes> contact, Index node_count, Colouri
 /// The contacts of each hub, in order.
 void list_hubs(Index hub_count, ColouringMemory& memory) {
     memory.hub_offset.assign(static_cast<std::size_t>(hub_count) + 1, 0);
-    for (Index hub = 0; hub < hub_count; ++hub) memory.hub_offset[hub + 1] = memory.hub_offset[hub] + memory.bin_begin[tail_bin + 1 + hub];
+    for (Index hub = 0; hub < hub_count; ++hub)
+        memory.hub_offset[hub + 1] = memory.hub_offset[hub] + memory.bin_begin[tail_bin + 1 + hub];
     memory.hub_item.resize(static_cast<std::size_t>(memory.hub_offset.back()));
     memory.hub_order.assign(static_cast<std::size_t>(hub_count), 0);
     for (std::size_t k = 0; k < memory.bin.size(); ++k) {
@@ -100,20 +102,22 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
     std::fill(memory.colours_used.begin(), memory.colours_used.end(), 0);
     memory.hub_colour.resize(static_cast<std::size_t>(hub_count));
     for (Index hub = 0; hub < hub_count; ++hub) {
-        const std::span<const Index> row =
-            std::span<const Index>(memory.hub_item.span())
-                .subspan(static_cast<std::size_t>(memory.hub_offset[hub]), static_cast<std::size_t>(memory.bin_begin[tail_bin + 1 + hub]));
+        const std::span<const Index> row = std::span<const Index>(memory.hub_item.span())
+                                               .subspan(static_cast<std::size_t>(memory.hub_offset[hub]),
+                                                        static_cast<std::size_t>(memory.bin_begin[tail_bin + 1 + hub]));
         FreeColour free{memory};
         for (const Index k : row) free.exclude(contact[k]);
         for (const Index k : row) free.take(contact[k]);
         memory.hub_colour[hub] = free.colour();
         memory.hub_order[hub] = hub;
     }
-    std::sort(memory.hub_order.begin(), memory.hub_order.end(),
-              [&](Index a, Index b) { return std::pair(memory.hub_colour[a], a) < std::pair(memory.hub_colour[b], b); });
+    std::sort(memory.hub_order.begin(), memory.hub_order.end(), [&](Index a, Index b) {
+        return std::pair(memory.hub_colour[a], a) < std::pair(memory.hub_colour[b], b);
+    });
 }
 
-/// Lays out phases and blocks, and turns the counts of the bins into the place of their first contact, or no_index for the tail.
+/// Lays out phases and blocks, and turns the counts of the bins into the place of their first contact, or no_index for
+/// the tail.
 class Layout {
 public:
     Layout(ColouringMemory& memory, ColouredOrder& order) : memory_(memory), order_(order) {
@@ -132,7 +136,8 @@ public:
             const Index count = begin, blocks = blocks_of_colour(count);
             begin_phase();
             begin = place_;
-            for (Index b = 0; b < blocks; ++b) order_.block_offset.push_back(place_ + static_cast<Index>(std::int64_t{count} * b / blocks));
+            for (Index b = 0; b < blocks; ++b)
+                order_.block_offset.push_back(place_ + static_cast<Index>(std::int64_t{count} * b / blocks));
             place_ += count;
             ++order_.colour_count;
         }
@@ -142,7 +147,8 @@ public:
         for (Index first = 0, last = 0; first < hub_count; first = last) {
             const Index colour = memory_.hub_colour[memory_.hub_order[first]];
             Index contacts = 0;
-            for (; last < hub_count && memory_.hub_colour[memory_.hub_order[last]] == colour; ++last) contacts += bin_of(last);
+            for (; last < hub_count && memory_.hub_colour[memory_.hub_order[last]] == colour; ++last)
+                contacts += bin_of(last);
             const bool alone = colour == colour_limit || contacts < smallest_colour;
             if (!alone) {
                 begin_phase();
@@ -201,12 +207,14 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
     for (const ContactNodes& nodes : contact) ++memory.node_offset[lowest(nodes) + 2];
     for (std::size_t n = 2; n < memory.node_offset.size(); ++n) memory.node_offset[n] += memory.node_offset[n - 1];
     memory.by_node.resize(contact.size());
-    for (std::size_t k = 0; k < contact.size(); ++k) memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
+    for (std::size_t k = 0; k < contact.size(); ++k)
+        memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Contacts of a colour by their nodes: workers that take the same share of each colour then meet the same nodes again. Those of the hubs and
-/// of the tail in their own order.
-void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory, ColouredOrder& order) {
+/// Contacts of a colour by their nodes: workers that take the same share of each colour then meet the same nodes again.
+/// Those of the hubs and of the tail in their own order.
+void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
+                    ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);
     order.contact.resize(contact.size());
     const auto in_colour = [&](Index bin) { return bin < colour_limit && memory.bin_begin[bin] != no_index; };
@@ -222,7 +230,8 @@ void place_contacts(std::span<const ContactNodes> contact, Index node_count, Ind
 
 }  // namespace
 
-void colour_contacts(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory, ColouredOrder& order) {
+void colour_contacts(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory,
+                     ColouredOrder& order) {
     count_degrees(contact, node_count, memory);
     const Index hub_count = fill_bins(contact, node_count, memory);
     if (hub_count > 0) colour_hubs(contact, hub_count, memory);

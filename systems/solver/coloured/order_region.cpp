@@ -1,7 +1,5 @@
 #include "systems/solver/coloured/order_region.h"
 
-#include "systems/solver/coloured/coloured_operator.h"
-
 namespace skerry {
 namespace {
 
@@ -9,7 +7,8 @@ namespace {
 bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& team, ColouredRegion& region) {
     const bool as_many = region.moving.size() == row.size();
     region.moving.resize(row.size());
-    if (region.loaded.size() < row.size() / row_block + 1) region.loaded.resize(row.size() / row_block + 1);
+    const std::size_t blocks = static_cast<std::size_t>(row_block_count(row.size()));
+    if (region.same_nodes.size() < blocks) region.same_nodes.resize(blocks);
     for_row_blocks(team, row.size(), [&](std::size_t begin, std::size_t end, Index block) {
         bool same = true;
         for (std::size_t k = begin; k < end; ++k) {
@@ -17,15 +16,15 @@ bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& te
             same = same && nodes == region.moving[k];
             region.moving[k] = nodes;
         }
-        region.loaded[block].separate = same;
+        region.same_nodes[block] = same;
     });
     bool same = as_many;
-    for (Index block = 0; block < row_block_count(row.size()); ++block) same = same && region.loaded[block].separate;
+    for (std::size_t block = 0; block < blocks; ++block) same = same && region.same_nodes[block] != 0;
     return same;
 }
 
-/// Numbers the nodes in the order in which contacts name them. A node's number is remembered by node; an entry left from elsewhere shows
-/// by the list not agreeing.
+/// Numbers the nodes in the order in which contacts name them. A node's number is remembered by node; an entry left
+/// from elsewhere shows by the list not agreeing.
 void number_nodes(std::span<Index> place, ColouredRegion& region) {
     region.node.clear();
     region.local.resize(region.moving.size());
@@ -58,13 +57,12 @@ ContactNodes moving_nodes(const RegionInputs& inputs, Index row) {
     return nodes;
 }
 
-bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> place, ColouredRegion& region) {
+bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> place,
+                  ColouredRegion& region) {
     if (read_nodes(inputs, row, team, region)) return false;
     number_nodes(place, region);
     colour_contacts(region.local, static_cast<Index>(region.node.size()), region.colouring, region.order);
-    if (region.partial.size() < partial_count(region.order)) region.partial.resize(partial_count(region.order));
-    if (region.loaded.size() < partial_count(region.order)) region.loaded.resize(partial_count(region.order));
-    if (region.dissipated.size() < partial_count(region.order)) region.dissipated.resize(partial_count(region.order));
+    if (region.partial.size() < block_count(region.order)) region.partial.resize(block_count(region.order));
     return true;
 }
 

@@ -1,12 +1,13 @@
-// Small regions side by side: each lane holds one region of at most K contacts, in the dense form that lumped masses allow (methods.md 0.1,
-// fact A, and 2.7): u_i = q_i + sum_j C_ij r_j with a number C_ij. T is Real8, or Real for the twin of one lane that a test compares.
+// Small regions side by side: each lane holds one region of at most K contacts, in the dense form that lumped masses
+// allow (docs/methods/contact.md 2.1, docs/methods/region_solver.md 3): u_i = q_i + sum_j C_ij r_j with a number C_ij.
+// T is Real8, or Real for the twin of one lane that a test compares.
 #pragma once
 
 #include <array>
 #include <span>
 
 #include "systems/material/lane_math.h"
-#include "systems/solver/operators/lumped_operator.h"
+#include "systems/solver/local/lumped_contact.h"
 
 namespace skerry {
 
@@ -27,7 +28,7 @@ struct LaneProblem {
     LaneVec3<T> normal[K];         // unit; zero for a place that is not used
     LaneVec3<T> free_velocity[K];  // q, m/s
     LaneVec3<T> impulse[K];        // N s, the start and then the solution
-    T diagonal[K];                 // D of methods.md 2.2, 1/kg; zero for a place that is not used
+    T diagonal[K];                 // D of docs/methods/contact.md 2.1, 1/kg; zero for a place that is not used
     T inverse_diagonal[K];         // kg; likewise
     T friction[K];
     T scale;  // sqrt(J), of e_nat

@@ -7,7 +7,8 @@ namespace skerry {
 namespace {
 
 template <int K>
-void solve_padded(std::span<const LaneRegion> region, Real tolerance, Index max_iterations, Real relaxation, std::span<LaneResult> result) {
+void solve_padded(std::span<const LaneRegion> region, Real tolerance, Index max_iterations, Real relaxation,
+                  std::span<LaneResult> result) {
     LaneProblem<Real8, K> problem;
     clear(problem);
     LaneMask<Real8> filled{};
@@ -22,14 +23,15 @@ void solve_padded(std::span<const LaneRegion> region, Real tolerance, Index max_
         const int lane = static_cast<int>(l);
         result[l] = {static_cast<Index>(outcome.iterations[lane]), outcome.error[lane], outcome.solved[lane] != 0};
         if (!result[l].solved) continue;
-        for (std::size_t i = 0; i < region[l].impulse.size(); ++i) region[l].impulse[i] = lane_of(problem.impulse[i], lane);
+        for (std::size_t i = 0; i < region[l].impulse.size(); ++i)
+            region[l].impulse[i] = lane_of(problem.impulse[i], lane);
     }
 }
 
 }  // namespace
 
-void solve_lane_batch(std::size_t size_class, std::span<const LaneRegion> region, Real tolerance, Index max_iterations, Real relaxation,
-                      std::span<LaneResult> result) {
+void solve_lane_batch(std::size_t size_class, std::span<const LaneRegion> region, Real tolerance, Index max_iterations,
+                      Real relaxation, std::span<LaneResult> result) {
     SKERRY_CHECK(region.size() <= element_lanes && result.size() >= region.size());
     switch (lane_sizes[size_class]) {
         case 2:

@@ -1,18 +1,18 @@
-// Accelerated Gauss-Seidel on regions side by side: methods.md 2.4 in the dense form, every lane on its own. No operation goes across
-// lanes and a lane that is solved stands still, so a region's result does not depend on what the other lanes hold.
+// Accelerated Gauss-Seidel on regions side by side: docs/methods/region_solver.md 2, 3 in the dense form, every lane on
+// its own. No operation goes across lanes and a lane that is solved stands still, so a region's result does not depend
+// on what the other lanes hold.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "systems/solver/lanes/lane_problem.h"
+#include "systems/solver/methods/ags.h"
 
 namespace skerry {
 
 /// The watchdog of solve_ags does not bark before: until then the two are the same iteration.
-inline constexpr Index lane_sweep_limit = 60;
-
-template <class T>
-using LaneMask = decltype(T{} < T{});
+inline constexpr Index lane_sweep_limit = watchdog_patience;
 
 inline bool any_lane(bool mask) {
     return mask;
@@ -27,10 +27,6 @@ bool any_lane(const Mask& mask) {
 template <class T>
 LaneVec3<T> select(const LaneMask<T>& mask, const LaneVec3<T>& a, const LaneVec3<T>& b) {
     return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
-}
-template <class T>
-T larger(const T& a, const T& b) {
-    return a > b ? a : b;
 }
 
 /// u_i of the present impulse.
@@ -68,7 +64,7 @@ LaneVec3<T> project_lanes_onto_cone(const LaneVec3<T>& z, const LaneVec3<T>& nor
     return select<T>(mu * length <= -along, {zero, zero, zero}, inside);
 }
 
-/// e_nat of methods.md 2.1.
+/// e_nat of docs/methods/errors.md 2.
 template <class T, int K>
 T lane_error(const LaneProblem<T, K>& problem) {
     T sum{};
@@ -76,27 +72,24 @@ T lane_error(const LaneProblem<T, K>& problem) {
         const LaneVec3<T> u = lane_velocity(problem, i), &normal = problem.normal[i];
         const LaneVec3<T> tangential = u - dot(normal, u) * normal;
         const LaneVec3<T> shifted = u + (problem.friction[i] * square_root(dot(tangential, tangential))) * normal;
-        const LaneVec3<T> asked =
-            project_lanes_onto_cone<T>(problem.impulse[i] - problem.inverse_diagonal[i] * shifted, normal, problem.friction[i]);
+        const LaneVec3<T> asked = project_lanes_onto_cone<T>(problem.impulse[i] - problem.inverse_diagonal[i] * shifted,
+                                                             normal, problem.friction[i]);
         const LaneVec3<T> rest = problem.impulse[i] - asked;
         sum += problem.diagonal[i] * dot(rest, rest);
     }
     return square_root(sum) / problem.scale;
 }
 
-template <class T>
-struct LaneSweep {
-    T size, against;  // as SweepChange
-};
-
-/// Lanes outside of `active` keep their impulses.
+/// Lanes outside of `swept` keep their impulses.
 template <class T, int K>
-LaneSweep<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous, const LaneMask<T>& active, Real relaxation) {
-    LaneSweep<T> sum{};
+SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous, const LaneMask<T>& swept,
+                             Real relaxation) {
+    SweepChangeOf<T> sum{};
     for (int i = 0; i < K; ++i) {
         const LaneVec3<T> before = problem.impulse[i];
         const LaneVec3<T> stopping = before - (relaxation * problem.inverse_diagonal[i]) * lane_velocity(problem, i);
-        const LaneVec3<T> next = select<T>(active, project_lanes<T>(stopping, problem.normal[i], problem.friction[i]), before);
+        const LaneVec3<T> next =
+            select<T>(swept, project_lanes<T>(stopping, problem.normal[i], problem.friction[i]), before);
         const LaneVec3<T> change = next - before;
         sum.size += problem.diagonal[i] * dot(change, change);
         sum.against -= problem.diagonal[i] * dot(change, next - previous[i]);
@@ -105,51 +98,93 @@ LaneSweep<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous
     return sum;
 }
 
+/// What lanes have in place of the Delassus operators: the dense form, in which nothing is carried along. A lane that
+/// is not swept any longer keeps its impulses.
+template <class T, int K>
+class LaneOperator {
+public:
+    using Number = T;
+
+    LaneOperator(LaneProblem<T, K>& problem, const LaneMask<T>& swept) : problem_(problem), swept_(swept) {}
+
+    const LaneMask<T>& swept() const { return swept_; }
+    void keep_sweeping(const LaneMask<T>& lanes) { swept_ = lanes; }
+
+    SweepChangeOf<T> accelerated_sweep(Real relaxation) {
+        return sweep_lanes<T, K>(problem_, previous_, swept_, relaxation);
+    }
+    T error() const { return lane_error<T, K>(problem_); }
+    LaneMask<T> suggests_check(const T& change, Real tolerance) const {
+        return change <= (tolerance * tolerance) * (problem_.scale * problem_.scale);
+    }
+    void remember() { std::copy_n(problem_.impulse, K, previous_); }
+    void extrapolate(const T& factor) {
+        const LaneMask<T> swept = swept_;
+        for (int i = 0; i < K; ++i) {
+            const LaneVec3<T> now = problem_.impulse[i];
+            problem_.impulse[i] = select<T>(swept, now + factor * (now - previous_[i]), now);
+            previous_[i] = now;
+        }
+    }
+    void refresh_all() {}
+
+private:
+    LaneProblem<T, K>& problem_;
+    LaneVec3<T> previous_[K];
+    LaneMask<T> swept_;
+};
+
 template <class T>
 struct LaneOutcome {
     T iterations, error;
     LaneMask<T> solved;
 };
 
-/// Sweeps the `active` lanes until each is solved, or for max_iterations sweeps. A lane that is not solved then has no useful impulse.
+/// ErrorTest by lane. The last iteration is no reason to measure: what lanes do not finish is solved again without
+/// them.
 template <class T, int K>
-LaneOutcome<T> solve_lanes(LaneProblem<T, K>& problem, LaneMask<T> active, Real tolerance, Index max_iterations, Real relaxation) {
-    constexpr Real infinite = std::numeric_limits<Real>::infinity();
-    constexpr Real guard = 2;  // as in solve_ags
-    const T zero{}, one = zero + 1;
-    LaneOutcome<T> outcome{zero, zero, zero > zero};
-    LaneVec3<T> previous[K];
-    for (int i = 0; i < K; ++i) previous[i] = problem.impulse[i];
-    const T small = (tolerance * tolerance) * (problem.scale * problem.scale);
-    T momentum = one, smallest_change = zero + infinite;
-    Index check = 1;
-    for (Index iteration = 1; iteration <= max_iterations; ++iteration) {
-        const LaneSweep<T> change = sweep_lanes<T, K>(problem, previous, active, relaxation);
-        const bool all_due = iteration >= check;
-        const LaneMask<T> due = all_due ? active : LaneMask<T>(active & (change.size <= small));
-        if (any_lane(due)) {
-            const T error = lane_error<T, K>(problem);
-            const LaneMask<T> solved = due & (error <= zero + tolerance);
-            outcome.solved = outcome.solved | solved;
-            outcome.error = solved ? error : outcome.error;
-            outcome.iterations = solved ? zero + static_cast<Real>(iteration) : outcome.iterations;
-            active = active & !(due & !((error > zero + tolerance) & (error < zero + infinite)));  // solved, or not finite
-            if (!any_lane(active)) break;
-            if (all_due) check = next_check(iteration);
-        }
-        const T next_momentum = (1 + square_root(T(1 + 4 * momentum * momentum))) / 2;
-        smallest_change = change.size < smallest_change ? change.size : smallest_change;
-        const LaneMask<T> restart = (change.against > zero) | (change.size > guard * smallest_change);
-        const T extrapolation = restart ? zero : (momentum - 1) / next_momentum;
-        momentum = restart ? one : next_momentum;
-        smallest_change = restart ? change.size : smallest_change;
-        for (int i = 0; i < K; ++i) {
-            const LaneVec3<T> now = problem.impulse[i];
-            problem.impulse[i] = select<T>(active, now + extrapolation * (now - previous[i]), now);
-            previous[i] = now;
-        }
+class LaneTest {
+public:
+    LaneTest(LaneOperator<T, K>& op, Real tolerance) : op_(op), tolerance_(tolerance) {}
+
+    bool ends_after_sweep(Index iteration, const T& change, Index) {
+        const T zero{};
+        const bool all_due = iteration >= check_;
+        const LaneMask<T> due =
+            all_due ? op_.swept() : LaneMask<T>(op_.swept() & op_.suggests_check(change, tolerance_));
+        if (!any_lane(due)) return false;
+        const T error = op_.error();
+        const LaneMask<T> solved = due & (error <= zero + tolerance_);
+        outcome_.solved = outcome_.solved | solved;
+        outcome_.error = solved ? error : outcome_.error;
+        outcome_.iterations = solved ? zero + static_cast<Real>(iteration) : outcome_.iterations;
+        constexpr Real infinite = std::numeric_limits<Real>::infinity();
+        // those that are left are neither solved nor not finite
+        op_.keep_sweeping(op_.swept() & !(due & !((error > zero + tolerance_) & (error < zero + infinite))));
+        if (!any_lane(op_.swept())) return true;
+        if (all_due) check_ = next_check(iteration);
+        return false;
     }
-    return outcome;
+    const LaneOutcome<T>& outcome() const { return outcome_; }
+
+private:
+    LaneOperator<T, K>& op_;
+    Real tolerance_;
+    LaneOutcome<T> outcome_{};
+    Index check_ = 1;
+};
+
+/// Sweeps the `active` lanes until each is solved, or for max_iterations sweeps. A lane that is not solved then has no
+/// useful impulse.
+template <class T, int K>
+LaneOutcome<T> solve_lanes(LaneProblem<T, K>& problem, const LaneMask<T>& active, Real tolerance, Index max_iterations,
+                           Real relaxation) {
+    static_assert(SweptOperator<LaneOperator<T, K>>);
+    LaneOperator<T, K> op(problem, active);
+    LaneTest<T, K> test(op, tolerance);
+    AcceleratedSweeps<LaneOperator<T, K>, LaneTest<T, K>> sweeps(op, test, relaxation);
+    sweeps.run_to(max_iterations);
+    return test.outcome();
 }
 
 }  // namespace skerry

@@ -1,47 +1,38 @@
-// Accelerated projected gradients (Nesterov; Mazhar et al. 2015; methods.md 2.6): all contacts step at once, so that an iteration is one product
-// with W whatever the couplings are, and nothing depends on the order of the contacts.
+// Accelerated projected gradients (Nesterov; Mazhar et al. 2015; docs/methods/region_solver.md 5.3): all contacts step
+// at once, so that an iteration is one product with W whatever the couplings are, and nothing depends on the order of
+// the contacts.
 #pragma once
 
-#include "systems/solver/methods/power_iteration.h"
+#include "systems/solver/methods/error_test.h"
+#include "systems/solver/operators/power_iteration.h"
 
 namespace skerry {
 
-/// The projection is that of the operator's friction law: with `cone` the fixed point is the exact Coulomb solution for any step length
-/// (measured against De Saxce's shifted velocity and the projection onto the cone, which it beats; docs/solvers.md), but without a
-/// theorem of convergence; with `cone_convex` the method is the convex one of the literature and converges. An iteration is one product with W,
-/// be its step taken or not. Leaves the last impulse when it converged or the count is fixed, else the best one.
+/// The projection is that of the operator's friction law: with `cone` the fixed point is the exact Coulomb solution for
+/// any step length (measured against De Saxce's shifted velocity and the projection onto the cone, which it beats;
+/// docs/solvers.md), but without a theorem of convergence; with `cone_convex` the method is the convex one of the
+/// literature and converges. An iteration is one product with W, be its step taken or not. Leaves the last impulse when
+/// it converged or the count is fixed, else the best one.
 template <ContactOperator Op>
 class AcceleratedGradients {
 public:
-    AcceleratedGradients(Op& op, const SolveLimits& limits) : op_(op), limits_(limits), best_(op) {}
+    AcceleratedGradients(Op& op, const SolveLimits& limits) : op_(op), limits_(limits), test_(op, limits) {}
 
     SolveResult run() {
-        if (!limits_.fixed_iterations) {
-            const Real error = op_.error();
-            if (error <= limits_.tolerance || !std::isfinite(error)) return {0, error, error <= limits_.tolerance};
-            best_.offer(error);
-        }
+        if (!limits_.fixed_iterations && test_.ends(0)) return test_.result();
         start();
-        Index check = 1;
         for (Index iteration = 1; iteration <= limits_.max_iterations; ++iteration) {
             const bool taken = try_step();
-            const bool last = iteration == limits_.max_iterations;
-            if (!limits_.fixed_iterations && (last || (taken && iteration >= check))) {
-                const Real error = op_.error();
-                if (error <= limits_.tolerance || !std::isfinite(error)) return {iteration, error, error <= limits_.tolerance};
-                best_.offer(error);
-                check = next_check(iteration);
-            }
+            const bool due = iteration == limits_.max_iterations || (taken && test_.due(iteration));
+            if (!limits_.fixed_iterations && due && test_.ends(iteration)) return test_.result();
             if (taken) extrapolate();
         }
-        if (!limits_.fixed_iterations) return {limits_.max_iterations, best_.restore(), false};
-        const Real error = op_.error();
-        return {limits_.max_iterations, error, error <= limits_.tolerance};
+        return test_.give_up(limits_.max_iterations);
     }
 
 private:
     void start() {
-        constexpr Index power_steps = 10;  // the backtracking makes up for what they lack
+        constexpr Index power_steps = 10;  // products; the backtracking makes up for what they lack
         steepness_ = largest_eigenvalue(op_, power_steps, [](Index, const Vec4& v) { return v; });
         std::ranges::copy(op_.impulse(), start_.begin());
         std::ranges::copy(start_, previous_.begin());
@@ -49,12 +40,14 @@ private:
         std::ranges::copy(pull_, pull_previous_.begin());
     }
 
-    /// From the extrapolated impulse to the operator's. False when the step was longer than the curvature along it allows.
+    /// From the extrapolated impulse to the operator's. False when the step was longer than the curvature along it
+    /// allows.
     bool try_step() {
         const std::span<Vec4> impulse = op_.impulse();
         for (Index i = 0; i < op_.size(); ++i) {
             const Real mobility = op_.mobility(i);
-            impulse[i] = mobility > 0 ? op_.project(i, start_[i] + pull_[i] / (steepness_ * mobility)) : Vec4(Vec4::Zero());
+            impulse[i] =
+                mobility > 0 ? op_.project(i, start_[i] + pull_[i] / (steepness_ * mobility)) : Vec4(Vec4::Zero());
         }
         op_.refresh();
         op_.residual(pull_next_);
@@ -67,11 +60,12 @@ private:
             against_ -= op_.mobility(i) * change.dot(impulse[i] - previous_[i]);
         }
         if (!(curvature > steepness_ * size)) return true;
-        steepness_ = std::max(1.05 * curvature / size, 1.2 * steepness_);
+        steepness_ = std::max(beyond_curvature * curvature / size, steeper * steepness_);
         return false;
     }
 
-    /// Residuals are affine in the impulses: they need no product of their own. A step that turns back ends the momentum.
+    /// Residuals are affine in the impulses: they need no product of their own. A step that turns back ends the
+    /// momentum.
     void extrapolate() {
         const Real next_momentum = (1 + std::sqrt(1 + 4 * momentum_ * momentum_)) / 2;
         Real beyond = (momentum_ - 1) / next_momentum;
@@ -87,12 +81,17 @@ private:
             previous_[i] = impulse[i];
         }
         std::swap(pull_previous_, pull_next_);
-        steepness_ *= 0.97;  // the bound along the way is often below the one of the whole space
+        steepness_ *= forgotten;  // the bound along the way is often below the one of the whole space
     }
+
+    // Of the steepness, where a step was too long: past the curvature that it met, and at least so much. The paper
+    // doubles, and forgets a tenth a step; smaller factors refuse fewer steps (docs/solvers.md, "Constants").
+    static constexpr Real beyond_curvature = 1.05, steeper = 1.2;
+    static constexpr Real forgotten = 0.97;  // of the steepness, a step taken
 
     Op& op_;
     const SolveLimits& limits_;
-    BestIterate<Op> best_;
+    ErrorTest<Op> test_;
     Real steepness_ = 1;  // L: largest eigenvalue of D^-1 W that has shown
     Real momentum_ = 1, against_ = 0;
     std::span<Vec4> previous_ = op_.workspace(1), start_ = op_.workspace(3);

@@ -10,15 +10,17 @@ namespace skerry {
 
 /// Nanoseconds, measured on 4 GHz cores; only their ratio matters, and it only says when which is tried.
 inline Real sweep_cost(Index contacts, Index couplings) {
-    return 40 * static_cast<Real>(contacts) + 2 * static_cast<Real>(couplings);
+    constexpr Real contact_cost = 40, coupling_cost = 2;
+    return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
 }
 inline Real newton_step_cost(Index contacts) {
+    constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;  // equations by pair, factors by triple
     const Real count = static_cast<Real>(contacts);
-    return 2000 + count * count * (20 + 0.5 * count);
+    return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators that keep room for Newton steps and know the cost of a sweep. Others get sweeps alone: in a step of the engine the warm start
-/// and the next step do what is left, at less cost than a factorisation.
+/// Operators that keep room for Newton steps and know the cost of a sweep. Others get sweeps alone: in a step of the
+/// engine the warm start and the next step do what is left, at less cost than a factorisation.
 template <class Op>
 concept TakesNewtonSteps = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
@@ -30,41 +32,45 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     return solve_ags(op, limits);
 }
 
-/// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again by the pace of
-/// the last stretch, the steps are tried from the present impulse; if they do not finish, sweeps go on, for three times as long as before.
+/// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again
+/// by the pace of the last stretch, the steps are tried from the present impulse; if they do not finish, sweeps go on,
+/// for three times as long as before.
 template <ContactOperator Op>
 requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // the steps are those of the exact cone
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
-    AcceleratedSweeps<Op> sweeps(op);
-    constexpr Index trial_steps = 2;
-    constexpr Index least_sweeps = 16;
+    ErrorTest<Op> test(op, limits);
+    AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);
+    constexpr Index trial_steps = 2;    // docs/decisions/0004
+    constexpr Index least_sweeps = 16;  // before them: most regions are solved by then
     const Real trial = trial_steps * newton_step_cost(op.size()) / sweep_cost(op.size(), op.couplings());  // sweeps
     Real pause = std::max<Real>(trial, least_sweeps);
     Real error_before = 1;
     Index iteration_before = 0, newton_steps = 0;
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
-        SolveResult result = sweeps.run_to(static_cast<Index>(next), limits);
-        if (result.converged || !std::isfinite(result.error)) return {result.iterations + newton_steps, result.error, result.converged};
+        sweeps.run_to(static_cast<Index>(next));
+        const SolveResult result = test.result();
+        if (result.converged || !std::isfinite(result.error))
+            return {result.iterations + newton_steps, result.error, result.converged};
         if (result.iterations + newton_steps >= limits.max_iterations) break;
-        const Real pace = std::log(error_before / result.error) / static_cast<Real>(result.iterations - iteration_before);
+        const Real pace =
+            std::log(error_before / result.error) / static_cast<Real>(result.iterations - iteration_before);
         error_before = result.error;
         iteration_before = result.iterations;
         if (pace * trial > std::log(result.error / limits.tolerance)) continue;
-        constexpr Index most_steps = 20;
+        constexpr Index most_steps = 20;  // those that finish take up to 14 (docs/decisions/0004)
         const SolveResult newton =
             NewtonSteps<Op>(op, op.newton_memory())
-                .run(result.error, limits.tolerance, std::min(most_steps, limits.max_iterations - result.iterations - newton_steps));
+                .run(result.error, limits.tolerance,
+                     std::min(most_steps, limits.max_iterations - result.iterations - newton_steps));
         newton_steps += newton.iterations;
         if (newton.converged) return {result.iterations + newton_steps, newton.error, true};
         sweeps.start_anew();
         error_before = newton.error;
         pause *= 2;
     }
-    SolveResult result = sweeps.give_up();
-    result.iterations += newton_steps;
-    return result;
+    return test.give_up(sweeps.iterations() + newton_steps);
 }
 
 }  // namespace skerry

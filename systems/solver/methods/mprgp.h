@@ -1,23 +1,27 @@
-// Modified proportioning with reduced gradient projections (Dostal and Schoeberl 2005; methods.md 2.6): conjugate gradients with the active set
-// done right, for contacts without friction. In the norm of the diagonal: bounds keep their form when rows are scaled.
+// Modified proportioning with reduced gradient projections (Dostal and Schoeberl 2005;
+// docs/methods/region_solver.md 5.4): conjugate gradients with the active set done right, for contacts without
+// friction. In the norm of the diagonal: bounds keep their form when rows are scaled.
 #pragma once
 
 #include <limits>
 
-#include "systems/solver/methods/power_iteration.h"
+#include "systems/solver/methods/error_test.h"
+#include "systems/solver/operators/power_iteration.h"
 
 namespace skerry {
 
-/// Minimises x . W x / 2 + q . x over normal impulses x >= 0. Workspace 1 keeps the gradient in place 0, 2 the direction (along the
-/// normals), 3 its product.
+/// Minimises x . W x / 2 + q . x over normal impulses x >= 0. Workspace 1 keeps the gradient in place 0, 2 the
+/// direction (along the normals), 3 its product.
 template <ContactOperator Op>
 class ProportionedGradients {
 public:
     explicit ProportionedGradients(Op& op) : op_(op) {}
 
     void start() {
-        constexpr Index power_steps = 20;
-        constexpr Real margin = 1.1;  // they come from below
+        constexpr Index power_steps = 20;  // products, to a few percent
+        constexpr Real margin = 1.1;       // they come from below
+        // of 1/|A|: up to 2 converges (Dostal, Domoradova and Sadowska 2011), and longer steps find the faces sooner
+        constexpr Real expansion = 1.8;
         const auto normal_part = [this](Index i, const Vec4& v) { return Vec4(op_.normal(i).dot(v) * op_.normal(i)); };
         for (Index i = 0; i < op_.size(); ++i) {
             const Real pressed = op_.normal(i).dot(op_.impulse()[i]);
@@ -27,7 +31,7 @@ public:
         Real smallest_ratio = 1;
         for (Index i = 0; i < op_.size(); ++i)
             if (diagonal(i) > 0) smallest_ratio = std::min(smallest_ratio, diagonal(i) / op_.mobility(i));
-        expansion_ = 1.8 * smallest_ratio / (margin * largest_eigenvalue(op_, power_steps, normal_part));
+        expansion_ = expansion * smallest_ratio / (margin * largest_eigenvalue(op_, power_steps, normal_part));
         refresh();
         point_along_free();
     }
@@ -41,7 +45,7 @@ public:
             if (x > 0) reduced += g * std::min(d * x / expansion_, g) / d;
             if (!(x > 0) && g < 0) chopped += g * g / d;
         }
-        if (chopped <= reduced) return minimise_in_face();
+        if (chopped <= reduced) return minimise_in_face();  // proportional, with the paper's Gamma = 1
         for (Index i = 0; i < op_.size(); ++i) {
             const bool leaves = !(pressed(i) > 0) && gradient_[i][0] < 0 && diagonal(i) > 0;
             direction_[i] = leaves ? Vec4((gradient_[i][0] / diagonal(i)) * op_.normal(i)) : Vec4(Vec4::Zero());
@@ -94,7 +98,8 @@ private:
             direction_[i] = pressed(i) > 0 ? Vec4((gradient_[i][0] / diagonal(i)) * op_.normal(i)) : Vec4(Vec4::Zero());
     }
 
-    /// A step of conjugate gradients; where it would leave the bounds it ends at the first of them, and a projected gradient step follows.
+    /// A step of conjugate gradients; where it would leave the bounds it ends at the first of them, and a projected
+    /// gradient step follows.
     bool minimise_in_face() {
         const auto [slope, curvature] = multiply();
         if (!(curvature > 0)) return false;
@@ -136,31 +141,26 @@ private:
     Real expansion_ = 1;  // length of the projected gradient step, in units of 1/D
 };
 
-/// From the operator's present impulse; an iteration is one step. Friction is left out: the error then says so, and the engine refuses the
-/// method where there is friction. Leaves the last impulse when it converged or the count is fixed, else the best one.
+/// From the operator's present impulse; an iteration is one step. Friction is left out: the error then says so, and the
+/// engine refuses the method where there is friction. Leaves the last impulse when it converged or the count is fixed,
+/// else the best one.
 template <ContactOperator Op>
 SolveResult solve_mprgp(Op& op, const SolveLimits& limits) {
-    constexpr Index refresh_interval = 64;  // the gradient is carried along and gathers rounding
-    BestIterate<Op> best(op);
+    constexpr Index refresh_interval = 64;  // steps; the gradient is carried along and gathers rounding
+    ErrorTest<Op> test(op, limits);
     ProportionedGradients<Op> gradients(op);
     gradients.start();
-    Index check = 1;
     for (Index iteration = 1; iteration <= limits.max_iterations; ++iteration) {
         const bool going_on = gradients.advance();
-        const bool due = !going_on || iteration >= check || iteration == limits.max_iterations;
-        if ((due && !limits.fixed_iterations) || iteration % refresh_interval == 0) gradients.refresh();
-        if (!due || limits.fixed_iterations) continue;
-        const Real error = op.error();
-        if (error <= limits.tolerance) return {iteration, error, true};
-        if (!std::isfinite(error)) return {iteration, error, false};
-        best.offer(error);
-        if (!going_on) return {iteration, best.restore(), false};
-        check = next_check(iteration);
+        const bool measured =
+            !limits.fixed_iterations && (!going_on || test.due(iteration) || iteration == limits.max_iterations);
+        if (measured || iteration % refresh_interval == 0) gradients.refresh();
+        if (!measured) continue;
+        if (test.ends(iteration)) return test.result();
+        if (!going_on) return test.give_up(iteration);
     }
-    if (!limits.fixed_iterations) return {limits.max_iterations, best.restore(), false};
-    op.refresh();
-    const Real error = op.error();
-    return {limits.max_iterations, error, error <= limits.tolerance};
+    if (limits.fixed_iterations) op.refresh();
+    return test.give_up(limits.max_iterations);
 }
 
 }  // namespace skerry

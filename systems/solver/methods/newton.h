@@ -1,5 +1,6 @@
-// Semismooth Newton on the natural map of the exact Coulomb law (Alart and Curnier 1991; methods.md 2.6), with a dense factorisation: for
-// small regions, as an independent check, and where sweeps go on for longer than a factorisation takes.
+// Semismooth Newton on the natural map of the exact Coulomb law (Alart and Curnier 1991;
+// docs/methods/region_solver.md 5.6), with a dense factorisation: for small regions, as an independent check, and where
+// sweeps go on for longer than a factorisation takes.
 #pragma once
 
 #include <limits>
@@ -36,10 +37,10 @@ public:
         memory_.change.resize(3 * op_.size());
     }
 
-    /// Steps until nothing has been gained for a few of them: before the right set of sticking and sliding contacts is found the error may
-    /// rise. The best impulse stays. `error` is that of the present impulse.
+    /// Steps until nothing has been gained for a few of them: before the right set of sticking and sliding contacts is
+    /// found the error may rise. The best impulse stays. `error` is that of the present impulse.
     SolveResult run(Real error, Real tolerance, Index limit) {
-        constexpr Index patience = 4;
+        constexpr Index patience = 4;  // steps (docs/decisions/0004)
         const std::span<Vec4> kept = op_.workspace(2);
         SolveResult result{0, error, error <= tolerance};
         std::ranges::copy(op_.impulse(), kept.begin());
@@ -74,7 +75,8 @@ private:
         memory_.active.clear();
         memory_.change.setZero();
         for (Index i = 0; i < op_.size(); ++i) {
-            const Vec4 z = op_.mobility(i) > 0 ? Vec4(op_.impulse()[i] + op_.workspace(3)[i] / op_.mobility(i)) : Vec4(Vec4::Zero());
+            const Vec4 z = op_.mobility(i) > 0 ? Vec4(op_.impulse()[i] + op_.workspace(3)[i] / op_.mobility(i))
+                                               : Vec4(Vec4::Zero());
             if (op_.normal(i).dot(z) > 0) {
                 memory_.active.push_back(i);
             } else {
@@ -88,13 +90,15 @@ private:
         fill_equations();
         memory_.solve_equations();
         for (Eigen::Index a = 0; a < count; ++a)
-            memory_.change.template segment<3>(3 * memory_.active[static_cast<std::size_t>(a)]) = memory_.rest.template segment<3>(3 * a);
+            memory_.change.template segment<3>(3 * memory_.active[static_cast<std::size_t>(a)]) =
+                memory_.rest.template segment<3>(3 * a);
         return memory_.change.allFinite();
     }
 
     /// Rows of J = I - P' (I - D^-1 W), and -F with what the opening contacts take away.
     void fill_equations() {
-        // sticking contacts that support each other leave the sum of their impulses open: a little of the identity chooses
+        // Sticking contacts that support each other leave the sum of their impulses open: a little of the identity
+        // chooses. It changes the steps, not what they come to.
         constexpr Real redundancy = 1e-8;
         const std::vector<Index>& active = memory_.active;
         for (std::size_t a = 0; a < active.size(); ++a) {
@@ -108,7 +112,8 @@ private:
             for (std::size_t b = 0; b < active.size(); ++b)
                 memory_.jacobian.template block<3, 3>(place, static_cast<Eigen::Index>(3 * b)) =
                     answering * row.template middleCols<3>(3 * active[b]);
-            memory_.jacobian.template block<3, 3>(place, place) += (1 + redundancy) * Mat3::Identity() - coulomb.derivative;
+            memory_.jacobian.template block<3, 3>(place, place) +=
+                (1 + redundancy) * Mat3::Identity() - coulomb.derivative;
         }
     }
 
@@ -117,7 +122,8 @@ private:
         op_.residual(op_.workspace(3));
         Real sum = 0;
         for (Index i = 0; i < op_.size(); ++i)
-            if (op_.mobility(i) > 0) sum += op_.mobility(i) * (answer(i).impulse - op_.impulse()[i].template head<3>()).squaredNorm();
+            if (op_.mobility(i) > 0)
+                sum += op_.mobility(i) * (answer(i).impulse - op_.impulse()[i].template head<3>()).squaredNorm();
         return sum;
     }
 
@@ -130,8 +136,8 @@ private:
 
     /// The first of ever shorter steps that lowers the merit; when none does, the one that raises it least.
     void search_along_change() {
-        constexpr int halvings = 6;
-        constexpr Real enough = 0.9;
+        constexpr int halvings = 6;   // docs/decisions/0004
+        constexpr Real enough = 0.9;  // of the merit at the start
         std::ranges::copy(op_.impulse(), op_.workspace(1).begin());
         const Real start = merit();
         Real least = std::numeric_limits<Real>::infinity(), best_length = 1;
@@ -152,20 +158,22 @@ private:
     NewtonMemory& memory_;
 };
 
-/// Sweeps and steps in turn; twice as many sweeps each time the steps have not finished it. The steps are those of the exact cone: under
-/// another law, and where the count is fixed, there are only sweeps.
+/// Sweeps and steps in turn; twice as many sweeps each time the steps have not finished it. The steps are those of the
+/// exact cone: under another law, and where the count is fixed, there are only sweeps.
 template <ContactOperator Op>
 SolveResult solve_newton(Op& op, const SolveLimits& limits) {
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_pgs(op, limits);
     NewtonMemory memory;
     NewtonSteps<Op> steps(op, memory);
     BestIterate<Op> best(op);
+    constexpr Index first_sweeps = 10, most_steps = 30;  // chosen by hand
     Index done = 0;
-    for (Index sweeps = 10; done < limits.max_iterations; sweeps *= 2) {
+    for (Index sweeps = first_sweeps; done < limits.max_iterations; sweeps *= 2) {
         const Index pause = std::min(sweeps, limits.max_iterations - done);
         for (Index k = 0; k < pause; ++k) op.sweep(limits.relaxation);
         done += pause;
-        const SolveResult result = steps.run(op.error(), limits.tolerance, std::min<Index>(30, limits.max_iterations - done));
+        const SolveResult result =
+            steps.run(op.error(), limits.tolerance, std::min(most_steps, limits.max_iterations - done));
         done += result.iterations;
         if (result.converged || !std::isfinite(result.error)) return {done, result.error, result.converged};
         best.offer(result.error);

@@ -1,9 +1,10 @@
-// Projected conjugate gradients: Algorithm 2 of the paper to the letter, with the residual (19) read as in methods.md 1.3 e. They stagnate where
-// impulses meet their limits, since projecting after a step destroys conjugacy and descent (methods.md 1.3 f): the baseline to beat. Their sums
-// run over all contacts at once, so separate regions and one global region do not give the same bits.
+// Projected conjugate gradients: Algorithm 2 of the paper to the letter, with the residual (19) read as in
+// docs/methods/contact.md 5.6. They stagnate where impulses meet their limits, since projecting after a step destroys
+// conjugacy and descent (docs/methods/region_solver.md 5.1): the baseline to beat. Their sums run over all contacts at
+// once, so separate regions and one global region do not give the same bits.
 #pragma once
 
-#include "systems/solver/operators/contact_operator.h"
+#include "systems/solver/methods/error_test.h"
 
 namespace skerry {
 
@@ -35,7 +36,8 @@ void start_conjugate_gradients(Op& op) {
     const std::span<Vec4> residual = op.workspace(1);
     op.residual(residual);
     for (Index i = 0; i < op.size(); ++i)
-        if (op.limits(i).stick == 0) residual[i] = op.normal(i).dot(residual[i]) * op.normal(i);  // the other rows are not there
+        // the other rows are not there
+        if (op.limits(i).stick == 0) residual[i] = op.normal(i).dot(residual[i]) * op.normal(i);
     std::ranges::copy(residual, op.workspace(2).begin());
 }
 
@@ -48,7 +50,8 @@ struct ConjugateChange {
 /// One iteration: the impulse moves along the direction and is projected, the residual follows (19).
 template <ContactOperator Op>
 ConjugateChange advance_conjugate_gradients(Op& op, ConjugateBeta formula) {
-    const std::span<Vec4> impulse = op.impulse(), residual = op.workspace(1), direction = op.workspace(2), product = op.workspace(3);
+    const std::span<Vec4> impulse = op.impulse(), residual = op.workspace(1), direction = op.workspace(2),
+                          product = op.workspace(3);
     op.multiply(direction, product);
     const Real squared = sum_of_products(residual, residual);
     const Real curvature = sum_of_products(direction, product);
@@ -78,52 +81,40 @@ struct ConjugateLimits {
     Real tolerance;    // (20), (21), of the largest impulse and of the first residual; 0: they end nothing
 };
 
-/// The phase from the present impulse. The result's error is that of the last check. Leaves the best impulse, or with fixed iterations the
-/// last one.
+/// The phase from the present impulse. Leaves the impulse that converged, else the best one, or with fixed iterations
+/// the last one; the result's error is that of the impulse left.
 template <ContactOperator Op>
-SolveResult run_conjugate_gradients(Op& op, const SolveLimits& limits, const ConjugateLimits& phase, ConjugateBeta formula,
-                                    BestIterate<Op>& best) {
-    Real error = 0;
-    if (!limits.fixed_iterations) {
-        error = op.error();
-        if (error <= limits.tolerance || !std::isfinite(error)) return {0, error, error <= limits.tolerance};
-        best.offer(error);
-    }
+SolveResult run_conjugate_gradients(Op& op, const SolveLimits& limits, const ConjugateLimits& phase,
+                                    ConjugateBeta formula, ErrorTest<Op>& test) {
+    if (!limits.fixed_iterations && test.ends(0)) return test.result();
     start_conjugate_gradients(op);
     const Real first_residual = largest_entry(op.workspace(1));
-    Index iteration = 0, check = 1;
+    Index iteration = 0;
     bool ended = false;
     while (!ended && iteration < phase.iterations) {
         ++iteration;
         const ConjugateChange change = advance_conjugate_gradients(op, formula);
         ended = change.used_up;
         if (limits.fixed_iterations) continue;
-        ended |= change.impulse < phase.tolerance * largest_entry(op.impulse()) || change.residual < phase.tolerance * first_residual;
-        if (!ended && iteration < check && iteration < phase.iterations) continue;
-        check = next_check(iteration);
+        ended |= change.impulse < phase.tolerance * largest_entry(op.impulse()) ||
+                 change.residual < phase.tolerance * first_residual;
+        if (!ended && !test.due(iteration) && iteration < phase.iterations) continue;
         op.refresh();
-        error = op.error();
-        if (error <= limits.tolerance || !std::isfinite(error)) return {iteration, error, error <= limits.tolerance};
-        best.offer(error);
+        if (test.ends(iteration)) return test.result();
     }
-    if (limits.fixed_iterations) {
-        op.refresh();
-    } else {
-        error = best.restore();
-    }
-    return {iteration, error, false};
+    if (limits.fixed_iterations) op.refresh();
+    return test.give_up(iteration);
 }
 
-/// The first phase alone, from the operator's present impulse: ends after as many iterations as there are rows. Leaves the last impulse when
-/// it converged or the count is fixed, else the best one.
+/// The first phase alone, from the operator's present impulse: ends after as many iterations as there are rows. Leaves
+/// the last impulse when it converged or the count is fixed, else the best one.
 template <ContactOperator Op>
 SolveResult solve_pcg(Op& op, const SolveLimits& limits, ConjugateBeta formula) {
-    BestIterate<Op> best(op);
-    if (!limits.fixed_iterations)
-        return run_conjugate_gradients(op, limits, {std::min(limits.max_iterations, row_count(op)), 0}, formula, best);
-    run_conjugate_gradients(op, limits, {limits.max_iterations, 0}, formula, best);
-    const Real error = op.error();
-    return {limits.max_iterations, error, error <= limits.tolerance};
+    ErrorTest<Op> test(op, limits);
+    const Index most = limits.fixed_iterations ? limits.max_iterations : std::min(limits.max_iterations, row_count(op));
+    SolveResult result = run_conjugate_gradients(op, limits, {most, 0}, formula, test);
+    if (limits.fixed_iterations) result.iterations = limits.max_iterations;
+    return result;
 }
 
 template <ContactOperator Op>

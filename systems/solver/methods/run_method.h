@@ -1,4 +1,4 @@
-// The one place where the name of an algorithm becomes a call.
+// The one place where the name of a method becomes a call.
 #pragma once
 
 #include "components/options.h"

@@ -14,7 +14,8 @@ BlockMemory::Columns padded_columns(const Mat3& block) {
     return {padded(block.col(0)), padded(block.col(1)), padded(block.col(2))};
 }
 
-/// start + sum of the blocks of a row times the vectors of their contacts. Three sums side by side: one alone would wait for itself.
+/// start + sum of the blocks of a row times the vectors of their contacts. Three sums side by side: one alone would
+/// wait for itself.
 inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, const Vec4* vector) {
     Vec4 first = start, second = Vec4::Zero(), third = Vec4::Zero();
     const BlockMemory::Columns* block = memory.block.data();
@@ -52,7 +53,8 @@ Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u
 /// Box of the pyramid in the frame of the contact.
 Vec4 clamp_to_pyramid(const Vec4& impulse, Real mu) {
     const Real normal = pressing(impulse[0]);
-    return {normal, std::clamp(impulse[1], -mu * normal, mu * normal), std::clamp(impulse[2], -mu * normal, mu * normal), 0};
+    return {normal, std::clamp(impulse[1], -mu * normal, mu * normal),
+            std::clamp(impulse[2], -mu * normal, mu * normal), 0};
 }
 
 }  // namespace
@@ -80,8 +82,8 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
             }
         }
         offset[i + 1] = static_cast<Index>(neighbor.size());
-        contact[i] = {padded(system.q[row]), padded_columns(diagonal), padded_columns(0.5 * (diagonal - diagonal.transpose())),
-                      prepare_block(diagonal), system.mu[row]};
+        contact[i] = {padded(system.q[row]), padded_columns(diagonal),
+                      padded_columns(0.5 * (diagonal - diagonal.transpose())), prepare_block(diagonal), system.mu[row]};
         if (friction == Friction::cone_convex) convex.push_back(prepare_convex_block(diagonal, system.mu[row]));
     }
     impulse.assign(count, Vec4::Zero());
@@ -95,7 +97,8 @@ Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction)
         return {impulse[0] - pressing(impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
                 impulse[2] - std::clamp(impulse[2] - u[2], -limit, limit)};
     }
-    // P_K of r - u - mu |u_T| n, with the tangents' direction left out until it is needed. The associated law has no such shift
+    // P_K of r - u - mu |u_T| n, with the tangents' direction left out until it is needed. The associated law has no
+    // such shift
     const Real shift = friction == Friction::cone ? mu * std::sqrt(u[1] * u[1] + u[2] * u[2]) : 0;
     const Real along = impulse[0] - u[0] - shift;
     const Real t1 = impulse[1] - u[1], t2 = impulse[2] - u[2];
@@ -108,7 +111,12 @@ Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction)
 }
 
 BlockOperator::BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size)
-    : memory_(memory), begin_(begin), end_(end), friction_(friction), smallest_size_(smallest_size), size_(smallest_size) {}
+    : memory_(memory),
+      begin_(begin),
+      end_(end),
+      friction_(friction),
+      smallest_size_(smallest_size),
+      size_(smallest_size) {}
 
 Vec4 BlockOperator::velocity(Index place) const {
     const BlockMemory::Contact& contact = memory_.contact[place];
@@ -126,8 +134,9 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     } else {
         // files round W: what a block has beside its symmetric part acts as of the last impulse
         const Vec4 fixed = b + times(contact.skew, before);
-        next = padded(friction_ == Friction::cone_convex ? solve_convex_block(memory_.convex[place], fixed.head<3>(), contact.mu)
-                                                         : solve_block(contact.local, fixed.head<3>(), contact.mu));
+        next = padded(friction_ == Friction::cone_convex
+                          ? solve_convex_block(memory_.convex[place], fixed.head<3>(), contact.mu)
+                          : solve_block(contact.local, fixed.head<3>(), contact.mu));
         if (relaxation != 1) next = project(i, before + relaxation * (next - before));
     }
     const Vec4 change = next - before;
@@ -140,11 +149,22 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
 }
 
 Real BlockOperator::sweep(Real relaxation) {
-    return sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
+    Real change = 0;
+    for (Index i = 0; i < size(); ++i) change += step(i, relaxation);
+    return change;
 }
 
 SweepChange BlockOperator::accelerated_sweep(Real relaxation) {
-    return accelerated_sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
+    const std::span<const Vec4> present = impulse(), previous = workspace(1);
+    SweepChange sum;
+    for (Index i = 0; i < size(); ++i) {
+        const Vec4 before = present[i];
+        const Real size = step(i, relaxation);
+        if (size == 0) continue;
+        sum.size += size;
+        sum.against -= inner(i, present[i] - before, present[i] - previous[i]);
+    }
+    return sum;
 }
 
 bool BlockOperator::suggests_check(Real, Real tolerance) {
@@ -173,12 +193,7 @@ void BlockOperator::remember() {
 }
 
 void BlockOperator::extrapolate(Real factor) {
-    const std::span<Vec4> present = impulse(), previous = workspace(1);
-    for (std::size_t i = 0; i < present.size(); ++i) {
-        const Vec4 now = present[i];
-        present[i] = now + factor * (now - previous[i]);
-        previous[i] = now;
-    }
+    extrapolate_range(0, impulse().size(), factor, impulse(), workspace(1));
 }
 
 void BlockOperator::residual(std::span<Vec4> out) const {

@@ -1,4 +1,5 @@
-// The contact operator of general 3x3 blocks, in the frames of the contacts (normal, tangent 1, tangent 2): problems from files.
+// The Delassus operator of general 3x3 blocks, in the frames of the contacts (normal, tangent 1, tangent 2): problems
+// from files.
 #pragma once
 
 #include <array>
@@ -8,10 +9,10 @@
 #include "components/column.h"
 #include "components/options.h"
 #include "components/types.h"
+#include "systems/solver/local/solve_block.h"
+#include "systems/solver/local/solve_convex_block.h"
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/newton_memory.h"
-#include "systems/solver/operators/solve_block.h"
-#include "systems/solver/operators/solve_convex_block.h"
 
 namespace skerry {
 
@@ -24,7 +25,8 @@ struct BlockSystem {
     std::span<const Real> mu;
 };
 
-/// A system in the order in which it is swept, blocks side by side and padded to vector registers. The last place of every vector is zero.
+/// A system in the order in which it is swept, blocks side by side and padded to vector registers. The last place of
+/// every vector is zero.
 struct BlockMemory {
     struct Contact {
         Vec4 q;
@@ -44,17 +46,21 @@ struct BlockMemory {
     std::array<std::vector<Vec4>, workspace_limit> workspace;
     NewtonMemory newton;
 
-    /// `order`: contacts of the system in the order of the sweep, those of a region one after the other. Impulses start at zero.
-    /// `friction`: the law that an operator on this memory will be asked for; only cone_convex needs more than the others.
+    /// `order`: contacts of the system in the order of the sweep, those of a region one after the other. Impulses start
+    /// at zero. `friction`: the law that an operator on this memory will be asked for; only cone_convex needs more than
+    /// the others.
     void prepare(const BlockSystem& system, std::span<const Index> order, Friction friction = Friction::cone);
 };
 
-/// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB, the paper's pyramid or the associated law.
+/// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB, the paper's pyramid or the
+/// associated law.
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// One region: the contacts at the places [begin, end) of the memory, to which no other region's blocks refer.
 class BlockOperator {
 public:
+    using Number = Real;
+
     /// `smallest_size`: the error is not measured against less than this; the region's share of a larger whole.
     BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size);
 
@@ -69,7 +75,7 @@ public:
         const BlockMemory::Columns& w = memory_.contact[begin_ + i].diagonal;
         return a.dot(w[0] * b[0] + w[1] * b[1] + w[2] * b[2]);
     }
-    /// |F| / max(|q|, |r|, |u|): the measure of FCLIB and Siconos (methods.md 2.1), of this region.
+    /// |F| / max(|q|, |r|, |u|): the measure of FCLIB and Siconos (docs/methods/errors.md 3), of this region.
     Real error();
     /// max(|q|, |r|, |u|) at the last error().
     Real measured_size() const { return size_; }
@@ -93,7 +99,9 @@ public:
 
 private:
     Real step(Index i, Real relaxation);
-    std::span<Vec4> part(std::vector<Vec4>& all) const { return {all.data() + begin_, static_cast<std::size_t>(end_ - begin_)}; }
+    std::span<Vec4> part(std::vector<Vec4>& all) const {
+        return {all.data() + begin_, static_cast<std::size_t>(end_ - begin_)};
+    }
     Vec4 velocity(Index place) const;
 
     BlockMemory& memory_;

@@ -1,149 +1,90 @@
-// The contact operator of lumped masses: every block is a number times the identity (methods.md 0.1, fact A). It carries the velocities of
-// the region's moving nodes, so that one contact step is a gather and a scatter.
+// The Delassus operator of lumped masses: every block is a number times the identity (docs/methods/contact.md 2.1). It
+// carries the velocities of the region's moving nodes, so that one contact step is a gather and a scatter.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "components/options.h"
-#include "components/types.h"
+#include "systems/solver/local/lumped_contact.h"
 #include "systems/solver/operators/contact_operator.h"
-#include "systems/solver/solve_regions.h"
+#include "systems/solver/operators/in_order.h"
 
 namespace skerry {
 
-/// What a sweep needs of one contact, side by side. Nodes that do not move are not in the stencil: their velocity is in `offset`.
-struct LumpedContact {
-    Vec4 normal;                 // unit
-    Vec4 offset;                 // m/s: velocity of fixed nodes minus that of the collider, plus bias along the normal
-    std::array<Real, 4> weight;  // of the moving nodes
-    std::array<Real, 4> step;    // 1/kg, weight times inverse mass
-    std::array<Index, 4> node;   // rows of the region's own nodes
-    Index node_count;            // 0: no impulse of this contact could move anything
-    Real diagonal;               // 1/kg, D of methods.md 2.2
-    Real inverse_diagonal;       // kg
-    Real bias;                   // m/s, its part of the offset
-    FrictionLimits friction;
+/// A contact that has not been looked at since the last measure of the error: its last velocity says nothing.
+inline constexpr std::uint8_t velocity_unknown = 255;
+
+/// One region; by contact: in the order of the walk. The memory belongs to the caller.
+struct LumpedMemory {
+    std::span<const LumpedContact> contact;
+    std::span<Vec4> impulse;              // N s
+    std::span<Vec4> velocity;             // m/s, of the region's nodes, moved by the impulse
+    std::span<const Index> node;          // rows of NodeTable
+    std::span<const Vec3> free_velocity;  // m/s, by row of NodeTable
+    // by node of the region: previous velocities, or those of a product
+    std::span<Vec4> scratch;
+    std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
+    // by contact: sweeps without a change, at first velocity_unknown. None: no contact is frozen
+    std::span<std::uint8_t> quiet_sweeps{};
+    std::span<Vec4> last_velocity{};  // m/s, by contact, while one may rest
+    Real still = 0;                   // J, a smaller change is none
 };
 
-/// start + sum of weight times velocity of the moving nodes.
-inline Vec4 add_node_velocities(const LumpedContact& contact, const Vec4* velocity, Vec4 start) {
-    for (Index a = 0; a < contact.node_count; ++a) start += contact.weight[a] * velocity[contact.node[a]];
-    return start;
-}
-
-/// u = W r + q of one contact.
-inline Vec4 contact_velocity(const LumpedContact& contact, const Vec4* velocity) {
-    return add_node_velocities(contact, velocity, contact.offset);
-}
-
-inline void apply_impulse(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
-    for (Index a = 0; a < contact.node_count; ++a) velocity[contact.node[a]] += contact.step[a] * impulse;
-}
-
-/// The Gauss-Seidel step of one contact (methods.md 2.2). Returns D |change|^2.
-inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity, Vec4& impulse) {
-    const Vec4 u = contact_velocity(contact, velocity);
-    const Vec4 stopping = impulse - (relaxation * contact.inverse_diagonal) * u;
-    const Vec4 next = project_friction(stopping, contact.normal, contact.friction, friction);
-    const Vec4 change = next - impulse;
-    const Real size = change.dot(change);
-    if (size == 0) return 0;  // most contacts that are apart: nothing to scatter
-    apply_impulse(contact, change, velocity);
-    impulse = next;
-    return contact.diagonal * size;
-}
-
-/// F_i of methods.md 2.1: how far the impulse is from the one its velocity asks for. The De Saxce form where it exists (cone, one
-/// coefficient), else the residual of the contact step.
-inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse, const Vec4& u) {
-    const FrictionLimits mu = contact.friction;
-    if (friction == Friction::cone && mu.stick == mu.slide) {
-        const Vec4 tangential = u - contact.normal.dot(u) * contact.normal;
-        const Vec4 shifted = u + (mu.stick * tangential.norm()) * contact.normal;
-        return impulse - project_onto_cone(Vec4(impulse - contact.inverse_diagonal * shifted), contact.normal, mu.stick);
-    }
-    return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
-}
-
-/// Whether a contact with this velocity needs no impulse. The associated law presses on what slides unless it lifts off fast enough.
-inline bool separates(const LumpedContact& contact, Friction friction, const Vec4& u) {
-    const Real along = contact.normal.dot(u);
-    if (friction != Friction::cone_convex) return along >= 0;
-    return along >= contact.friction.slide * (u - along * contact.normal).norm();
-}
-
-/// Loads contact `row`; `local(node)` gives the region's row of a moving node. `velocity_next` is what the contact sees before the solve.
-template <class Local>
-LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings,
-                           Real h, Local&& local);
-
-/// b_n of methods.md 1.3 c: the gap may close within the step; an impact turns back with the restitution. Gaps below zero are left to
-/// push_out_region.
-Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings, Real h);
-
-/// m/s, half of what forces turn the slip by in this step, at right angles to it. The law of friction looks at the velocity after the impulse;
-/// without this the direction of sliding would be that at the end of the step's kick, an error of first order, instead of that in its middle.
-/// Zero where nothing slides, without friction, or where it goes straight on.
-Vec3 half_turn(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
-
-/// One region. The memory belongs to the caller.
-class LumpedOperator {
+/// The bits of the impulses do not depend on the walk, given the order of the contacts; those of sums do.
+template <RegionWalk Walk>
+class LumpedOperatorBy {
 public:
-    /// A contact that has not been looked at since the last measure of the error: its last velocity says nothing.
-    static constexpr std::uint8_t velocity_unknown = 255;
-
-    struct Memory {
-        std::span<const LumpedContact> contact;
-        std::span<Vec4> impulse;                                 // N s
-        std::span<Vec4> velocity;                                // m/s, of the region's nodes, moved by the impulse
-        std::span<const Index> node;                             // rows of NodeTable
-        std::span<const Vec3> free_velocity;                     // m/s, by row of NodeTable
-        std::span<Vec4> scratch;                                 // by node of the region: previous velocities, or those of a product
-        std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
-        std::span<std::uint8_t> resting{};  // by contact: sweeps without a change, at first velocity_unknown. None: no contact is frozen
-        std::span<Vec4> last_velocity{};    // m/s, by contact, while one may rest
-        Real still = 0;                     // J, a smaller change is none
-    };
+    using Number = Real;
 
     /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse.
-    LumpedOperator(const Memory& memory, Friction friction, Real scale) : memory_(memory), friction_(friction), scale_(scale) {}
+    LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Walk& walk = {})
+        : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
 
     Index size() const { return static_cast<Index>(memory_.contact.size()); }
-    std::span<Vec4> impulse() { return memory_.impulse; }
-    std::span<Vec4> workspace(Index slot) { return memory_.workspace[slot]; }
-    void refresh() { refresh(memory_.impulse, memory_.velocity); }
-    void refresh_all();
+    std::span<Vec4> impulse() {
+        settle();
+        return memory_.impulse;
+    }
+    std::span<Vec4> workspace(Index slot) {
+        settle();
+        return memory_.workspace[slot];
+    }
+    void refresh() {
+        settle();
+        refresh(memory_.impulse, memory_.velocity);
+    }
+    void refresh_all() {
+        refresh();
+        refresh(memory_.workspace[1], memory_.scratch);  // one without the other lets their difference grow
+    }
     void remember();
     void extrapolate(Real factor);
-    Real sweep(Real relaxation) {
-        if (may_freeze()) return sweep_in_order(*this, [this, relaxation](Index i) { return step_unless_frozen(i, relaxation); });
-        return sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
-    }
-    SweepChange accelerated_sweep(Real relaxation) {
-        if (may_freeze())
-            return accelerated_sweep_in_order(*this, [this, relaxation](Index i) { return step_unless_frozen(i, relaxation); });
-        return accelerated_sweep_in_order(*this, [this, relaxation](Index i) { return step(i, relaxation); });
-    }
-    /// e_nat of methods.md 2.1, of all contacts: frozen ones are looked at, and go on.
+    Real sweep(Real relaxation);
+    SweepChange accelerated_sweep(Real relaxation);
+    /// e_nat of docs/methods/errors.md 2, of all contacts: frozen ones are looked at, and go on.
     Real error();
     /// Contact steps left out so far.
     Index frozen() const { return frozen_; }
-    /// Puts every impulse into its cone: the acceleration carries those of frozen contacts on without one. Returns whether any was outside.
-    bool make_feasible();
+    /// Puts every impulse into its cone: the acceleration carries those of frozen contacts on without one. Returns
+    /// whether any was outside.
+    bool make_feasible() requires Walk::one_thread;
     /// A sweep's change is about the natural map of its start: worth a look once it is as small.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return memory_.contact[i].diagonal * a.dot(b); }
-    void residual(std::span<Vec4> out) const;
+    void residual(std::span<Vec4> out);
     void multiply(std::span<const Vec4> in, std::span<Vec4> out);
     Vec4 project(Index i, const Vec4& impulse) const {
         return project_friction(impulse, memory_.contact[i].normal, memory_.contact[i].friction, friction_);
     }
     Vec4 feasible(Index i, const Vec4& residual) const {
-        return feasible_direction(residual, memory_.impulse[i], memory_.contact[i].normal, memory_.contact[i].friction, friction_);
+        return feasible_direction(residual, memory_.impulse[i], memory_.contact[i].normal, memory_.contact[i].friction,
+                                  friction_);
     }
-
     Vec4 normal(Index i) const { return memory_.contact[i].normal; }
     FrictionLimits limits(Index i) const { return memory_.contact[i].friction; }
     Real mobility(Index i) const { return memory_.contact[i].node_count > 0 ? memory_.contact[i].diagonal : 0; }
@@ -151,58 +92,226 @@ public:
     void assemble(Eigen::MatrixXd& matrix) const;
 
 private:
+    /// Does now what waits for a next sweep.
+    void settle();
     /// Counts the sweep. The first ones are not worth the bookkeeping: most solves end with them.
     bool may_freeze() {
-        constexpr Index first_sweeps = 8;
-        return !memory_.resting.empty() && ++sweeps_ > first_sweeps;
+        constexpr Index first_sweeps = 8;  // docs/solvers.md, "Constants"
+        return Walk::one_thread && !memory_.quiet_sweeps.empty() && ++sweeps_ > first_sweeps;
     }
-    Real step_unless_frozen(Index i, Real relaxation);
-    Real step(Index i, Real relaxation) {
-        return solve_contact(memory_.contact[i], friction_, relaxation, memory_.velocity.data(), memory_.impulse[i]);
+    /// The step of contact i, with copies of all it needs: a store of vectors may change whatever is in memory.
+    auto step(Real relaxation) const {
+        return [contact = memory_.contact.data(), velocity = memory_.velocity.data(), friction = friction_, relaxation](
+                   std::size_t i, Vec4& impulse) {
+            return solve_contact(contact[i], friction, relaxation, velocity, impulse);
+        };
     }
+    Real step_unless_frozen(std::size_t i, Real relaxation, Vec4& impulse);
+    auto step_unless_frozen(Real relaxation) {
+        return [this, relaxation](std::size_t i, Vec4& impulse) { return step_unless_frozen(i, relaxation, impulse); };
+    }
+    template <class Step>
+    Real sweep_with(const Step& step);
+    template <class Step>
+    SweepChange accelerated_sweep_with(const Step& step);
     void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
-    Memory memory_;
+    LumpedMemory memory_;
     Friction friction_;
     Real scale_;
+    Walk walk_;
     Index sweeps_ = 0, frozen_ = 0;
+    // The impulses of an extrapolation wait for the next sweep, which passes over them anyway; its velocities are done.
+    bool waiting_ = false;
+    Real factor_ = 0;
 };
 
-template <class Local>
-LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next, const SolverSettings& settings,
-                           Real h, Local&& local) {
-    const Stencil& stencil = inputs.stencil[row];
-    LumpedContact contact;
-    contact.normal = padded(inputs.normal[row]);
-    contact.bias = contact_bias(inputs, row, velocity_next, settings, h);
-    Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
-    contact.node_count = 0;
-    contact.diagonal = 0;
-    Real lightest = 0;  // 1/kg
-    for (std::size_t a = 0; a < 4; ++a) {
-        const Real weight = stencil.weight[a];
-        if (weight == 0) continue;
-        const Index node = stencil.node[a];
-        const Real inverse_mass = inputs.inverse_mass[node];
-        if (!(inverse_mass > 0)) {
-            offset += weight * velocity_next[node];
-            continue;
-        }
-        const Index place = contact.node_count++;
-        contact.weight[place] = weight;
-        contact.step[place] = weight * inverse_mass;
-        contact.node[place] = local(node);
-        contact.diagonal += weight * weight * inverse_mass;
-        lightest = std::max(lightest, inverse_mass);
-    }
-    // a moving node whose share is below 1e-6 would have to move a million times faster than the contact to stop it: it cannot
-    constexpr Real smallest_share = 1e-12;  // of the squared weight
-    if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
-    contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
-    contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};
-    offset -= half_turn(inputs, row, velocity_next);
-    contact.offset = padded(offset);
-    return contact;
+using LumpedOperator = LumpedOperatorBy<InOrder>;
+
+template <RegionWalk Walk>
+void LumpedOperatorBy<Walk>::settle() {
+    if (!waiting_) return;
+    waiting_ = false;
+    walk_.contacts(memory_.impulse.size(), [this](std::size_t begin, std::size_t end) {
+        extrapolate_range(begin, end, factor_, memory_.impulse, memory_.workspace[1]);
+    });
 }
+
+template <RegionWalk Walk>
+void LumpedOperatorBy<Walk>::remember() {
+    settle();
+    walk_.contacts(memory_.impulse.size(), [this](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) memory_.workspace[1][i] = memory_.impulse[i];
+    });
+    walk_.nodes(memory_.velocity.size(), [this](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) memory_.scratch[n] = memory_.velocity[n];
+    });
+}
+
+template <RegionWalk Walk>
+void LumpedOperatorBy<Walk>::extrapolate(Real factor) {
+    settle();
+    // velocities are affine in the impulses
+    walk_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
+        extrapolate_range(begin, end, factor, memory_.velocity, memory_.scratch);
+    });
+    waiting_ = true;
+    factor_ = factor;
+}
+
+template <RegionWalk Walk>
+template <class Step>
+Real LumpedOperatorBy<Walk>::sweep_with(const Step& step) {
+    return walk_.template sum<Real>(memory_.contact.size(), [this, step](std::size_t begin, std::size_t end) {
+        const std::span<Vec4> impulse = memory_.impulse;
+        Real change = 0;
+        for (std::size_t i = begin; i < end; ++i) change += step(i, impulse[i]);
+        return change;
+    });
+}
+
+template <RegionWalk Walk>
+Real LumpedOperatorBy<Walk>::sweep(Real relaxation) {
+    settle();
+    return may_freeze() ? sweep_with(step_unless_frozen(relaxation)) : sweep_with(step(relaxation));
+}
+
+template <RegionWalk Walk>
+template <class Step>
+SweepChange LumpedOperatorBy<Walk>::accelerated_sweep_with(const Step& step) {
+    const bool waiting = std::exchange(waiting_, false);
+    return walk_.template sum<SweepChange>(memory_.contact.size(), [=, this](std::size_t begin, std::size_t end) {
+        const std::span<const LumpedContact> contact = memory_.contact;
+        const std::span<Vec4> impulse = memory_.impulse, previous = memory_.workspace[1];
+        const Real factor = factor_;
+        SweepChange sum;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (waiting) extrapolate_one(factor, impulse[i], previous[i]);
+            const Vec4 before = impulse[i];
+            const Real size = step(i, impulse[i]);
+            if (size == 0) continue;
+            sum.size += size;
+            sum.against -= contact[i].diagonal * (impulse[i] - before).dot(impulse[i] - previous[i]);
+        }
+        return sum;
+    });
+}
+
+template <RegionWalk Walk>
+SweepChange LumpedOperatorBy<Walk>::accelerated_sweep(Real relaxation) {
+    return may_freeze() ? accelerated_sweep_with(step_unless_frozen(relaxation))
+                        : accelerated_sweep_with(step(relaxation));
+}
+
+template <RegionWalk Walk>
+Real LumpedOperatorBy<Walk>::step_unless_frozen(std::size_t i, Real relaxation, Vec4& impulse) {
+    constexpr std::uint8_t sweeps_to_freeze = 2, sweeps_frozen = 8;  // docs/solvers.md, "Constants"
+    std::uint8_t& quiet_sweeps = memory_.quiet_sweeps[i];
+    if (quiet_sweeps >= sweeps_to_freeze && quiet_sweeps != velocity_unknown) {
+        if (quiet_sweeps < sweeps_to_freeze + sweeps_frozen) {
+            ++quiet_sweeps;
+            ++frozen_;
+            return 0;
+        }
+        quiet_sweeps = sweeps_to_freeze - 1;  // looked at once, then frozen again
+    }
+    const LumpedContact& contact = memory_.contact[i];
+    const Vec4 u = contact_velocity(contact, memory_.velocity.data());
+    const Vec4 moved = u - memory_.last_velocity[i];
+    memory_.last_velocity[i] = u;
+    const Real size = solve_contact(contact, friction_, relaxation, memory_.velocity.data(), impulse);
+    const bool known = quiet_sweeps != velocity_unknown;
+    const bool at_rest =
+        known && size <= memory_.still && contact.inverse_diagonal * moved.squaredNorm() <= memory_.still;
+    quiet_sweeps = at_rest ? static_cast<std::uint8_t>(quiet_sweeps + 1) : std::uint8_t{0};
+    return size;
+}
+
+template <RegionWalk Walk>
+bool LumpedOperatorBy<Walk>::make_feasible() requires Walk::one_thread {
+    settle();
+    bool changed = false;
+    for (std::size_t i = 0; i < memory_.contact.size(); ++i) {
+        const LumpedContact& contact = memory_.contact[i];
+        const Vec4 inside = project_friction(memory_.impulse[i], contact.normal, contact.friction, friction_);
+        const Vec4 change = inside - memory_.impulse[i];
+        if (change.squaredNorm() == 0) continue;
+        apply_impulse(contact, change, memory_.velocity.data());
+        memory_.impulse[i] = inside;
+        changed = true;
+    }
+    return changed;
+}
+
+template <RegionWalk Walk>
+Real LumpedOperatorBy<Walk>::error() {
+    settle();
+    std::fill(memory_.quiet_sweeps.begin(), memory_.quiet_sweeps.end(), velocity_unknown);
+    const Real sum = walk_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
+        Real part = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            const LumpedContact& contact = memory_.contact[i];
+            if (contact.node_count == 0) continue;
+            const Vec4 u = contact_velocity(contact, memory_.velocity.data());
+            part += contact.diagonal * natural_map(contact, friction_, memory_.impulse[i], u).squaredNorm();
+        }
+        return part;
+    });
+    if (sum == 0) return 0;  // solved exactly, whatever the scale
+    return std::sqrt(sum) / scale_;
+}
+
+template <RegionWalk Walk>
+void LumpedOperatorBy<Walk>::refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
+    walk_.nodes(memory_.node.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) velocity[n] = padded(memory_.free_velocity[memory_.node[n]]);
+    });
+    walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) apply_impulse(memory_.contact[i], impulse[i], velocity.data());
+    });
+}
+
+template <RegionWalk Walk>
+void LumpedOperatorBy<Walk>::residual(std::span<Vec4> out) {
+    settle();
+    walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const LumpedContact& contact = memory_.contact[i];
+            out[i] = contact.node_count == 0 ? Vec4(Vec4::Zero())
+                                             : Vec4(-contact_velocity(contact, memory_.velocity.data()));
+        }
+    });
+}
+
+template <RegionWalk Walk>
+void LumpedOperatorBy<Walk>::multiply(std::span<const Vec4> in, std::span<Vec4> out) {
+    walk_.nodes(memory_.scratch.size(), [this](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) memory_.scratch[n].setZero();
+    });
+    walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) apply_impulse(memory_.contact[i], in[i], memory_.scratch.data());
+    });
+    walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            out[i] = add_node_velocities(memory_.contact[i], memory_.scratch.data(), Vec4::Zero());
+    });
+}
+
+template <RegionWalk Walk>
+void LumpedOperatorBy<Walk>::assemble(Eigen::MatrixXd& matrix) const {
+    matrix.setZero(3 * size(), 3 * size());
+    for (Index i = 0; i < size(); ++i)
+        for (Index j = 0; j < size(); ++j) {
+            const LumpedContact &a = memory_.contact[i], &b = memory_.contact[j];
+            Real coupling = 0;
+            for (Index k = 0; k < a.node_count; ++k)
+                for (Index l = 0; l < b.node_count; ++l)
+                    if (a.node[k] == b.node[l]) coupling += a.weight[k] * b.step[l];
+            matrix.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(coupling);
+        }
+}
+
+static_assert(ContactOperator<LumpedOperator>);
+extern template class LumpedOperatorBy<InOrder>;  // compiled once, in lumped_operator.cpp
 
 }  // namespace skerry

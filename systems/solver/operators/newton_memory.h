@@ -15,8 +15,8 @@ struct NewtonMemory {
     Eigen::VectorXd rest, change;
     std::vector<Index> active;  // contacts that are not open
 
-    /// Leaves the solution of jacobian x = rest in `rest`, the factors in `jacobian`. Out of line: one factorisation is as long to compile
-    /// as all methods of one operator.
+    /// Leaves the solution of jacobian x = rest in `rest`, the factors in `jacobian`. Out of line: one factorisation is
+    /// as long to compile as all methods of one operator.
     void solve_equations();
 };
 

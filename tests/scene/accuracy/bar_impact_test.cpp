@@ -1,4 +1,5 @@
-// Bounces: a point with restitution, an elastic bar on a wall, two bars against each other (methods.md 8, items 9 to 11).
+// Bounces: a point with restitution, an elastic bar on a wall, two bars against each other (docs/methods/accuracy.md 9
+// to 11).
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -44,7 +45,11 @@ struct PointOverTriangle {
 };
 
 MaterialSettings bar_material() {
-    return {.young_modulus = modulus, .poisson_ratio = 0, .density = density, .friction = 0, .model = MaterialModel::linear};
+    return {.young_modulus = modulus,
+            .poisson_ratio = 0,
+            .density = density,
+            .friction = 0,
+            .model = MaterialModel::linear};
 }
 
 Settings without_gravity() {
@@ -59,7 +64,8 @@ Settings without_gravity() {
 constexpr Real v0 = 0.1;  // m/s: strains of v0 / c = 0.3 %
 
 const char* const front_note =
-    "The energy lost falls with 1 / n, the missing speed with n^(-2/3): a front that has crossed n elements is n^(1/3) of them wide "
+    "The energy lost falls with 1 / n, the missing speed with n^(-2/3): a front that has crossed n elements is n^(1/3) "
+    "of them wide "
     "(orders of 0.70, "
     "0.69 and 0.68 from n = 80 to 640).";
 
@@ -120,7 +126,8 @@ Impact collide(int n, bool wall) {
     if (wall)
         world.add_collider(Plane{});
     else
-        bars.push_back(world.add_body(mesh, {.material = material, .position = {0, 0, -length / 2}, .contact_distance = shell}));
+        bars.push_back(
+            world.add_body(mesh, {.material = material, .position = {0, 0, -length / 2}, .contact_distance = shell}));
     Impact impact{};
     while (world.time() < start / v0 + 4 * length / c) {
         const Real h = world.advance(world.stable_step() / 2).step_size;
@@ -176,7 +183,8 @@ TEST_CASE("a point bounces on a fixed triangle with its restitution", "[scene][a
                      .found = end,
                      .tolerance = 2 * Real(apex.size()) * h,
                      .kind = Tolerance::absolute,
-                     .note = "Measured without the least speed of a bounce, which is 0.05 m/s in worlds; below 2 g h nothing bounces."});
+                     .note = "Measured without the least speed of a bounce, which is 0.05 m/s in worlds; below 2 g h "
+                             "nothing bounces."});
 }
 
 TEST_CASE("an elastic bar rebounds from a wall as the wave does", "[scene][accuracy]") {
@@ -193,15 +201,16 @@ TEST_CASE("an elastic bar rebounds from a wall as the wave does", "[scene][accur
                          .found = impact.energy_lost,
                          .tolerance = 0.2});
         if (n == 40) continue;
-        accuracy::check(
-            {.item = 10,
-             .name = bar + ", contact time (s)",
-             .formula = "2 L / c",
-             .expected = 2 * length / c,
-             .found = impact.history.duration(),
-             .tolerance = n == 20 ? 0.03 : 0.0125,
-             .note = "The end of the force is as steep as the mesh lets a front be, so that the last contact ends later than 2 L / c, "
-                     "by 2.3 % at n = 20 and 0.7 % at n = 80; where the force falls through half its height the time is closer."});
+        accuracy::check({.item = 10,
+                         .name = bar + ", contact time (s)",
+                         .formula = "2 L / c",
+                         .expected = 2 * length / c,
+                         .found = impact.history.duration(),
+                         .tolerance = n == 20 ? 0.03 : 0.0125,
+                         .note = "The end of the force is as steep as the mesh lets a front be, so that the last "
+                                 "contact ends later than 2 L / c, "
+                                 "by 2.3 % at n = 20 and 0.7 % at n = 80; where the force falls through half its "
+                                 "height the time is closer."});
         accuracy::check({.item = 10,
                          .name = bar + ", time until half the force (s)",
                          .formula = "2 L / c",

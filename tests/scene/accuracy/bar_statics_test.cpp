@@ -1,4 +1,5 @@
-// Bars at rest under their weight and in rotation, and their vibrations (methods.md 8, items 12, 13, 16, 20 and the orders in h of 31).
+// Bars at rest under their weight and in rotation, and their vibrations (docs/methods/accuracy.md 12, 13, 16, 20 and
+// the orders in h of 31).
 #include <catch2/catch.hpp>
 #include <optional>
 
@@ -18,7 +19,11 @@ const Real c = std::sqrt(modulus / density);  // m/s
 constexpr std::array<Index, 3> bottom{0, 1, 2};
 
 MaterialSettings bar_material(Real damping = 0) {
-    return {.young_modulus = modulus, .poisson_ratio = 0, .density = density, .damping = damping, .model = MaterialModel::linear};
+    return {.young_modulus = modulus,
+            .poisson_ratio = 0,
+            .density = density,
+            .damping = damping,
+            .model = MaterialModel::linear};
 }
 
 Settings weightless() {
@@ -50,21 +55,23 @@ Real swing(int n, bool held, Real expected, Shape shape) {
     while (world.time() < 3 * 2 * std::numbers::pi / expected) {
         REQUIRE(world.advance(h).steps == 1);
         Real sum = 0;
-        for (std::size_t k = 0; k < mass.size(); ++k) sum += mass[k] * part[k] * (world.positions(bar)[k].z() - mesh.nodes[k].z());
+        for (std::size_t k = 0; k < mass.size(); ++k)
+            sum += mass[k] * part[k] * (world.positions(bar)[k].z() - mesh.nodes[k].z());
         sample.push_back(sum);
     }
     return angular_frequency(sample, h);
 }
 
-/// A column that hangs from its bottom layer in gravity that pulls it away from there, at rest. Even loads: the weights of the three corners of
-/// the free end, which the mesh makes uneven, are made equal.
+/// A column that hangs from its bottom layer in gravity that pulls it away from there, at rest. Even loads: the weights
+/// of the three corners of the free end, which the mesh makes uneven, are made equal.
 struct HangingColumn {
     World world;
     Mesh mesh;
     BodyHandle bar;
 
     HangingColumn(int n, bool even) : world(settings()), mesh(column(width, length, n)) {
-        const auto material = world.add_material(bar_material(6));  // 1/s, about critical for bending, which is the slowest
+        // 1/s, about critical for bending, which is the slowest
+        const auto material = world.add_material(bar_material(6));
         bar = world.add_body(mesh, {.material = material});
         world.attach(bar, bottom);
         if (even) {
@@ -133,18 +140,19 @@ TEST_CASE("a hanging bar has its closed-form shape and stress", "[scene][accurac
     Real worst = 0;
     for (std::size_t k = 0; k < even.mesh.nodes.size(); ++k)
         worst = std::max(worst, std::abs(even.displacement(k) - hanging_displacement(even.z(k))));
-    accuracy::check(
-        {.item = 16,
-         .name = "hanging bar, worst node over tip displacement",
-         .formula = "rho g (L z - z^2 / 2) / E, error",
-         .found = worst / hanging_displacement(length),
-         .tolerance = 1e-8,
-         .kind = Tolerance::absolute,
-         .note = "Exact at the nodes for a column whose end carries its weight in equal parts; the mesh makes them 1 : 2 : 3, which loads "
-                 "even out. The next line is without the loads."});
+    accuracy::check({.item = 16,
+                     .name = "hanging bar, worst node over tip displacement",
+                     .formula = "rho g (L z - z^2 / 2) / E, error",
+                     .found = worst / hanging_displacement(length),
+                     .tolerance = 1e-8,
+                     .kind = Tolerance::absolute,
+                     .note = "Exact at the nodes for a column whose end carries its weight in equal parts; the mesh "
+                             "makes them 1 : 2 : 3, which loads "
+                             "even out. The next line is without the loads."});
     const HangingColumn plain(10, false);
     Real tip = 0;
-    for (std::size_t k = plain.mesh.nodes.size() - 3; k < plain.mesh.nodes.size(); ++k) tip += plain.displacement(k) / 3;
+    for (std::size_t k = plain.mesh.nodes.size() - 3; k < plain.mesh.nodes.size(); ++k)
+        tip += plain.displacement(k) / 3;
     accuracy::check({.item = 16,
                      .name = "hanging bar, mean tip displacement as meshed (m)",
                      .formula = "rho g L^2 / (2 E)",
@@ -155,7 +163,8 @@ TEST_CASE("a hanging bar has its closed-form shape and stress", "[scene][accurac
     Real stress_error = 0;
     for (std::size_t e = 0; e < stress.size(); ++e) {
         const Real middle = (static_cast<Real>(e / 3) + 0.5) * length / 10;
-        stress_error = std::max(stress_error, std::abs(stress[e] - density * g * (length - middle)) / (density * g * length));
+        stress_error =
+            std::max(stress_error, std::abs(stress[e] - density * g * (length - middle)) / (density * g * length));
     }
     accuracy::check({.item = 16,
                      .name = "hanging bar, stress in the middle of each element over the largest",
@@ -166,7 +175,8 @@ TEST_CASE("a hanging bar has its closed-form shape and stress", "[scene][accurac
 }
 
 TEST_CASE("displacements have order 2 in h and stresses order 1", "[scene][accuracy]") {
-    // Between its nodes an element is linear, its stress constant: the worst place of the displacement is the middle, of the stress an end.
+    // Between its nodes an element is linear, its stress constant: the worst place of the displacement is the middle,
+    // of the stress an end.
     std::vector<Real> shape_error, stress_error;
     for (int n : {4, 8, 16}) {
         const HangingColumn bar(n, true);
@@ -174,8 +184,8 @@ TEST_CASE("displacements have order 2 in h and stresses order 1", "[scene][accur
         Real worst_shape = 0, worst_stress = 0;
         for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
             const Real z = bar.z(3 * k), middle = z + 0.5 * length / n;
-            worst_shape = std::max(worst_shape,
-                                   std::abs(0.5 * (bar.displacement(3 * k) + bar.displacement(3 * k + 3)) - hanging_displacement(middle)));
+            worst_shape = std::max(worst_shape, std::abs(0.5 * (bar.displacement(3 * k) + bar.displacement(3 * k + 3)) -
+                                                         hanging_displacement(middle)));
             worst_stress = std::max(worst_stress, std::abs(stress[3 * k] - density * g * (length - z)));
         }
         shape_error.push_back(worst_shape);
@@ -201,7 +211,8 @@ namespace {
 
 constexpr Real omega = 1;  // rad/s: a strain of rho omega^2 L^2 / 3 E = 0.03 %
 
-/// m, by which each end of a bar of 2 L that turns at omega is further out after some seconds; steps of `h`, or as long as is stable.
+/// m, by which each end of a bar of 2 L that turns at omega is further out after some seconds; steps of `h`, or as long
+/// as is stable.
 Real spun_stretch(MaterialModel model, Real damping, Real seconds, std::optional<Real> h = {}) {
     MaterialSettings material = bar_material(damping);
     material.model = model;
@@ -209,7 +220,8 @@ Real spun_stretch(MaterialModel model, Real damping, Real seconds, std::optional
     settings.step_size = h;
     World world(settings);
     const Mesh mesh = mesh::box({width, width, 2 * length}, {1, 1, 40});
-    const auto bar = world.add_body(mesh, {.material = world.add_material(material), .angular_velocity = {omega, 0, 0}});
+    const auto bar =
+        world.add_body(mesh, {.material = world.add_material(material), .angular_velocity = {omega, 0, 0}});
     REQUIRE(world.advance(seconds).ok());
     Vec3 upper = Vec3::Zero(), lower = Vec3::Zero();
     for (std::size_t k = 0; k < mesh.nodes.size(); ++k) {
@@ -235,8 +247,10 @@ TEST_CASE("damping takes nothing of the stretch of a spinning bar", "[scene]") {
     // Beside places half a step younger than the velocities it would take damping h / 2 of it: 4 and 0.8 % here.
     const Real h = 8e-4;
     for (const auto model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
-        const Real strong = spun_stretch(model, 99, 2, h), weak = spun_stretch(model, 20, 2, h), fine = spun_stretch(model, 99, 2, h / 2);
-        CHECK(std::abs(strong - weak) <= 5e-4 * weak);    // slow bending of the mesh, which is not symmetric, has come further with one
+        const Real strong = spun_stretch(model, 99, 2, h), weak = spun_stretch(model, 20, 2, h),
+                   fine = spun_stretch(model, 99, 2, h / 2);
+        // slow bending of the mesh, which is not symmetric, has come further with one
+        CHECK(std::abs(strong - weak) <= 5e-4 * weak);
         CHECK(std::abs(strong - fine) <= 2e-5 * strong);  // second order: (omega h)^2 is 6e-7
     }
 }

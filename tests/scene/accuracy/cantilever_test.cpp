@@ -1,5 +1,5 @@
-// Bending (methods.md 8, items 14 and 15). Linear tetrahedra are too stiff in bending, by an error of second order in their size: three meshes
-// and Richardson's extrapolation give the limit.
+// Bending (docs/methods/accuracy.md 14 and 15). Linear tetrahedra are too stiff in bending, by an error of second order
+// in their size: three meshes and Richardson's extrapolation give the limit.
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"
@@ -15,8 +15,8 @@ namespace {
 constexpr Real length = 1, height = 0.1, density = 1000, modulus = 1e6, g = standard_gravity;
 const Real c = std::sqrt(modulus / density);  // m/s
 
-/// A cantilever along x, held at x = -L / 2, of m elements in its height and as long ones along x; one element wide, since without lateral
-/// strain the width does not matter.
+/// A cantilever along x, held at x = -L / 2, of m elements in its height and as long ones along x; one element wide,
+/// since without lateral strain the width does not matter.
 struct Cantilever {
     World world;
     Mesh mesh;
@@ -28,8 +28,11 @@ struct Cantilever {
         : world(settings(gravity)),
           mesh(mesh::box({length, height / m, height}, {static_cast<int>(length / height) * m, 1, m})),
           width(height / m) {
-        const auto material = world.add_material(
-            {.young_modulus = modulus, .poisson_ratio = 0, .density = density, .damping = damping, .model = MaterialModel::linear});
+        const auto material = world.add_material({.young_modulus = modulus,
+                                                  .poisson_ratio = 0,
+                                                  .density = density,
+                                                  .damping = damping,
+                                                  .model = MaterialModel::linear});
         beam = world.add_body(mesh, {.material = material});
         world.attach(beam, nodes_at(-length / 2));
         mass = node_masses(world, beam, mesh, density);
@@ -49,12 +52,14 @@ struct Cantilever {
     Real deflection() const {
         const std::vector<Index> tip = nodes_at(length / 2);
         Real sum = 0;
-        for (Index n : tip) sum += mesh.nodes[static_cast<std::size_t>(n)].z() - world.positions(beam)[static_cast<std::size_t>(n)].z();
+        for (Index n : tip)
+            sum += mesh.nodes[static_cast<std::size_t>(n)].z() - world.positions(beam)[static_cast<std::size_t>(n)].z();
         return sum / static_cast<Real>(tip.size());
     }
 };
 
-const Real first_frequency = 1.8751 * 1.8751 * c * height / (std::sqrt(12.0) * length * length);  // rad/s, of Euler and Bernoulli
+// rad/s, of Euler and Bernoulli
+const Real first_frequency = 1.8751 * 1.8751 * c * height / (std::sqrt(12.0) * length * length);
 
 Real own_weight(int m) {
     Cantilever beam(m, 1e-3 * g, 2 * first_frequency);
@@ -99,8 +104,8 @@ Real frequency(int m) {
     return angular_frequency(sample, h);
 }
 
-/// The limit of a series whose error falls with h^2, from the two finer of h, h/2 and h/4; and the order that the three show. Stiffnesses are
-/// such a series from coarse meshes on: K (1 + C h^2). Deflections are their inverse.
+/// The limit of a series whose error falls with h^2, from the two finer of h, h/2 and h/4; and the order that the three
+/// show. Stiffnesses are such a series from coarse meshes on: K (1 + C h^2). Deflections are their inverse.
 struct Limit {
     Real value, order;
 };
@@ -113,14 +118,15 @@ Limit richardson(const std::array<Real, 3>& f) {
 TEST_CASE("a cantilever bends under a load at its tip and under its weight", "[scene][accuracy]") {
     const Real inertia = height * height * height / 12, shear = modulus / 2;  // m^3, a metre of width; Pa
     const Limit tip = richardson({1 / tip_load(2), 1 / tip_load(4), 1 / tip_load(8)});
-    accuracy::check({.item = 15,
-                     .name = "cantilever, tip load of 1 N a metre of width, deflection (m)",
-                     .formula = "P L^3 / (3 E I) + P L / ((5/6) G A)",
-                     .expected = length * length * length / (3 * modulus * inertia) + length / (5.0 / 6 * shear * height),
-                     .found = 1 / tip.value,
-                     .tolerance = 0.02,
-                     .note = "Linear tetrahedra are too stiff in bending; the value is the limit of 4 and 8 elements in the height "
-                             "(Richardson, on the stiffness)."});
+    accuracy::check(
+        {.item = 15,
+         .name = "cantilever, tip load of 1 N a metre of width, deflection (m)",
+         .formula = "P L^3 / (3 E I) + P L / ((5/6) G A)",
+         .expected = length * length * length / (3 * modulus * inertia) + length / (5.0 / 6 * shear * height),
+         .found = 1 / tip.value,
+         .tolerance = 0.02,
+         .note = "Linear tetrahedra are too stiff in bending; the value is the limit of 4 and 8 elements in the height "
+                 "(Richardson, on the stiffness)."});
     const Limit weight = richardson({1 / own_weight(2), 1 / own_weight(4), 1 / own_weight(8)});
     accuracy::check({.item = 15,
                      .name = "cantilever, own weight, deflection of a linear material (m)",
@@ -149,7 +155,8 @@ TEST_CASE("a cantilever swings with its first frequency", "[scene][accuracy]") {
                      .expected = first_frequency / (2 * std::numbers::pi),
                      .found = std::sqrt(limit.value) / (2 * std::numbers::pi),
                      .tolerance = 0.02,
-                     .note = "Limit of 4 and 8 elements in the height (Richardson, on the square). Shear and rotation, which the formula "
+                     .note = "Limit of 4 and 8 elements in the height (Richardson, on the square). Shear and rotation, "
+                             "which the formula "
                              "leaves out, lower the frequency of this "
                              "beam (L / H = 10) by 0.5 %."});
 }

@@ -1,4 +1,4 @@
-// What must not change, step by step: momentum, angular momentum, energy (methods.md 8, items 2, 3 and 32).
+// What must not change, step by step: momentum, angular momentum, energy (docs/methods/accuracy.md 2, 3 and 32).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cstdio>
@@ -22,16 +22,20 @@ struct TwoBalls {
 
     explicit TwoBalls(const Settings& settings, Real damping = 0) : world(settings) {
         const auto rubber = world.add_material({.young_modulus = 5e4, .friction = 0.6, .damping = damping});
-        body[0] =
-            world.add_body(ball, {.material = rubber, .position = {-0.06, 0, 0}, .velocity = {1, 0, 0}, .angular_velocity = {3, -4, 5}});
+        body[0] = world.add_body(
+            ball,
+            {.material = rubber, .position = {-0.06, 0, 0}, .velocity = {1, 0, 0}, .angular_velocity = {3, -4, 5}});
         body[1] = world.add_body(ball, {.material = rubber, .position = {0.06, 0.03, 0.01}, .velocity = {-1, 0.5, 0}});
         mass = node_masses(world, body[0], ball, 1000);
     }
-    Vec3 momentum() const { return world.mass(body[0]) * (mean_velocity(world, body[0], mass) + mean_velocity(world, body[1], mass)); }
+    Vec3 momentum() const {
+        return world.mass(body[0]) * (mean_velocity(world, body[0], mass) + mean_velocity(world, body[1], mass));
+    }
     Vec3 angular_momentum() const {
         Vec3 sum = Vec3::Zero();
         for (BodyHandle b : body)
-            for (std::size_t n = 0; n < mass.size(); ++n) sum += mass[n] * world.positions(b)[n].cross(world.velocities(b)[n]);
+            for (std::size_t n = 0; n < mass.size(); ++n)
+                sum += mass[n] * world.positions(b)[n].cross(world.velocities(b)[n]);
         return sum;
     }
     Real sum_of_momenta() const {  // of m |v|
@@ -50,7 +54,8 @@ Settings in_short_steps(const Vec3& gravity) {
 
 }  // namespace
 
-TEST_CASE("two balls that collide under gravity keep their momentum but for the weight, in every step", "[scene][accuracy]") {
+TEST_CASE("two balls that collide under gravity keep their momentum but for the weight, in every step",
+          "[scene][accuracy]") {
     for (Friction friction : {Friction::cone, Friction::pyramid}) {
         const Vec3 gravity(0.3, 0.1, -standard_gravity);
         Settings settings = in_short_steps(gravity);
@@ -66,13 +71,13 @@ TEST_CASE("two balls that collide under gravity keep their momentum but for the 
             worst = std::max(worst, (scene.momentum() - before - weight).norm() / scene.sum_of_momenta());
         }
         REQUIRE(scene.world.report().max_contacts > 3);
-        accuracy::check(
-            {.item = 2,
-             .name = "two balls, change of momentum less the weight, worst step, over sum m |v|, " + std::string(name_of(friction)),
-             .formula = "M g h",
-             .found = worst,
-             .tolerance = 1e-13,
-             .kind = Tolerance::absolute});
+        accuracy::check({.item = 2,
+                         .name = "two balls, change of momentum less the weight, worst step, over sum m |v|, " +
+                                 std::string(name_of(friction)),
+                         .formula = "M g h",
+                         .found = worst,
+                         .tolerance = 1e-13,
+                         .kind = Tolerance::absolute});
     }
 }
 
@@ -92,8 +97,8 @@ TEST_CASE("a free spinning body keeps its angular momentum in every step", "[sce
                 before = now;
             }
             accuracy::check({.item = 3,
-                             .name = "spinning block, change of angular momentum, worst step, relative, " + std::string(name_of(model)) +
-                                     (damping > 0 ? ", damped" : ""),
+                             .name = "spinning block, change of angular momentum, worst step, relative, " +
+                                     std::string(name_of(model)) + (damping > 0 ? ", damped" : ""),
                              .formula = "0",
                              .found = worst,
                              .tolerance = 1e-12,
@@ -126,32 +131,36 @@ TEST_CASE("friction across a gap turns a pair of bodies by the known torque and 
     REQUIRE(largest > 1e-6);  // the identity is not empty
     accuracy::check(
         {.item = 3,
-         .name = "two balls with friction, change of angular momentum less the torque of the gaps, worst step, relative",
+         .name =
+             "two balls with friction, change of angular momentum less the torque of the gaps, worst step, relative",
          .formula = "sum d n x r",
          .found = worst,
          .tolerance = 1e-12,
          .kind = Tolerance::absolute,
-         .note = "Friction acts on two points that are the distance d apart, so that it leaves the torque d n x r: of the order of the "
-                 "contact distance, and the only source of angular momentum but for the push that takes overlapping shells apart. "
+         .note = "Friction acts on two points that are the distance d apart, so that it leaves the torque d n x r: of "
+                 "the order of the "
+                 "contact distance, and the only source of angular momentum but for the push that takes overlapping "
+                 "shells apart. "
                  "That push moves positions without touching velocities; its share sum m dx x v is taken off, too."});
 }
 
 TEST_CASE("a bar that bounces without friction never gains discrete energy", "[scene][accuracy]") {
-    // methods.md 4.3: E_n = v_n+1 M v_n+1 / 2 + x_n K x_n+1 / 2 + weight at the middle of the step.
-    // The shell is thick enough to see every contact that closes in a step: what closes by an elastic force alone is noticed within a
-    // twentieth of it (contact_reach.h). Later it would be met inside the shell, where the theorem says nothing.
+    // docs/methods/time_stepping.md 2.1: E_n = v_n+1 M v_n+1 / 2 + x_n K x_n+1 / 2 + weight at the middle of the step.
+    // The shell is thick enough to see every contact that closes in a step: what closes by an elastic force alone is
+    // noticed within a twentieth of it (contact_reach.h). Later it would be met inside the shell, where the theorem
+    // says nothing.
     constexpr Real density = 1000, shell = 0.04;
     for (Real fraction : {0.5, 0.9, 1.0}) {
         Settings settings = in_short_steps({0, 0, -standard_gravity});
         settings.tolerance = 1e-14;
         settings.step_size.reset();
         World world(settings);
-        const auto material =
-            world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .friction = 0, .model = MaterialModel::linear});
+        const auto material = world.add_material(
+            {.young_modulus = 1e5, .poisson_ratio = 0.3, .friction = 0, .model = MaterialModel::linear});
         world.add_collider(Plane{});
         const Mesh mesh = mesh::box({0.1, 0.1, 1}, {1, 1, 10});
-        const auto bar =
-            world.add_body(mesh, {.material = material, .position = {0, 0, 0.55}, .velocity = {0, 0, -1}, .contact_distance = shell});
+        const auto bar = world.add_body(
+            mesh, {.material = material, .position = {0, 0, 0.55}, .velocity = {0, 0, -1}, .contact_distance = shell});
         // a twin that tells the elastic forces K (x - rest) of the position before the step
         ElasticBody twin({mesh.nodes, mesh.tetrahedra}, material_constants(MaterialModel::linear, 1e5, 0.3, density));
         const auto executor = make_executor(Backend::serial, 1);
@@ -186,17 +195,19 @@ TEST_CASE("a bar that bounces without friction never gains discrete energy", "[s
         REQUIRE(flying > 100);
         REQUIRE(lowest_gap > -1e-12);  // rounding of metres
         char name[100];
-        std::snprintf(name, sizeof name, "bouncing bar, largest gain of energy in a step over energy, %.0f %% of the stable step",
+        std::snprintf(name, sizeof name,
+                      "bouncing bar, largest gain of energy in a step over energy, %.0f %% of the stable step",
                       100 * fraction);
-        accuracy::check(
-            {.item = 32,
-             .name = name,
-             .formula = "<= 0",
-             .found = std::max(worst, Real(0)),
-             .tolerance = 1e-14,
-             .kind = Tolerance::absolute,
-             .note = "The theorem asks that no gap is negative, which is asserted, too. A contact that an elastic force closes within a "
-                     "step is noticed while it is within a twentieth of the contact distance; the shell of this test is as thick as that "
-                     "needs. With a thin one a node can enter the shell, and leave it with a gain."});
+        accuracy::check({.item = 32,
+                         .name = name,
+                         .formula = "<= 0",
+                         .found = std::max(worst, Real(0)),
+                         .tolerance = 1e-14,
+                         .kind = Tolerance::absolute,
+                         .note = "The theorem asks that no gap is negative, which is asserted, too. A contact that an "
+                                 "elastic force closes within a "
+                                 "step is noticed while it is within a twentieth of the contact distance; the shell of "
+                                 "this test is as thick as that "
+                                 "needs. With a thin one a node can enter the shell, and leave it with a gain."});
     }
 }

@@ -1,4 +1,4 @@
-// Bodies that nothing touches: free fall, momentum, spin (methods.md 8, items 1 to 3 and 20).
+// Bodies that nothing touches: free fall, momentum, spin (docs/methods/accuracy.md 1 to 3 and 20).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
@@ -34,8 +34,10 @@ Fall fall(MaterialModel model, Real h, const Vec3& early, const Vec3& lag) {
     const Vec3 velocity = v0 + early + fall_time * g;
     Fall errors;
     for (std::size_t n = 0; n < cube.nodes.size(); ++n) {
-        errors.position_error = std::max(errors.position_error, (world.positions(body)[n] - cube.nodes[n] - shift).norm());
-        errors.velocity_error = std::max(errors.velocity_error, (world.velocities(body)[n] - velocity).norm() / velocity.norm());
+        errors.position_error =
+            std::max(errors.position_error, (world.positions(body)[n] - cube.nodes[n] - shift).norm());
+        errors.velocity_error =
+            std::max(errors.velocity_error, (world.velocities(body)[n] - velocity).norm() / velocity.norm());
     }
     return errors;
 }
@@ -52,7 +54,8 @@ TEST_CASE("free fall follows the discrete law to rounding, and the exact law in 
         discrete.position_error = std::max(discrete.position_error, symplectic.position_error);
         discrete.velocity_error = std::max(discrete.velocity_error, symplectic.velocity_error);
         // velocities that start half a kick early are those of the middle of each step
-        leapfrog.position_error = std::max(leapfrog.position_error, fall(model, h, -0.5 * h * g, Vec3::Zero()).position_error);
+        leapfrog.position_error =
+            std::max(leapfrog.position_error, fall(model, h, -0.5 * h * g, Vec3::Zero()).position_error);
     }
     accuracy::check({.item = 1,
                      .name = "free fall, velocity after 0.5 s, worst node error over speed",
@@ -66,14 +69,14 @@ TEST_CASE("free fall follows the discrete law to rounding, and the exact law in 
                      .found = discrete.position_error,
                      .tolerance = 1e-12,
                      .kind = Tolerance::absolute});
-    accuracy::check(
-        {.item = 1,
-         .name = "free fall, leapfrog start, worst node error (m)",
-         .formula = "x = x0 + v0 t - g t^2 / 2",
-         .found = leapfrog.position_error,
-         .tolerance = 1e-12,
-         .kind = Tolerance::absolute,
-         .note = "A leapfrog start is an initial velocity half a kick early; velocities are then those of the middle of the step."});
+    accuracy::check({.item = 1,
+                     .name = "free fall, leapfrog start, worst node error (m)",
+                     .formula = "x = x0 + v0 t - g t^2 / 2",
+                     .found = leapfrog.position_error,
+                     .tolerance = 1e-12,
+                     .kind = Tolerance::absolute,
+                     .note = "A leapfrog start is an initial velocity half a kick early; velocities are then those of "
+                             "the middle of the step."});
     const Real coarse = fall(MaterialModel::linear, h, Vec3::Zero(), Vec3::Zero()).position_error;
     const Real fine = fall(MaterialModel::linear, h / 2, Vec3::Zero(), Vec3::Zero()).position_error;
     accuracy::check({.item = 1,

@@ -1,5 +1,5 @@
-// Hertz contact, at rest and in an impact (methods.md 8, item 21). Linear tetrahedra are too stiff around a contact, by an error of second order
-// in their size: two meshes and Richardson's extrapolation give the limit.
+// Hertz contact, at rest and in an impact (docs/methods/accuracy.md 21). Linear tetrahedra are too stiff around a
+// contact, by an error of second order in their size: two meshes and Richardson's extrapolation give the limit.
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"
@@ -14,10 +14,15 @@ namespace {
 
 constexpr Real modulus = 1e5, nu = 0.3, density = 1000, reduced = modulus / (1 - nu * nu);  // Pa, -, kg/m^3, Pa
 const Real c = std::sqrt(modulus / density);                                                // m/s
-constexpr Real a = 0.01, shell = a / 50;                                                    // m: contact radius, contact distance
+// m: contact radius, contact distance
+constexpr Real a = 0.01, shell = a / 50;
 
 MaterialSettings hertz_material() {
-    return {.young_modulus = modulus, .poisson_ratio = nu, .density = density, .friction = 0, .model = MaterialModel::linear};
+    return {.young_modulus = modulus,
+            .poisson_ratio = nu,
+            .density = density,
+            .friction = 0,
+            .model = MaterialModel::linear};
 }
 
 Settings weightless() {
@@ -40,8 +45,9 @@ struct Pressed {
     Real force, radius, pressure;  // over Hertz's
 };
 
-/// A rigid ball is pressed into the half space z < 0 until the contact radius is a, of `fine` elements. Force and radius are means while the edge
-/// of the contact goes from half an element before to half an element behind a: where the edge stands among the nodes moves them by some per cent.
+/// A rigid ball is pressed into the half space z < 0 until the contact radius is a, of `fine` elements. Force and
+/// radius are means while the edge of the contact goes from half an element before to half an element behind a: where
+/// the edge stands among the nodes moves them by some per cent.
 Pressed press(int fine) {
     constexpr Real radius = 10 * a;  // m, of the ball
     World world(weightless());
@@ -87,7 +93,8 @@ Pressed press(int fine) {
         }
         // The approach of a half space: what lies beyond the anchor gives way as under a force at a point (Boussinesq).
         const Real moved = world.positions(ground)[anchor].z() - mesh.nodes[anchor].z();
-        const Real depth = sunk + moved + force * (1 + nu) * (3 - 2 * nu) / (2 * std::numbers::pi * modulus * -mesh.nodes[anchor].z());
+        const Real depth =
+            sunk + moved + force * (1 + nu) * (3 - 2 * nu) / (2 * std::numbers::pi * modulus * -mesh.nodes[anchor].z());
         mean.force += force / (4.0 / 3 * reduced * std::sqrt(radius) * std::pow(depth, 1.5)) / samples;
         // Hertz's pressure has a mean of r^2 of 2 a^2 / 5
         mean.radius += std::sqrt(2.5 * moment / force / (radius * depth)) / samples;
@@ -96,15 +103,16 @@ Pressed press(int fine) {
     return mean;
 }
 
-/// An elastic ball of a given radius (m) hits a plane at the speed at which its contact grows to the radius a. Returns the time that they touch
-/// over Hertz's.
+/// An elastic ball of a given radius (m) hits a plane at the speed at which its contact grows to the radius a. Returns
+/// the time that they touch over Hertz's.
 Real bounce(Real ball_radius) {
     World world(weightless());
     const auto material = world.add_material(hertz_material());
     Mesh mesh = graded_half_ball({.a = a, .fine = 4, .growth = 2.5, .radius = 4 * ball_radius});
     roll_up(mesh, ball_radius);
     world.add_collider(Plane{});
-    const auto ball = world.add_body(mesh, {.material = material, .position = {0, 0, shell / 2}, .contact_distance = shell});
+    const auto ball =
+        world.add_body(mesh, {.material = material, .position = {0, 0, shell / 2}, .contact_distance = shell});
     const Real mass = world.mass(ball), deepest = a * a / ball_radius;
     // E* sqrt(R) d^2.5 8 / 15 = m v^2 / 2
     const Real v = std::sqrt(16.0 / 15 * reduced * std::sqrt(ball_radius) * std::pow(deepest, 2.5) / mass);
@@ -125,16 +133,15 @@ Real bounce(Real ball_radius) {
 TEST_CASE("a rigid ball presses into an elastic half space as Hertz has it", "[scene][accuracy]") {
     const Pressed coarse = press(4), fine = press(8);
     const auto limit = [](Real of_coarse, Real of_fine) { return of_fine + (of_fine - of_coarse) / 3; };
-    accuracy::check(
-        {.item = 21,
-         .name = "Hertz, force over the formula",
-         .formula = "(4/3) E* sqrt(R) d^1.5",
-         .expected = 1,
-         .found = limit(coarse.force, fine.force),
-         .tolerance = 0.03,
-         .note =
-             "Linear tetrahedra are too stiff around a contact, by an error of second order (force 18 % too large with 4 elements to the "
-             "contact radius, 6 % with 8): the values are the limit of 4 and 8 (Richardson)."});
+    accuracy::check({.item = 21,
+                     .name = "Hertz, force over the formula",
+                     .formula = "(4/3) E* sqrt(R) d^1.5",
+                     .expected = 1,
+                     .found = limit(coarse.force, fine.force),
+                     .tolerance = 0.03,
+                     .note = "Linear tetrahedra are too stiff around a contact, by an error of second order (force 18 "
+                             "% too large with 4 elements to the "
+                             "contact radius, 6 % with 8): the values are the limit of 4 and 8 (Richardson)."});
     accuracy::check({.item = 21,
                      .name = "Hertz, contact radius over the formula",
                      .formula = "sqrt(R d)",
@@ -152,18 +159,18 @@ TEST_CASE("a rigid ball presses into an elastic half space as Hertz has it", "[s
 TEST_CASE("an elastic ball bounces in the time that Hertz gives", "[scene][accuracy]") {
     const Real small = bounce(5 * a), large = bounce(10 * a);
     const std::string formula = "2.87 (m^2 / (R E*^2 v))^(1/5)";
-    accuracy::check(
-        {.item = 21,
-         .name = "ball on a plane, a / R = 0.1, a / h = 4, contact time over the formula",
-         .formula = formula,
-         .expected = 1,
-         .found = large,
-         .tolerance = 0.08,
-         .note =
-             "The contact time is tested at a / h = 4 and 8 %, not at 10 and 3 %: Hertz's formula is that of a ball much larger than its "
-             "contact (found "
-             "0.912, 0.936 and 0.949 of it at a / R = 0.2, 0.1 and 0.05), and a mesh that is fine enough for both lengths takes minutes. A "
-             "finer one comes closer: 0.925 and 0.943 at 0.2 and 0.1 with a / h = 6."});
+    accuracy::check({.item = 21,
+                     .name = "ball on a plane, a / R = 0.1, a / h = 4, contact time over the formula",
+                     .formula = formula,
+                     .expected = 1,
+                     .found = large,
+                     .tolerance = 0.08,
+                     .note = "The contact time is tested at a / h = 4 and 8 %, not at 10 and 3 %: Hertz's formula is "
+                             "that of a ball much larger than its "
+                             "contact (found "
+                             "0.912, 0.936 and 0.949 of it at a / R = 0.2, 0.1 and 0.05), and a mesh that is fine "
+                             "enough for both lengths takes minutes. A "
+                             "finer one comes closer: 0.925 and 0.943 at 0.2 and 0.1 with a / h = 6."});
     accuracy::check({.item = 21,
                      .name = "the same, limit of a / R = 0.2 and 0.1",
                      .formula = formula,

@@ -1,4 +1,4 @@
-// A block on an incline against Coulomb's law (methods.md 8, item 6), at several sizes.
+// A block on an incline against Coulomb's law (docs/methods/accuracy.md 6), at several sizes.
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"
@@ -22,7 +22,8 @@ Settings on_incline(Real degrees, ContactRegions regions = ContactRegions::separ
     return settings;
 }
 
-/// A block of height `height` that has come to rest and is then tilted slowly. Deformation decays at a rate that goes with its frequencies.
+/// A block of height `height` that has come to rest and is then tilted slowly. Deformation decays at a rate that goes
+/// with its frequencies.
 BlockOnPlane settled_block(const Settings& settings, Real height = 0.1) {
     BlockOnPlane scene(settings, {.young_modulus = 2e5, .poisson_ratio = 0.3, .friction = mu, .damping = 30 / height},
                        height * Vec3(2, 2, 1));
@@ -91,12 +92,12 @@ TEST_CASE("a block slides above the friction angle with g (sin a - mu cos a)", "
 TEST_CASE("a block slides alike at 1 m, 10 cm and 1 cm", "[scene][accuracy]") {
     for (Real height : {1.0, 0.1, 0.01}) {
         BlockOnPlane scene = settled_block(on_incline(20), height);
-        accuracy::check(
-            {.item = 6,
-             .name = "incline at 20 degrees, block " + std::to_string(static_cast<int>(100 * height)) + " cm high, acceleration (m/s^2)",
-             .formula = "g (sin a - mu cos a)",
-             .expected = expected_acceleration(20),
-             .found = acceleration(scene),
-             .tolerance = 0.001});
+        accuracy::check({.item = 6,
+                         .name = "incline at 20 degrees, block " + std::to_string(static_cast<int>(100 * height)) +
+                                 " cm high, acceleration (m/s^2)",
+                         .formula = "g (sin a - mu cos a)",
+                         .expected = expected_acceleration(20),
+                         .found = acceleration(scene),
+                         .tolerance = 0.001});
     }
 }

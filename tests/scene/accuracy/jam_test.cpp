@@ -1,4 +1,5 @@
-// What friction and weight hold together: stacks, wedges, belts, and Painleve's rod (methods.md 8, items 22, 23 and 27).
+// What friction and weight hold together: stacks, wedges, belts, and Painleve's rod (docs/methods/accuracy.md 22, 23
+// and 27).
 #include <catch2/catch.hpp>
 #include <cstdio>
 
@@ -21,7 +22,8 @@ struct Wedge {
     Real angle;  // rad
 
     explicit Wedge(Real tangent) : world(accurate(Vec3::Zero())), angle(std::atan(tangent)) {
-        const auto material = world.add_material({.young_modulus = 2e5, .poisson_ratio = 0.3, .friction = mu, .damping = 300});
+        const auto material =
+            world.add_material({.young_modulus = 2e5, .poisson_ratio = 0.3, .friction = mu, .damping = 300});
         constexpr Real shell = 0.002;
         for (int side : {-1, 1}) {
             const Vec3 normal(-side * std::cos(angle), 0, std::sin(angle));
@@ -52,16 +54,19 @@ struct Wedge {
 
 TEST_CASE("a stack of bricks carries its weight brick by brick", "[scene][accuracy]") {
     Settings settings = accurate({0, 0, -g});
-    settings.tolerance = 1e-6;  // 86 contacts, most of them redundant: below 1e-7 of the region's energy sweeps gain nothing while it sways
+    // 86 contacts, most of them redundant: below 1e-7 of the region's energy sweeps gain nothing while it sways
+    settings.tolerance = 1e-6;
     World world(settings);
-    const auto material = world.add_material({.young_modulus = 5e5, .poisson_ratio = 0.3, .friction = 0.5, .damping = 500});
+    const auto material =
+        world.add_material({.young_modulus = 5e5, .poisson_ratio = 0.3, .friction = 0.5, .damping = 500});
     world.add_collider(Plane{});
     constexpr Real thick = 0.05, shell = 0.001;
     std::vector<BodyHandle> brick;
     for (int i = 0; i < 6; ++i)
-        brick.push_back(world.add_body(
-            mesh::box({0.2, 0.1, thick}, {2, 1, 1}),
-            {.material = material, .position = {0, 0, thick / 2 + shell / 2 + i * (thick + shell)}, .contact_distance = shell}));
+        brick.push_back(world.add_body(mesh::box({0.2, 0.1, thick}, {2, 1, 1}),
+                                       {.material = material,
+                                        .position = {0, 0, thick / 2 + shell / 2 + i * (thick + shell)},
+                                        .contact_distance = shell}));
     REQUIRE(world.advance(6).ok());
     const Real h = world.advance(1e-4).step_size, weight = world.mass(brick[0]) * g;
     Real worst = 0, sideways = 0;
@@ -70,9 +75,9 @@ TEST_CASE("a stack of bricks carries its weight brick by brick", "[scene][accura
         Vec3 force = Vec3::Zero();
         for (const Contact& c : world.contacts()) {
             const bool floor = !world.alive(c.second);
-            if (i == 0
-                    ? floor
-                    : (!floor && ((c.first == brick[i] && c.second == brick[i - 1]) || (c.second == brick[i] && c.first == brick[i - 1]))))
+            if (i == 0 ? floor
+                       : (!floor && ((c.first == brick[i] && c.second == brick[i - 1]) ||
+                                     (c.second == brick[i] && c.first == brick[i - 1]))))
                 force += (floor || c.first == brick[i] ? 1 : -1) * c.impulse / h;
         }
         const Real carried = static_cast<Real>(brick.size() - i) * weight;
@@ -168,7 +173,8 @@ TEST_CASE("a belt on a turning drum multiplies its tension by exp(mu phi)", "[sc
 }
 
 TEST_CASE("Painleve's rod gets an impulse", "[scene][accuracy]") {
-    // A rigid rod at tan(a) = 2 whose tip slides towards -x, with its middle ahead at +x, has no forces that solve Coulomb's law for mu > 4/3.
+    // A rigid rod at tan(a) = 2 whose tip slides towards -x, with its middle ahead at +x, has no forces that solve
+    // Coulomb's law for mu > 4/3.
     constexpr Real length = 1, width = 0.05, mu = 1.6, speed = 2;
     Real refused = 0, gain = 0;
     for (Real direction : {-1.0, 1.0}) {
@@ -176,12 +182,13 @@ TEST_CASE("Painleve's rod gets an impulse", "[scene][accuracy]") {
         const auto material = world.add_material({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = mu});
         world.add_collider(Plane{});
         const Real angle = std::atan(2.0);
-        const auto rod = world.add_body(mesh::box({length, width, width}, {10, 1, 1}),
-                                        {.material = material,
-                                         .position = {0, 0, 0.5 * length * std::sin(angle) + 0.5 * width * std::cos(angle) + 0.0021},
-                                         .rotation = {0, -angle, 0},
-                                         .velocity = {direction * speed, 0, 0},
-                                         .contact_distance = 0.004});
+        const auto rod =
+            world.add_body(mesh::box({length, width, width}, {10, 1, 1}),
+                           {.material = material,
+                            .position = {0, 0, 0.5 * length * std::sin(angle) + 0.5 * width * std::cos(angle) + 0.0021},
+                            .rotation = {0, -angle, 0},
+                            .velocity = {direction * speed, 0, 0},
+                            .contact_distance = 0.004});
         const Energy start = world.energy();
         const Real before = start.kinetic + start.potential;
         for (int frame = 0; frame < 100; ++frame) {
@@ -199,7 +206,8 @@ TEST_CASE("Painleve's rod gets an impulse", "[scene][accuracy]") {
                      .found = refused,
                      .tolerance = 0,
                      .kind = Tolerance::absolute,
-                     .note = "Painleve's rod. The paradox needs a rigid body: here friction reaches the rod through the nodes that touch, "
+                     .note = "Painleve's rod. The paradox needs a rigid body: here friction reaches the rod through "
+                             "the nodes that touch, "
                              "whose own mass resists "
                              "alike in all directions, so that a contact alone always has exactly one solution."});
     accuracy::check({.item = 33,

@@ -1,4 +1,4 @@
-// How errors fall with the step, and with the tolerance of the solver (methods.md 8, item 31).
+// How errors fall with the step, and with the tolerance of the solver (docs/methods/accuracy.md 31).
 #include <catch2/catch.hpp>
 
 #include "skerry/problem.h"
@@ -53,7 +53,8 @@ Positions bounce(Real h) {
     const auto material = world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.3});
     world.add_collider(Plane{});
     const auto body = world.add_body(
-        mesh::ball(0.05, 4), {.material = material, .position = {0, 0, 0.0537}, .velocity = {0.1, 0, -0.4}, .contact_distance = 0.004});
+        mesh::ball(0.05, 4),
+        {.material = material, .position = {0, 0, 0.0537}, .velocity = {0.1, 0, -0.4}, .contact_distance = 0.004});
     REQUIRE(world.advance(0.128).ok());
     REQUIRE(world.contacts().empty());
     return {world.positions(body).begin(), world.positions(body).end()};
@@ -65,10 +66,12 @@ Positions land_flat(Real h, Real friction = 0, const Vec3& velocity = {0, 0, -0.
     settings.integrator = Integrator::leapfrog;
     settings.step_size = h;
     World world(settings);
-    const auto material = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = friction});
+    const auto material =
+        world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = friction});
     world.add_collider(Plane{});
-    const auto body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
-                                     {.material = material, .position = {0, 0, 0.09}, .velocity = velocity, .contact_distance = 0.001});
+    const auto body = world.add_body(
+        mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
+        {.material = material, .position = {0, 0, 0.09}, .velocity = velocity, .contact_distance = 0.001});
     REQUIRE(world.advance(0.1).ok());
     REQUIRE(world.report().max_contacts == 16);
     REQUIRE(world.contacts().empty());
@@ -116,7 +119,8 @@ TEST_CASE("errors fall with the step as they must", "[scene][accuracy]") {
                      .found = order(h, after, [](Real step) { return bounce(step); }),
                      .tolerance = 0.4,
                      .kind = Tolerance::absolute,
-                     .note = "After a bounce with friction: where the slip of a node turns back within a step friction has one sign for "
+                     .note = "After a bounce with friction: where the slip of a node turns back within a step friction "
+                             "has one sign for "
                              "all of it, which is an error of the order of h."});
     accuracy::check({.item = 31,
                      .name = "block that lands flat and slides, leapfrog, order of the positions in h",
@@ -133,7 +137,8 @@ TEST_CASE("errors fall with the step as they must", "[scene][accuracy]") {
                      .found = order(4e-4, land_flat(4e-4 / 256), [](Real step) { return land_flat(step); }),
                      .tolerance = 0.1,
                      .kind = Tolerance::absolute,
-                     .note = "A gap that closes takes its impulse in two steps, in the proportion of the time before and after the touch: "
+                     .note = "A gap that closes takes its impulse in two steps, in the proportion of the time before "
+                             "and after the touch: "
                              "the middle of both is the touch itself."});
 }
 
@@ -146,8 +151,9 @@ TEST_CASE("the Coulomb gap of every step is within the tolerance of the solver",
     const auto material = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 4});
     world.add_collider(Plane{});
     for (int i = 0; i < 6; ++i)
-        world.add_body(mesh::ball(0.05, 5),
-                       {.material = material, .position = {0.05 * (i % 2), 0.02 * i, 0.06 + 0.09 * i}, .velocity = {0, 0, -1}});
+        world.add_body(
+            mesh::ball(0.05, 5),
+            {.material = material, .position = {0.05 * (i % 2), 0.02 * i, 0.06 + 0.09 * i}, .velocity = {0, 0, -1}});
     Real worst = 0;
     int problems = 0;
     world.watch_contact_problems([&](const StepProblem& step) {
@@ -159,7 +165,8 @@ TEST_CASE("the Coulomb gap of every step is within the tolerance of the solver",
                 if (p.column[static_cast<std::size_t>(k)] == i)
                     scale += p.q[row].squaredNorm() / (p.block[static_cast<std::size_t>(k)].trace() / 3);
         }
-        // what the floor of the error measure is for, regions at rest, is left out: the gap is relative to the energy itself
+        // what the floor of the error measure is for, regions at rest, is left out: the gap is relative to the energy
+        // itself
         if (scale > 0) worst = std::max(worst, std::abs(problem_error(p, step.impulse).energy_gap) / scale);
         ++problems;
     });

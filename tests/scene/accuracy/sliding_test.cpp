@@ -1,4 +1,5 @@
-// A plate that slides to a stop, that is pulled by a spring, and that slides under each friction law (methods.md 8, items 7, 8 and 28).
+// A plate that slides to a stop, that is pulled by a spring, and that slides under each friction law
+// (docs/methods/accuracy.md 7, 8 and 28).
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"
@@ -14,14 +15,15 @@ namespace {
 constexpr Real mu = 0.3;
 constexpr Real g = standard_gravity;
 
-/// A flat plate at rest: shear, which lets the faces of a body stop at different times, goes with the square of the height.
+/// A flat plate at rest: shear, which lets the faces of a body stop at different times, goes with the square of the
+/// height.
 BlockOnPlane resting_plate(Friction friction = Friction::cone) {
     Settings settings;
     settings.tolerance = 1e-10;
     settings.max_iterations = 20000;
     settings.friction = friction;
-    BlockOnPlane scene(settings, {.young_modulus = 1e6, .poisson_ratio = 0.3, .friction = mu, .damping = 1000}, {0.2, 0.2, 0.02},
-                       {4, 4, 1});
+    BlockOnPlane scene(settings, {.young_modulus = 1e6, .poisson_ratio = 0.3, .friction = mu, .damping = 1000},
+                       {0.2, 0.2, 0.02}, {4, 4, 1});
     REQUIRE(scene.world.advance(0.3).ok());
     return scene;
 }
@@ -75,19 +77,23 @@ TEST_CASE("a sliding plate stops after v^2 / (2 mu g)", "[scene][accuracy]") {
 TEST_CASE("a plate pulled by a spring breaks away, slips one period and sticks again", "[scene][accuracy]") {
     BlockOnPlane scene = resting_plate();
     const Real m = scene.world.mass(scene.block), stiffness = 100 * m, omega = 10, pull = 0.1;  // kg, N/m, 1/s, m/s
-    const Real start = scene.world.center_of_mass(scene.block).x(), begin = scene.world.time(), h = scene.world.stable_step();
+    const Real start = scene.world.center_of_mass(scene.block).x(), begin = scene.world.time(),
+               h = scene.world.stable_step();
     std::vector<Vec3> load(scene.mass.size());
     std::vector<Real> crossing;  // s, of half the speed of the pull
     Real last = 0, peak = 0, moved = 0;
     while (scene.world.time() - begin < mu * g / (omega * omega * pull) + 1.5 * 2 * std::numbers::pi / omega) {
-        const Real force = stiffness * (pull * (scene.world.time() - begin) - scene.world.center_of_mass(scene.block).x() + start);
+        const Real force =
+            stiffness * (pull * (scene.world.time() - begin) - scene.world.center_of_mass(scene.block).x() + start);
         peak = std::max(peak, force);
         for (std::size_t n = 0; n < load.size(); ++n) load[n] = Vec3(force * scene.mass[n] / m, 0, 0);
         scene.world.set_loads(scene.block, load);
         REQUIRE(scene.world.advance(h).ok());
         const Real now = scene.velocity().x();
-        if ((last - pull / 2) * (now - pull / 2) < 0) crossing.push_back(scene.world.time() - begin - h * (now - pull / 2) / (now - last));
-        if (crossing.size() == 2 && moved == 0 && now > last) moved = scene.world.center_of_mass(scene.block).x() - start;
+        if ((last - pull / 2) * (now - pull / 2) < 0)
+            crossing.push_back(scene.world.time() - begin - h * (now - pull / 2) / (now - last));
+        if (crossing.size() == 2 && moved == 0 && now > last)
+            moved = scene.world.center_of_mass(scene.block).x() - start;
         last = now;
     }
     // v = V (1 - cos(omega t')): half of V at omega t' = pi / 3, 2 pi - pi / 3, 2 pi + pi / 3
@@ -105,13 +111,14 @@ TEST_CASE("a plate pulled by a spring breaks away, slips one period and sticks a
                      .expected = pull * std::sqrt(stiffness * m),
                      .found = peak - mu * m * g,
                      .tolerance = 0.01});
-    accuracy::check({.item = 8,
-                     .name = "friction oscillator, slip until it sticks again (rad)",
-                     .formula = "omega t' = 2 pi",
-                     .expected = 2 * std::numbers::pi,
-                     .found = omega * ((crossing[1] + crossing[2]) / 2 - crossing[0] + third),
-                     .tolerance = 0.01,
-                     .note = "The speed V (1 - cos(omega t')) is measured where it is V / 2; where it touches zero it is flat."});
+    accuracy::check(
+        {.item = 8,
+         .name = "friction oscillator, slip until it sticks again (rad)",
+         .formula = "omega t' = 2 pi",
+         .expected = 2 * std::numbers::pi,
+         .found = omega * ((crossing[1] + crossing[2]) / 2 - crossing[0] + third),
+         .tolerance = 0.01,
+         .note = "The speed V (1 - cos(omega t')) is measured where it is V / 2; where it touches zero it is flat."});
     accuracy::check({.item = 8,
                      .name = "friction oscillator, way of one slip (m)",
                      .formula = "2 pi V / omega",
@@ -142,12 +149,14 @@ TEST_CASE("pyramid friction keeps to its corners, cone friction to the direction
         scene.touch_floor(node, mu);
         const Vec3 box = scene.solve({.friction = Friction::pyramid}).impulse[0],
                    round = scene.solve({.friction = Friction::cone}).impulse[0];
-        const Vec3 corner(-std::copysign(mu * box.z(), std::cos(phi)), -std::copysign(mu * box.z(), std::sin(phi)), box.z());
+        const Vec3 corner(-std::copysign(mu * box.z(), std::cos(phi)), -std::copysign(mu * box.z(), std::sin(phi)),
+                          box.z());
         worst_corner = std::max(worst_corner, (box - corner).norm() / box.z());
         const Real along = -(box.x() * std::cos(phi) + box.y() * std::sin(phi)) / box.head<2>().norm();
         const Real folded = std::fmod(phi, std::numbers::pi / 2);
         worst_angle = std::max(worst_angle, std::abs(std::acos(along) - std::abs(std::numbers::pi / 4 - folded)));
-        worst_cone = std::max(worst_cone, (round - mu * round.z() * Vec3(-std::cos(phi), -std::sin(phi), 1 / mu)).norm() / round.z());
+        worst_cone = std::max(
+            worst_cone, (round - mu * round.z() * Vec3(-std::cos(phi), -std::sin(phi), 1 / mu)).norm() / round.z());
     }
     accuracy::check({.item = 28,
                      .name = "pyramid, impulse over N, worst of 16 directions",

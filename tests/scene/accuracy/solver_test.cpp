@@ -1,4 +1,4 @@
-// How the solver cuts up and shares out its work changes nothing (methods.md 8, items 29 and 30).
+// How the solver cuts up and shares out its work changes nothing (docs/methods/accuracy.md 29 and 30).
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -128,9 +128,10 @@ TEST_CASE("what the solver leaves over in each step does not add up as steps get
             world.add_collider(Plane{});
             world.add_body(mesh::box({0.16, 0.1, 0.05}, {6, 4, 2}),
                            {.material = rubber, .position = {0, 0, 0.025 + shell / 2}, .contact_distance = shell});
-            world.add_body(
-                mesh::box({length, 0.08, 0.05}, {4, 4, 2}),
-                {.material = rubber, .position = {0.02, 0.01, 0.075 + 1.5 * shell}, .velocity = {0.3, 0.1, 0}, .contact_distance = shell});
+            world.add_body(mesh::box({length, 0.08, 0.05}, {4, 4, 2}), {.material = rubber,
+                                                                        .position = {0.02, 0.01, 0.075 + 1.5 * shell},
+                                                                        .velocity = {0.3, 0.1, 0},
+                                                                        .contact_distance = shell});
             REQUIRE(world.advance(0.1).ok());
         }
         // 5e-5 and 2e-3 where the error is measured against all that moves, the sliding and gaps within reach, too

@@ -1,4 +1,4 @@
-// Blocks that topple, discs that spin down, balls that begin to roll (methods.md 8, items 24 to 26).
+// Blocks that topple, discs that spin down, balls that begin to roll (docs/methods/accuracy.md 24 to 26).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
@@ -14,14 +14,16 @@ namespace {
 constexpr Real g = standard_gravity;
 constexpr Real degree = std::numbers::pi / 180;
 
-/// A block of width b and height h on an incline. Returns what it has done a second after the tilt: leant over, slid away, or neither.
+/// A block of width b and height h on an incline. Returns what it has done a second after the tilt: leant over, slid
+/// away, or neither.
 enum class Fate { rests, slides, topples };
 
 Fate fate(Real degrees, Real mu) {
     constexpr Real b = 0.1, h = 0.2;
     Settings settings = accurate();
     settings.gravity = tilted_gravity(degrees);
-    BlockOnPlane scene(settings, {.young_modulus = 5e6, .poisson_ratio = 0.3, .friction = mu, .damping = 500}, {b, b, h}, {2, 2, 4});
+    BlockOnPlane scene(settings, {.young_modulus = 5e6, .poisson_ratio = 0.3, .friction = mu, .damping = 500},
+                       {b, b, h}, {2, 2, 4});
     scene.settle(0.2, 0.5);
     const Vec3 start = scene.world.center_of_mass(scene.block);
     REQUIRE(scene.world.advance(2.0).ok());
@@ -42,14 +44,16 @@ TEST_CASE("a block topples where tan(a) > b / h, if friction holds it", "[scene]
         const Real middle = (stands + topples) / 2;
         (fate(middle, 0.8) == Fate::topples ? topples : stands) = middle;
     }
-    accuracy::check({.item = 24,
-                     .name = "block of b / h = 1 / 2, mu = 0.8, angle at which it topples (degrees)",
-                     .formula = "atan(b / h)",
-                     .expected = critical,
-                     .found = (stands + topples) / 2,
-                     .tolerance = 0.1,
-                     .kind = Tolerance::absolute,
-                     .note = "Found by halving. An elastic block stands on an edge that gives way, which lowers the angle a little."});
+    accuracy::check(
+        {.item = 24,
+         .name = "block of b / h = 1 / 2, mu = 0.8, angle at which it topples (degrees)",
+         .formula = "atan(b / h)",
+         .expected = critical,
+         .found = (stands + topples) / 2,
+         .tolerance = 0.1,
+         .kind = Tolerance::absolute,
+         .note =
+             "Found by halving. An elastic block stands on an edge that gives way, which lowers the angle a little."});
     Real rests = std::atan(0.3) / degree - 0.5, slides = rests + 1;
     REQUIRE(fate(rests, 0.3) == Fate::rests);
     REQUIRE(fate(slides, 0.3) == Fate::slides);
@@ -65,10 +69,12 @@ TEST_CASE("a block topples where tan(a) > b / h, if friction holds it", "[scene]
 TEST_CASE("a spinning disc comes to rest after 3 omega R / (4 mu g)", "[scene][accuracy]") {
     constexpr Real radius = 0.1, height = 0.02, mu = 0.3, omega = 20;
     World world(accurate());
-    const auto material = world.add_material({.young_modulus = 2e6, .poisson_ratio = 0.3, .friction = mu, .damping = 300});
+    const auto material =
+        world.add_material({.young_modulus = 2e6, .poisson_ratio = 0.3, .friction = mu, .damping = 300});
     world.add_collider(Plane{});
     const Mesh mesh = mesh::cylinder(radius, height, 16);
-    const auto disc = world.add_body(mesh, {.material = material, .position = {0, 0, height / 2 + 0.0005}, .contact_distance = 0.001});
+    const auto disc = world.add_body(
+        mesh, {.material = material, .position = {0, 0, height / 2 + 0.0005}, .contact_distance = 0.001});
     const std::vector<Real> mass = node_masses(world, disc, mesh, 1000);
     REQUIRE(world.advance(0.1).ok());
     std::vector<Vec3> velocity;
@@ -80,7 +86,8 @@ TEST_CASE("a spinning disc comes to rest after 3 omega R / (4 mu g)", "[scene][a
     world.set_velocities(disc, velocity);
     const auto spin = [&] {
         Real sum = 0;
-        for (std::size_t n = 0; n < mass.size(); ++n) sum += mass[n] * world.positions(disc)[n].cross(world.velocities(disc)[n]).z();
+        for (std::size_t n = 0; n < mass.size(); ++n)
+            sum += mass[n] * world.positions(disc)[n].cross(world.velocities(disc)[n]).z();
         return sum / inertia;
     };
     const Real begin = world.time(), expected = 3 * omega * radius / (4 * mu * g);
@@ -109,10 +116,12 @@ TEST_CASE("a spinning disc comes to rest after 3 omega R / (4 mu g)", "[scene][a
 TEST_CASE("a sliding ball ends up rolling with 5/7 of its speed", "[scene][accuracy]") {
     constexpr Real radius = 0.1, mu = 0.2, v0 = 2;
     World world(accurate());
-    const auto material = world.add_material({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = mu, .damping = 30});
+    const auto material =
+        world.add_material({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = mu, .damping = 30});
     world.add_collider(Plane{});
     const Mesh mesh = mesh::ball(radius, 16);
-    const auto ball = world.add_body(mesh, {.material = material, .position = {0, 0, radius + 0.0005}, .contact_distance = 0.001});
+    const auto ball =
+        world.add_body(mesh, {.material = material, .position = {0, 0, radius + 0.0005}, .contact_distance = 0.001});
     const std::vector<Real> mass = node_masses(world, ball, mesh, 1000);
     REQUIRE(world.advance(0.2).ok());
     const Vec3 start = world.center_of_mass(ball);

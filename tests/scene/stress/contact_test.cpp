@@ -1,4 +1,5 @@
-// Stress suite: fast and deep contacts, pinched sheets, large friction in a whole step (items 8, 9, 13 and 21 of docs/stress.md).
+// Stress suite: fast and deep contacts, pinched sheets, large friction in a whole step (items 8, 9, 13 and 21 of
+// docs/stress.md).
 #include <catch2/catch.hpp>
 
 #include "tests/support/stress.h"
@@ -15,7 +16,8 @@ SurfaceView view(const World& world, BodyHandle body) {
     return {world.positions(body), world.surface(body)};
 }
 
-/// How often a ray from `point` leaves through the surface less how often it enters. Of a layer whose rim goes around the ray: not 0 behind it.
+/// How often a ray from `point` leaves through the surface less how often it enters. Of a layer whose rim goes around
+/// the ray: not 0 behind it.
 int winding_along(const SurfaceView& surface, const Vec3& point, const Vec3& direction, Real length) {
     const Vec3 end = point + length * direction;
     int sum = 0;
@@ -29,7 +31,8 @@ int winding_along(const SurfaceView& surface, const Vec3& point, const Vec3& dir
 std::vector<Index> rim_of(const Mesh& mesh, Real half) {
     std::vector<Index> rim;
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-        if (std::max(std::abs(mesh.nodes[n].x()), std::abs(mesh.nodes[n].y())) > half - 1e-9) rim.push_back(static_cast<Index>(n));
+        if (std::max(std::abs(mesh.nodes[n].x()), std::abs(mesh.nodes[n].y())) > half - 1e-9)
+            rim.push_back(static_cast<Index>(n));
     return rim;
 }
 
@@ -49,8 +52,9 @@ TEST_CASE("a ball at 100 m/s does not go through a sheet of one layer", "[scene]
         const Mesh mesh = mesh::box({0.4, 0.4, 0.01}, {12, 12, 1});
         const auto sheet = world.add_body(mesh, {.material = cloth, .name = "sheet"});
         world.attach(sheet, rim_of(mesh, 0.2));
-        const auto ball = world.add_body(mesh::ball(0.04, 4),
-                                         {.material = rubber, .position = {0.007, 0.011, 0.1}, .velocity = {0, 0, -100}, .name = "ball"});
+        const auto ball = world.add_body(
+            mesh::ball(0.04, 4),
+            {.material = rubber, .position = {0.007, 0.011, 0.1}, .velocity = {0, 0, -100}, .name = "ball"});
         // The top of the sheet: what is behind it has gone through.
         std::vector<std::array<Index, 3>> top;
         for (const auto& t : world.surface(sheet)) {
@@ -73,19 +77,22 @@ TEST_CASE("a ball at 100 m/s does not go through a sheet of one layer", "[scene]
         std::sort(skin.begin(), skin.end());
         skin.erase(std::unique(skin.begin(), skin.end()), skin.end());
         for (const Index n : skin)
-            behind +=
-                winding_along({world.positions(sheet), top}, world.positions(ball)[static_cast<std::size_t>(n)], Vec3::UnitZ(), 10) != 0;
-        const std::string scene = "ball of 4 cm at 100 m/s on a held sheet of one layer, " + text(modulus) + " Pa, 4 ms";
-        judge({8, scene, "finite; steps taken, or refused with a report", whole.ok ? "all steps" : whole.message, whole.finite});
+            behind += winding_along({world.positions(sheet), top}, world.positions(ball)[static_cast<std::size_t>(n)],
+                                    Vec3::UnitZ(), 10) != 0;
+        const std::string scene =
+            "ball of 4 cm at 100 m/s on a held sheet of one layer, " + text(modulus) + " Pa, 4 ms";
+        judge({8, scene, "finite; steps taken, or refused with a report", whole.ok ? "all steps" : whole.message,
+               whole.finite});
         at_most(8, scene, "edges through triangles", most_crossings, 0);
         at_most(8, scene, "surface nodes of the ball behind the sheet", behind, 0);
     }
 }
 
 TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
-    // The push moves the nodes that are inside, at push_speed at most, and the body follows by its elasticity. A bar whose end is moved at v gets
-    // a wave that brings it to v and comes back from the far end at 2 v: so a rigid body would leave at no more than v without any energy, but
-    // a deformable one leaves at up to 2 v, with the energy of that.
+    // The push moves the nodes that are inside, at push_speed at most, and the body follows by its elasticity. A bar
+    // whose end is moved at v gets a wave that brings it to v and comes back from the far end at 2 v: so a rigid body
+    // would leave at no more than v without any energy, but a deformable one leaves at up to 2 v, with the energy of
+    // that.
     const Real push_speed = Settings{}.recovery_speed;
     struct Case {
         const char* name;
@@ -109,18 +116,22 @@ TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
             whole.ok = course.ok;
             whole.message = course.message;
             whole.finite &= course.finite;
-            for (const BodyHandle body : world.bodies()) fastest = std::max(fastest, mean_velocity(world, body, mass).norm());
+            for (const BodyHandle body : world.bodies())
+                fastest = std::max(fastest, mean_velocity(world, body, mass).norm());
             kinetic = std::max(kinetic, world.energy().kinetic);
         }
-        const Real allowed = 0.5 * world.mass(ball) * push_speed * push_speed * static_cast<Real>(world.bodies().size());
+        const Real allowed =
+            0.5 * world.mass(ball) * push_speed * push_speed * static_cast<Real>(world.bodies().size());
         const std::string scene = "ball " + std::string(c.name) + ", 1 s";
         judge({9, scene, "every step taken, finite", whole.ok ? "all steps" : whole.message, whole.ok && whole.finite});
         at_most(9, scene, "exit speed / push speed", fastest / push_speed, 2);
         at_most(9, scene, "kinetic energy / that of the push speed", kinetic / allowed, 4);
         const Energy end = world.energy();
-        at_most(9, scene, "kinetic and elastic energy at the end / that of the push speed", (end.kinetic + end.elastic) / allowed, 4);
+        at_most(9, scene, "kinetic and elastic energy at the end / that of the push speed",
+                (end.kinetic + end.elastic) / allowed, 4);
         if (c.body)
-            at_most(9, scene, "edges through triangles at the end", crossings(view(world, ball), view(world, world.bodies()[1])), 0);
+            at_most(9, scene, "edges through triangles at the end",
+                    crossings(view(world, ball), view(world, world.bodies()[1])), 0);
         else {
             Real lowest = 1;
             for (const Vec3& x : world.positions(ball)) lowest = std::min(lowest, x.z());
@@ -135,7 +146,8 @@ TEST_CASE("a block on a slope of 50 degrees sticks with a friction of a thousand
     BlockOnPlane scene(settings, {.young_modulus = 1e6, .friction = 1e3, .damping = 20});
     scene.settle(0.1);
     // The nodes that touch stay where they are.
-    const std::vector<Vec3> before(scene.world.positions(scene.block).begin(), scene.world.positions(scene.block).end());
+    const std::vector<Vec3> before(scene.world.positions(scene.block).begin(),
+                                   scene.world.positions(scene.block).end());
     const Course course = follow(scene.world, 0.5, 10);
     Real slip = 0;
     int pressing = 0;
@@ -163,15 +175,20 @@ TEST_CASE("a sheet pinched between two plates holds still and flat", "[scene][st
         std::vector<BodyHandle> jaws;
         for (const Real side : {-1.0, 1.0}) {
             Motion motion;
-            const Real open = side * (thickness / 2 + jaw / 2 + 2 * shell), closed = side * (0.4 * thickness + jaw / 2 + shell / 2);
-            motion.keys = {{0, {0, 0, open}, Vec3::Zero()}, {0.02, {0, 0, closed}, Vec3::Zero()}, {10, {0, 0, closed}, Vec3::Zero()}};
+            const Real open = side * (thickness / 2 + jaw / 2 + 2 * shell),
+                       closed = side * (0.4 * thickness + jaw / 2 + shell / 2);
+            motion.keys = {{0, {0, 0, open}, Vec3::Zero()},
+                           {0.02, {0, 0, closed}, Vec3::Zero()},
+                           {10, {0, 0, closed}, Vec3::Zero()}};
             if (!bodies) {
                 world.add_collider(Box{{0.05, 0.05, jaw}}, {.motion = motion});
                 continue;
             }
             const Mesh block = mesh::box({0.05, 0.05, jaw}, {3, 3, 1});
-            const auto stiff = world.add_material({.young_modulus = 1e6, .density = 1000, .friction = 0.8, .damping = 20});
-            jaws.push_back(world.add_body(block, {.material = stiff, .position = {0, 0, open}, .contact_distance = shell}));
+            const auto stiff =
+                world.add_material({.young_modulus = 1e6, .density = 1000, .friction = 0.8, .damping = 20});
+            jaws.push_back(
+                world.add_body(block, {.material = stiff, .position = {0, 0, open}, .contact_distance = shell}));
             std::vector<Index> back;
             for (std::size_t n = 0; n < block.nodes.size(); ++n)
                 if (side * block.nodes[n].z() > jaw / 2 - 1e-9) back.push_back(static_cast<Index>(n));
@@ -181,11 +198,13 @@ TEST_CASE("a sheet pinched between two plates holds still and flat", "[scene][st
         const Course closing = follow(world, 0.5, 50);
         const Vec3 start = world.center_of_mass(sheet);
         const Course holding = follow(world, 0.4, 40);
-        const std::string scene = bodies ? "sheet pinched by two deformable jaws, 0.9 s" : "sheet pinched by two rigid jaws, 0.9 s";
+        const std::string scene =
+            bodies ? "sheet pinched by two deformable jaws, 0.9 s" : "sheet pinched by two rigid jaws, 0.9 s";
         judge({21, scene, "every step taken, finite", closing.message + holding.message + "all steps",
                closing.ok && holding.ok && closing.finite && holding.finite});
         at_most(21, scene, "way of the sheet while it hangs, m", (world.center_of_mass(sheet) - start).norm(), 1e-4);
-        at_most(21, scene, "penetration / thickness", std::max(closing.max_penetration, holding.max_penetration) / thickness, 1e-2);
+        at_most(21, scene, "penetration / thickness",
+                std::max(closing.max_penetration, holding.max_penetration) / thickness, 1e-2);
         at_most(21, scene, "energy gained while it hangs / in play", holding.gain(), 1e-2);
         for (const BodyHandle body : jaws)
             at_most(21, scene, "edges through triangles", crossings(view(world, sheet), view(world, body)), 0);

@@ -30,7 +30,8 @@ std::string wrong_with(const Refusal& refusal) {
     } catch (const SceneError& error) {
         const std::string message = error.what();
         for (const std::string& part : {refusal.object, refusal.field})
-            if (message.find(part) == std::string::npos) return who + ": '" + message + "' does not name " + part + "; ";
+            if (message.find(part) == std::string::npos)
+                return who + ": '" + message + "' does not name " + part + "; ";
         return {};
     } catch (const std::exception& error) {
         return who + ": another exception: " + error.what() + "; ";
@@ -47,8 +48,8 @@ void judge_refusals(const std::string& what, const std::vector<Refusal>& refusal
 
 /// Every way in which a member that must be finite can be wrong.
 template <class Record, class Make>
-void add_bad(std::vector<Refusal>& list, const std::string& object, const std::string& field, const Record& good, Make make,
-             const std::vector<std::function<void(Record&)>>& spoil) {
+void add_bad(std::vector<Refusal>& list, const std::string& object, const std::string& field, const Record& good,
+             Make make, const std::vector<std::function<void(Record&)>>& spoil) {
     for (const auto& change : spoil) {
         Record bad = good;
         change(bad);
@@ -99,17 +100,21 @@ TEST_CASE("settings and materials that are no numbers or out of range are refuse
         material("restitution", {[bad](MaterialSettings& m) { m.restitution = bad; }});
         material("damping", {[bad](MaterialSettings& m) { m.damping = bad; }});
     }
-    material("young_modulus", {[](MaterialSettings& m) { m.young_modulus = 0; }, [](MaterialSettings& m) { m.young_modulus = -1; }});
-    material("poisson_ratio", {[](MaterialSettings& m) { m.poisson_ratio = 0.5; }, [](MaterialSettings& m) { m.poisson_ratio = -1; }});
+    material("young_modulus",
+             {[](MaterialSettings& m) { m.young_modulus = 0; }, [](MaterialSettings& m) { m.young_modulus = -1; }});
+    material("poisson_ratio",
+             {[](MaterialSettings& m) { m.poisson_ratio = 0.5; }, [](MaterialSettings& m) { m.poisson_ratio = -1; }});
     material("density", {[](MaterialSettings& m) { m.density = 0; }, [](MaterialSettings& m) { m.density = -1; }});
     material("friction", {[](MaterialSettings& m) { m.friction = -0.1; }});
     material("static_friction", {[](MaterialSettings& m) { m.static_friction = 0.1; }});
-    material("restitution", {[](MaterialSettings& m) { m.restitution = 1.1; }, [](MaterialSettings& m) { m.restitution = -0.1; }});
+    material("restitution",
+             {[](MaterialSettings& m) { m.restitution = 1.1; }, [](MaterialSettings& m) { m.restitution = -0.1; }});
     material("damping", {[](MaterialSettings& m) { m.damping = -1; }});
     judge_refusals("materials", list);
 }
 
-TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, and leave the world as it was", "[scene][stress]") {
+TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, and leave the world as it was",
+          "[scene][stress]") {
     World world;
     const auto rubber = world.add_material({});
     const Mesh box = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
@@ -117,8 +122,8 @@ TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, a
     const std::uint64_t before = world.state_hash();
     std::vector<Refusal> list;
     for (const Real bad : {no_number, inf, -inf}) {
-        for (Vec3 BodySettings::*member :
-             {&BodySettings::position, &BodySettings::rotation, &BodySettings::velocity, &BodySettings::angular_velocity}) {
+        for (Vec3 BodySettings::*member : {&BodySettings::position, &BodySettings::rotation, &BodySettings::velocity,
+                                           &BodySettings::angular_velocity}) {
             BodySettings settings{.material = rubber, .name = "odd"};
             (settings.*member).z() = bad;
             list.push_back({"body 'odd'",
@@ -131,7 +136,8 @@ TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, a
         list.push_back({"body 'odd'", "contact_distance", [&, settings] { world.add_body(box, settings); }});
         Mesh broken = box;
         broken.nodes[3].x() = bad;
-        list.push_back({"body 'odd'", "node 3", [&, broken] { world.add_body(broken, {.material = rubber, .name = "odd"}); }});
+        list.push_back(
+            {"body 'odd'", "node 3", [&, broken] { world.add_body(broken, {.material = rubber, .name = "odd"}); }});
         const std::vector<Vec3> velocity(box.nodes.size(), Vec3(0, bad, 0));
         list.push_back({"set_velocities", "velocity", [&, velocity] { world.set_velocities(body, velocity); }});
         list.push_back({"set_loads", "load", [&, velocity] { world.set_loads(body, velocity); }});
@@ -139,7 +145,9 @@ TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, a
         list.push_back({"advance", "dt", [&, bad] { world.advance(bad); }});
         const std::vector<Index> node{0};
         list.push_back({"attachment", "pivot", [&, bad, node] { world.attach(body, node, {}, {bad, 0, 0}); }});
-        list.push_back({"attachment", "motion.velocity", [&, bad, node] { world.attach(body, node, {.velocity = {bad, 0, 0}}); }});
+        list.push_back({"attachment", "motion.velocity", [&, bad, node] {
+                            world.attach(body, node, {.velocity = {bad, 0, 0}});
+                        }});
         list.push_back({"attachment", "motion.angular_velocity", [&, bad, node] {
                             world.attach(body, node, {.angular_velocity = {bad, 0, 0}});
                         }});
@@ -150,8 +158,8 @@ TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, a
                             world.attach(body, node, {.keys = {{bad, Vec3::Zero(), Vec3::Zero()}}});
                         }});
     }
-    list.push_back(
-        {"body 'odd'", "contact_distance", [&] { world.add_body(box, {.material = rubber, .contact_distance = -1, .name = "odd"}); }});
+    list.push_back({"body 'odd'", "contact_distance",
+                    [&] { world.add_body(box, {.material = rubber, .contact_distance = -1, .name = "odd"}); }});
     list.push_back({"body 'odd'", "mesh", [&] { world.add_body({}, {.material = rubber, .name = "odd"}); }});
     Mesh flat = box;
     for (Vec3& x : flat.nodes) x.z() = 0;
@@ -165,12 +173,13 @@ TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, a
     list.push_back({"add_body", "material", [&] { world.add_body(box, {.name = "odd"}); }});
     list.push_back({"advance", "dt", [&] { world.advance(-1); }});
     list.push_back({"attach", "node", [&] { world.attach(body, std::vector<Index>{99}); }});
-    list.push_back(
-        {"attachment", "motion.keys.time", [&] {
-             world.attach(body, std::vector<Index>{0}, {.keys = {{1, Vec3::Zero(), Vec3::Zero()}, {1, Vec3::Zero(), Vec3::Zero()}}});
-         }});
+    list.push_back({"attachment", "motion.keys.time", [&] {
+                        world.attach(body, std::vector<Index>{0},
+                                     {.keys = {{1, Vec3::Zero(), Vec3::Zero()}, {1, Vec3::Zero(), Vec3::Zero()}}});
+                    }});
     list.push_back({"set_velocities", "velocity", [&] { world.set_velocities(body, std::vector<Vec3>(3)); }});
-    list.push_back({"watch_contact_problems", "every", [&] { world.watch_contact_problems([](const StepProblem&) {}, 0); }});
+    list.push_back(
+        {"watch_contact_problems", "every", [&] { world.watch_contact_problems([](const StepProblem&) {}, 0); }});
     list.push_back({"positions", "body", [&] { (void)world.positions({}); }});
     list.push_back({"remove", "collider", [&] { world.remove(ColliderHandle{}); }});
     judge_refusals("bodies, motions and calls", list);
@@ -220,7 +229,8 @@ TEST_CASE("colliders that are no numbers or out of range are refused by name", "
     judge_refusals("colliders", list);
 }
 
-TEST_CASE("values that are numbers but beyond what can be calculated with change nothing and name their body", "[scene][stress]") {
+TEST_CASE("values that are numbers but beyond what can be calculated with change nothing and name their body",
+          "[scene][stress]") {
     // Two bodies apart: what overflows in one must not be seen in the other.
     struct Case {
         const char* name;
@@ -241,7 +251,8 @@ TEST_CASE("values that are numbers but beyond what can be calculated with change
          }},
         {"modulus of 1e300 Pa",
          [](World& w, MaterialHandle, const Mesh& box) {
-             w.add_body(box, {.material = w.add_material({.young_modulus = 1e300}), .position = {5, 0, 1}, .name = "odd"});
+             w.add_body(box,
+                        {.material = w.add_material({.young_modulus = 1e300}), .position = {5, 0, 1}, .name = "odd"});
          }},
         {"density of 1e308 kg/m^3",
          [](World& w, MaterialHandle, const Mesh& box) {
@@ -267,7 +278,8 @@ TEST_CASE("values that are numbers but beyond what can be calculated with change
             const StepReport report = world.advance(1e-3);
             found = report.ok() ? "taken" : report.message();
             held = report.ok() ? all_finite(world)
-                               : report.message().find("'odd'") != std::string::npos && (report.steps > 0 || world.state_hash() == before);
+                               : report.message().find("'odd'") != std::string::npos &&
+                                     (report.steps > 0 || world.state_hash() == before);
         } catch (const SceneError& error) {
             found = error.what();
         }

@@ -1,4 +1,5 @@
-// Stress suite, what users report of other engines: results that depend on the order of nodes and elements, or on the units.
+// Stress suite, what users report of other engines: results that depend on the order of nodes and elements, or on the
+// units.
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
@@ -60,8 +61,9 @@ std::vector<Vec3> drop_in(const Units& u, Real seconds) {
     Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {3, 3, 3});
     for (Vec3& x : mesh.nodes) x /= u.length;
     world.add_body(mesh, {.material = material, .position = Vec3(0, 0, 0.06) / u.length});
-    const auto upper = world.add_body(
-        mesh, {.material = material, .position = Vec3(0.013, 0.007, 0.175) / u.length, .velocity = Vec3(0.2, 0, 0) / (u.length / u.time)});
+    const auto upper = world.add_body(mesh, {.material = material,
+                                             .position = Vec3(0.013, 0.007, 0.175) / u.length,
+                                             .velocity = Vec3(0.2, 0, 0) / (u.length / u.time)});
     const StepReport report = world.advance(seconds / u.time);
     INFO(u.name << ": " << report.message());
     REQUIRE(report.ok());
@@ -74,8 +76,8 @@ std::vector<Vec3> drop_in(const Units& u, Real seconds) {
 }  // namespace
 
 TEST_CASE("the order of nodes and elements does not matter", "[scene][stress]") {
-    // With friction and faces that are parallel to the last bit, Coulomb's law has more than one solution, and the order picks one: there
-    // the upper box is turned a little.
+    // With friction and faces that are parallel to the last bit, Coulomb's law has more than one solution, and the
+    // order picks one: there the upper box is turned a little.
     struct Case {
         const char* name;
         Real degrees, friction;
@@ -94,11 +96,13 @@ TEST_CASE("the order of nodes and elements does not matter", "[scene][stress]") 
             settings.max_iterations = 100000;
             World world(settings);
             world.add_collider(Plane{});
-            const auto material = world.add_material({.young_modulus = 5e4, .poisson_ratio = 0.3, .friction = c.friction, .damping = 20});
+            const auto material =
+                world.add_material({.young_modulus = 5e4, .poisson_ratio = 0.3, .friction = c.friction, .damping = 20});
             const Shuffled one = shuffled(mesh, 2 * seed), two = shuffled(mesh, 2 * seed + 1);
             world.add_body(seed == 0 ? mesh : one.mesh, {.material = material, .position = {0, 0, 0.06}});
             const auto body =
-                world.add_body(seed == 0 ? mesh : two.mesh, {.material = material, .position = {0.013, 0.007, 0.175}, .rotation = c.turn});
+                world.add_body(seed == 0 ? mesh : two.mesh,
+                               {.material = material, .position = {0.013, 0.007, 0.175}, .rotation = c.turn});
             const StepReport report = world.advance(0.3);
             INFO(report.message());
             REQUIRE(report.ok());
@@ -111,19 +115,20 @@ TEST_CASE("the order of nodes and elements does not matter", "[scene][stress]") 
         for (const auto& other : upper)
             for (std::size_t n = 0; n < other.size(); ++n) apart = std::max(apart, (other[n] - upper[0][n]).norm());
         // What rounding leaves of a solve to 1e-10, after some hundred steps of impacts.
-        at_most(0, "node and element order: two " + std::string(c.name) + ", 0.3 s, three shuffles", "positions apart / edge", apart / edge,
-                1e-5);
+        at_most(0, "node and element order: two " + std::string(c.name) + ", 0.3 s, three shuffles",
+                "positions apart / edge", apart / edge, 1e-5);
     }
 }
 
 TEST_CASE("units do not matter", "[scene][stress]") {
     const Real seconds = 0.3;
     const std::vector<Vec3> si = drop_in({"m, kg, s", 1, 1, 1}, seconds);
-    for (const Units& units : {Units{"mm, g, ms", 1e-3, 1e-3, 1e-3}, Units{"cm, g, s", 1e-2, 1e-3, 1}, Units{"mm, t, s", 1e-3, 1e3, 1}}) {
+    for (const Units& units :
+         {Units{"mm, g, ms", 1e-3, 1e-3, 1e-3}, Units{"cm, g, s", 1e-2, 1e-3, 1}, Units{"mm, t, s", 1e-3, 1e3, 1}}) {
         const std::vector<Vec3> other = drop_in(units, seconds);
         Real apart = 0;
         for (std::size_t n = 0; n < si.size(); ++n) apart = std::max(apart, (other[n] - si[n]).norm());
-        at_most(0, "units: two boxes dropped on a slope of 20 degrees in " + std::string(units.name) + ", 0.3 s", "positions apart / edge",
-                apart / 0.04, 1e-6);
+        at_most(0, "units: two boxes dropped on a slope of 20 degrees in " + std::string(units.name) + ", 0.3 s",
+                "positions apart / edge", apart / 0.04, 1e-6);
     }
 }

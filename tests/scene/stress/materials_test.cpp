@@ -1,4 +1,5 @@
-// Stress suite: far apart masses and moduli, nearly incompressible bodies, slivers, high stacks (items 1 to 4 and 19 of docs/stress.md).
+// Stress suite: far apart masses and moduli, nearly incompressible bodies, slivers, high stacks (items 1 to 4 and 19 of
+// docs/stress.md).
 #include <catch2/catch.hpp>
 
 #include "tests/support/elastic_body.h"
@@ -40,7 +41,8 @@ Real volume_of_body(const World& world, BodyHandle body) {
     return sum;
 }
 
-/// Stable step over the exact limit at rest, where all laws have the stiffness of the linear one: its differences do not suffer from slivers.
+/// Stable step over the exact limit at rest, where all laws have the stiffness of the linear one: its differences do
+/// not suffer from slivers.
 Real share_of_limit(const TetMesh& mesh, MaterialModel model, Real nu) {
     ElasticBody linear(mesh, material_constants(MaterialModel::linear, 1e5, nu, 1000));
     return stable_step_of(ElasticBody(mesh, material_constants(model, 1e5, nu, 1000))) / exact_limit(linear);
@@ -54,9 +56,10 @@ TEST_CASE("a block rests on one a millionth of its mass", "[scene][stress]") {
     const auto heavy = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .density = 1e6});
     world.add_collider(Plane{});
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
-    const auto lower = world.add_body(mesh, {.material = light, .position = {0, 0, 0.051}, .contact_distance = 0.002, .name = "light"});
-    const auto upper =
-        world.add_body(mesh, {.material = heavy, .position = {0.011, 0.007, 0.153}, .contact_distance = 0.002, .name = "heavy"});
+    const auto lower = world.add_body(
+        mesh, {.material = light, .position = {0, 0, 0.051}, .contact_distance = 0.002, .name = "light"});
+    const auto upper = world.add_body(
+        mesh, {.material = heavy, .position = {0.011, 0.007, 0.153}, .contact_distance = 0.002, .name = "heavy"});
     REQUIRE(world.mass(upper) == Approx(1e6 * world.mass(lower)));
     const Course loading = load_slowly(world, 0.2), resting = follow(world, 0.1, 100);
     const std::string scene = "1 t on 1 g, 0.3 s";
@@ -64,11 +67,12 @@ TEST_CASE("a block rests on one a millionth of its mass", "[scene][stress]") {
            loading.ok && resting.ok && loading.finite && resting.finite});
     Real speed = 0;
     for (const Vec3& v : world.velocities(upper)) speed = std::max(speed, v.norm());
-    // Loaded within three periods of the mass on its spring (0.06 s): what is left swings by a few per cent of a sag of a millimetre.
+    // Loaded within three periods of the mass on its spring (0.06 s): what is left swings by a few per cent of a sag of
+    // a millimetre.
     at_most(1, scene, "speed of the heavy block at the end, m/s", speed, 0.02);
     at_most(1, scene, "penetration / edge", std::max(loading.max_penetration, resting.max_penetration) / 0.1, 1e-3);
-    at_most(1, scene + ", " + text(world.report().mean_iterations) + " sweeps a region on average", "regions not converged",
-            loading.unconverged + resting.unconverged, 0);
+    at_most(1, scene + ", " + text(world.report().mean_iterations) + " sweeps a region on average",
+            "regions not converged", loading.unconverged + resting.unconverged, 0);
 }
 
 TEST_CASE("bodies with moduli from 1e3 to 1e9 Pa share a scene", "[scene][stress]") {
@@ -76,7 +80,8 @@ TEST_CASE("bodies with moduli from 1e3 to 1e9 Pa share a scene", "[scene][stress
     world.add_collider(Plane{});
     const Real edge = 0.04;
     for (int k = 3; k <= 9; ++k) {
-        const auto material = world.add_material({.young_modulus = std::pow(10.0, k), .poisson_ratio = 0.3, .damping = 5});
+        const auto material =
+            world.add_material({.young_modulus = std::pow(10.0, k), .poisson_ratio = 0.3, .damping = 5});
         // A row on the floor, and a second row across it: every body bears on softer and on stiffer ones.
         for (int row = 0; row < 2; ++row)
             world.add_body(mesh::box({edge, edge, edge}, {2, 2, 2}),
@@ -97,8 +102,10 @@ TEST_CASE("nearly incompressible bodies keep their volume and their step", "[sce
     for (const Real nu : {0.49, 0.499, 0.4999}) {
         World world;
         world.add_collider(Plane{});
-        const auto material = world.add_material({.young_modulus = 1e4, .poisson_ratio = nu, .friction = 0.5, .damping = 5});
-        const auto body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = material, .position = {0, 0, 0.06}});
+        const auto material =
+            world.add_material({.young_modulus = 1e4, .poisson_ratio = nu, .friction = 0.5, .damping = 5});
+        const auto body =
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = material, .position = {0, 0, 0.06}});
         const Real rest = volume_of_body(world, body);
         Course whole;
         Real worst = 0;
@@ -118,7 +125,8 @@ TEST_CASE("nearly incompressible bodies keep their volume and their step", "[sce
     const TetMesh mesh = jittered_box({3, 3, 3}, 0.1, 0.2, 11, 0.02);
     for (const Real nu : {0.49, 0.499, 0.4999}) {
         const Real share = share_of_limit(mesh, MaterialModel::stable_neo_hookean, nu);
-        judge({3, "stable step, nu " + text(nu), "0.5 to 1 of the exact limit", text(share), share <= 1 && share >= 0.5});
+        judge(
+            {3, "stable step, nu " + text(nu), "0.5 to 1 of the exact limit", text(share), share <= 1 && share >= 0.5});
     }
 }
 
@@ -139,24 +147,26 @@ TEST_CASE("a sliver does not shorten the step below half of what it stands", "[s
     for (const auto& t : mesh.tetrahedra) REQUIRE(volume_of(mesh, t) > 0);
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
         const Real share = share_of_limit(mesh, model, 0.3);
-        judge({4, "sliver of altitude 1e-4 edges, " + std::string(name_of(model)), "stable step 0.5 to 1 of the exact limit", text(share),
-               share <= 1 && share >= 0.5});
+        judge({4, "sliver of altitude 1e-4 edges, " + std::string(name_of(model)),
+               "stable step 0.5 to 1 of the exact limit", text(share), share <= 1 && share >= 0.5});
     }
 }
 
 TEST_CASE("a stack of twenty soft or stiff slabs stands", "[scene][stress][slow]") {
-    // A column of its own weight buckles above (7.84 E I / (rho g A))^(1/3) (Greenhill): 1.4 m for the soft one, which is 1 m high.
+    // A column of its own weight buckles above (7.84 E I / (rho g A))^(1/3) (Greenhill): 1.4 m for the soft one, which
+    // is 1 m high.
     for (const Real modulus : {5e5, 5e7}) {
         World world;
         world.add_collider(Plane{});
-        const auto material =
-            world.add_material({.young_modulus = modulus, .poisson_ratio = 0.3, .density = 500, .friction = 0.6, .damping = 20});
+        const auto material = world.add_material(
+            {.young_modulus = modulus, .poisson_ratio = 0.3, .density = 500, .friction = 0.6, .damping = 20});
         const Real width = 0.2, height = 0.05, shell = 1e-3;
         std::vector<BodyHandle> slabs;
         for (int k = 0; k < 20; ++k)
-            slabs.push_back(world.add_body(
-                mesh::box({width, width, height}, {2, 2, 1}),
-                {.material = material, .position = {0, 0, shell / 2 + height / 2 + k * (height + shell)}, .contact_distance = shell}));
+            slabs.push_back(world.add_body(mesh::box({width, width, height}, {2, 2, 1}),
+                                           {.material = material,
+                                            .position = {0, 0, shell / 2 + height / 2 + k * (height + shell)},
+                                            .contact_distance = shell}));
         const Course loading = load_slowly(world, 0.5), resting = follow(world, 0.5, 50);
         const std::string scene = "20 slabs, " + text(modulus) + " Pa, 1 s";
         judge({19, scene, "every step taken, finite", loading.message + resting.message + "all steps",
@@ -170,7 +180,8 @@ TEST_CASE("a stack of twenty soft or stiff slabs stands", "[scene][stress][slow]
         }
         at_most(19, scene, "way aside / width", aside / width, 0.05);
         judge({19, scene, "in order from bottom to top", ordered ? "yes" : "no", ordered});
-        at_most(19, scene, "penetration / height", std::max(loading.max_penetration, resting.max_penetration) / height, 1e-2);
+        at_most(19, scene, "penetration / height", std::max(loading.max_penetration, resting.max_penetration) / height,
+                1e-2);
         at_most(19, scene, "energy gained at rest / in play", resting.gain(), 1e-2);
     }
 }

@@ -12,7 +12,8 @@ namespace {
 
 std::vector<Vec3> all_positions(const World& world) {
     std::vector<Vec3> all;
-    for (const BodyHandle body : world.bodies()) all.insert(all.end(), world.positions(body).begin(), world.positions(body).end());
+    for (const BodyHandle body : world.bodies())
+        all.insert(all.end(), world.positions(body).begin(), world.positions(body).end());
     return all;
 }
 
@@ -22,7 +23,8 @@ Real largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return largest;
 }
 
-/// Lets a settled world rest for `chunks` times `steps` steps: how far nodes drift, and by how much the energy ever rises.
+/// Lets a settled world rest for `chunks` times `steps` steps: how far nodes drift, and by how much the energy ever
+/// rises.
 struct Rest {
     Course course;
     Real drift = 0;  // m, of any node, from where it was at the start
@@ -46,7 +48,8 @@ struct Rest {
 };
 
 void judge_rest(int item, const std::string& scene, const Rest& rest, int steps, Real edge, Real weight_energy) {
-    judge({item, scene, "every step taken, finite", rest.course.ok ? text(rest.course.steps) + " steps" : rest.course.message,
+    judge({item, scene, "every step taken, finite",
+           rest.course.ok ? text(rest.course.steps) + " steps" : rest.course.message,
            rest.course.ok && rest.course.finite && rest.course.steps >= steps});
     at_most(item, scene, "drift / edge", rest.drift / edge, 1e-3);
     at_most(item, scene, "rise of the energy / (weight times edge)", rest.rise / weight_energy, 1e-9);
@@ -60,7 +63,8 @@ World small_heap(Real tolerance, Real modulus, Real damping, Real sleep_speed = 
     settings.sleep_speed = sleep_speed;
     World world(settings);
     world.add_collider(Plane{});
-    const auto material = world.add_material({.young_modulus = modulus, .poisson_ratio = 0.3, .friction = 0.6, .damping = damping});
+    const auto material =
+        world.add_material({.young_modulus = modulus, .poisson_ratio = 0.3, .friction = 0.6, .damping = damping});
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
     for (const Vec3& place : {Vec3(-0.06, 0, 0.051), Vec3(0.06, 0.01, 0.051), Vec3(0.004, 0.007, 0.154)})
         world.add_body(mesh, {.material = material, .position = place, .contact_distance = 2e-3});
@@ -74,7 +78,8 @@ void rest_small_heap(int chunks) {
     for (const BodyHandle body : world.bodies()) weight += world.mass(body) * standard_gravity;
     const int steps = 10000;
     const Rest rest(world, chunks, steps);
-    judge_rest(20, "heap of 3 boxes, tolerance 1e-8, " + text(chunks * steps) + " steps", rest, chunks * steps, 0.1, weight * 0.1);
+    judge_rest(20, "heap of 3 boxes, tolerance 1e-8, " + text(chunks * steps) + " steps", rest, chunks * steps, 0.1,
+               weight * 0.1);
     CHECK(world.contacts().size() >= 6);
 }
 
@@ -89,7 +94,8 @@ TEST_CASE("a heap at rest stays for a million steps", "[scene][stress][slow]") {
 }
 
 TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "[scene][stress]") {
-    // Wide faces on wide faces, with edges inside of them that bend this way and that: what the contacts do to them must not shake the tower.
+    // Wide faces on wide faces, with edges inside of them that bend this way and that: what the contacts do to them
+    // must not shake the tower.
     Settings settings;
     settings.tolerance = 1e-6;
     settings.max_iterations = 2000;
@@ -99,8 +105,9 @@ TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "
     const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
     Real weight = 0;
     for (int i = 0; i < 3; ++i) {
-        const auto block =
-            world.add_body(mesh, {.material = rubber, .position = {0.01 * i, 0.007 * i, 0.051 + 0.1025 * i}, .contact_distance = 2e-3});
+        const auto block = world.add_body(
+            mesh,
+            {.material = rubber, .position = {0.01 * i, 0.007 * i, 0.051 + 0.1025 * i}, .contact_distance = 2e-3});
         weight += world.mass(block) * standard_gravity;
     }
     REQUIRE(world.advance(4).ok());
@@ -113,7 +120,8 @@ TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "
         return most;
     };
     const Real early = swing(), weight_energy = weight * 0.1;
-    const Rest rest(world, 200, 20);  // energy as of a symplectic step swings by a thousandth of the kinetic, which is 2e-4 of this scale
+    // energy as of a symplectic step swings by a thousandth of the kinetic, which is 2e-4 of this scale
+    const Rest rest(world, 200, 20);
     const std::string scene = "tower of 3 soft blocks";
     at_most(20, scene + ", 4000 steps", "rise of the energy / (weight times height)", rest.rise / weight_energy, 1e-6);
     at_most(20, scene + ", 4000 steps later", "kinetic energy of the sway / that before", swing() / early, 0.75);
@@ -125,10 +133,11 @@ TEST_CASE("a heap solved to the default tolerance creeps no faster than that all
     const Rest rest(world, 10, 1000);
     const Real h = world.stable_step(), seconds = 10000 * h;
     const std::string scene = "heap of 3 soft boxes, default tolerance 1e-3, 1e4 steps of " + text(1000 * h) + " ms";
-    judge(
-        {20, scene, "every step taken, finite", rest.course.ok ? "all steps" : rest.course.message, rest.course.ok && rest.course.finite});
+    judge({20, scene, "every step taken, finite", rest.course.ok ? "all steps" : rest.course.message,
+           rest.course.ok && rest.course.finite});
     // A contact has to stop g h in each step, and is solved to the tolerance of that.
-    at_most(20, scene, "speed of creep / (tolerance g h)", rest.drift / seconds / (Settings{}.tolerance * standard_gravity * h), 1);
+    at_most(20, scene, "speed of creep / (tolerance g h)",
+            rest.drift / seconds / (Settings{}.tolerance * standard_gravity * h), 1);
 }
 
 TEST_CASE("a heap falls asleep, and then nothing moves", "[scene][stress]") {
@@ -146,16 +155,18 @@ TEST_CASE("balls in a bucket rest for a hundred thousand steps", "[scene][stress
     settings.max_iterations = 10000;
     World world(settings);
     world.add_collider(Bucket{.radius = 0.12, .height = 0.3, .thickness = 0.02});
-    const auto material = world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.5, .damping = 300});
+    const auto material =
+        world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.5, .damping = 300});
     const Mesh mesh = mesh::ball(0.05, 2);
     for (int k = 0; k < 4; ++k)
-        world.add_body(mesh, {.material = material, .position = {0.055 * std::cos(2.1 * k), 0.055 * std::sin(2.1 * k), 0.06 + 0.04 * k}});
+        world.add_body(mesh, {.material = material,
+                              .position = {0.055 * std::cos(2.1 * k), 0.055 * std::sin(2.1 * k), 0.06 + 0.04 * k}});
     REQUIRE(world.advance(10).ok());
     Real weight = 0;
     for (const BodyHandle body : world.bodies()) weight += world.mass(body) * standard_gravity;
     const Rest rest(world, 10, 10000);
-    judge_rest(0, "resting for long: 4 balls in a bucket, tolerance 1e-8, 1e5 steps", rest, 100000, world.mean_edge(world.bodies()[0]),
-               weight * 0.05);
+    judge_rest(0, "resting for long: 4 balls in a bucket, tolerance 1e-8, 1e5 steps", rest, 100000,
+               world.mean_edge(world.bodies()[0]), weight * 0.05);
 }
 
 namespace {
@@ -164,8 +175,8 @@ namespace {
 World stack_of_five(Real restitution, Real apart) {
     World world;
     world.add_collider(Plane{});
-    const auto material =
-        world.add_material({.young_modulus = 1e6, .poisson_ratio = 0.3, .friction = 0.5, .restitution = restitution, .damping = 400});
+    const auto material = world.add_material(
+        {.young_modulus = 1e6, .poisson_ratio = 0.3, .friction = 0.5, .restitution = restitution, .damping = 400});
     const Real edge = 0.1, shell = 2e-3;
     for (int k = 0; k < 5; ++k)
         world.add_body(mesh::box({edge, edge, edge}, {2, 2, 2}),
@@ -189,8 +200,10 @@ TEST_CASE("boxes that fall onto each other gain no energy and end quiet, whateve
         World world = stack_of_five(restitution, 0.008);
         const Course course = follow(world, 3, 100);
         const std::string scene = "5 boxes fall onto each other, restitution " + text(restitution) + ", 3 s";
-        judge({14, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
-        // Kinetic and elastic energy are half a step apart (methods.md 4.3): their sum wavers by a small part of what swings.
+        judge({14, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
+               course.ok && course.finite});
+        // Kinetic and elastic energy are half a step apart (docs/methods/time_stepping.md 2.2): their sum wavers by a
+        // small part of what swings.
         at_most(14, scene, "energy gained / in play", course.gain(), 1e-2);
         at_most(14, scene, "penetration / edge", course.max_penetration / 0.1, 1e-2);
         Real speed = 0;
@@ -216,7 +229,8 @@ TEST_CASE("a stack at rest does not notice its restitution", "[scene][stress]") 
         const std::string scene = "5 boxes laid on each other, restitution " + text(restitution) + ", 1 s";
         at_most(14, scene, "largest speed / (g h)", largest_speed(world) / (standard_gravity * world.stable_step()), 1);
         if (restitution == 0) without = all_positions(world);
-        at_most(14, scene, "positions apart from those without restitution, m", largest_distance(all_positions(world), without), 0);
+        at_most(14, scene, "positions apart from those without restitution, m",
+                largest_distance(all_positions(world), without), 0);
     }
 }
 
@@ -228,7 +242,9 @@ TEST_CASE("bodies that come and go do not touch a bit of what they have no conta
         world.add_collider(Plane{});
         const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = 10});
         const Mesh ball = mesh::ball(0.05, 4);
-        const auto add = [&](const Vec3& place) { return world.add_body(ball, {.material = material, .position = place}); };
+        const auto add = [&](const Vec3& place) {
+            return world.add_body(ball, {.material = material, .position = place});
+        };
         const auto lower = add({0, 0, 0.06}), upper = add({0.01, 0, 0.17});
         const auto other = add({1, 0, 0.06}), above = add({1.01, 0.01, 0.17});
         REQUIRE(world.stable_step() > 1e-4);

@@ -1,4 +1,5 @@
-// Stress suite: bodies inside out, collapsed, crushed, and surfaces with triangles of no area (items 5, 6, 11 and 25 of docs/stress.md).
+// Stress suite: bodies inside out, collapsed, crushed, and surfaces with triangles of no area (items 5, 6, 11 and 25 of
+// docs/stress.md).
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -26,7 +27,8 @@ struct LetGo {
               settings.gravity = Vec3::Zero();
               return settings;
           }()) {
-        const auto material = world.add_material({.young_modulus = 1e4, .poisson_ratio = 0.4, .damping = 20, .model = model});
+        const auto material =
+            world.add_material({.young_modulus = 1e4, .poisson_ratio = 0.4, .damping = 20, .model = model});
         const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {4, 4, 4});
         body = world.add_body(mesh, {.material = material, .name = "box"});
         std::vector<Vec3> places;
@@ -39,12 +41,15 @@ struct LetGo {
     /// Lets go. Where it may stay as it is, only finite, the table says what it does.
     void judge_recovery(int item, const std::string& scene, bool must_recover) {
         const Course course = follow(world, 2, 40);
-        judge({item, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
+        judge({item, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
+               course.ok && course.finite});
         at_most(item, scene, "energy gained / in play", course.gained / energy, 1e-2);
         const Real left = world.energy().elastic / energy;
         const bool recovered = left < 1e-3 && inverted_share(world, body) == 0;
-        judge({item, scene + ", 2 s later", must_recover ? "recovers: no element inverted, energy gone" : "recovers or stays finite",
-               recovered ? "recovers" : "stays collapsed with " + text(100 * left) + " % of the energy", recovered || !must_recover});
+        judge({item, scene + ", 2 s later",
+               must_recover ? "recovers: no element inverted, energy gone" : "recovers or stays finite",
+               recovered ? "recovers" : "stays collapsed with " + text(100 * left) + " % of the energy",
+               recovered || !must_recover});
     }
 };
 
@@ -68,11 +73,13 @@ TEST_CASE("a box collapsed to a point, a line or a plane recovers or stays finit
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean})
         for (const Case& c : {Case{"a point", {0, 0, 0}}, Case{"a line", {0, 0, 1}}, Case{"a plane", {1, 1, 0}}}) {
             LetGo box(model, [&](const Vec3& x) { return Vec3(c.scale.cwiseProduct(x)); });
-            // A smooth law that knows no direction has no force at F = 0, and none across an exact line: there is no saying which way to
-            // open. It is no minimum: the next test has what is nearly there. The corotational law has a force there, but which elements end up
-            // twisted against each other, if it begins with a point, is a matter of rounding (of nine lengths of step two end so).
+            // A smooth law that knows no direction has no force at F = 0, and none across an exact line: there is no
+            // saying which way to open. It is no minimum: the next test has what is nearly there. The corotational law
+            // has a force there, but which elements end up twisted against each other, if it begins with a point, is a
+            // matter of rounding (of nine lengths of step two end so).
             const bool must_recover = c.scale.sum() == 2 || (model == MaterialModel::corotational && c.scale.sum() > 0);
-            box.judge_recovery(6, "box of 384 collapsed to " + std::string(c.name) + ", " + std::string(name_of(model)), must_recover);
+            box.judge_recovery(6, "box of 384 collapsed to " + std::string(c.name) + ", " + std::string(name_of(model)),
+                               must_recover);
         }
 }
 
@@ -83,16 +90,21 @@ TEST_CASE("a box pressed together to hundredths of its size recovers", "[scene][
         Real noise;  // m
         bool must_recover;
     };
-    // The short form of the stable neo-Hookean law, without the logarithm, draws together below a fifth for this Poisson ratio.
+    // The short form of the stable neo-Hookean law, without the logarithm, draws together below a fifth for this
+    // Poisson ratio.
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean})
-        // The last two open this way here and that way there: the tetrahedra end the right way round, but wound about an edge or twisted.
+        // The last two open this way here and that way there: the tetrahedra end the right way round, but wound about
+        // an edge or twisted.
         for (const Case& c :
-             {Case{"to a tenth on all sides", {0.1, 0.1, 0.1}, 0, true}, Case{"to a hundredth on all sides", {0.01, 0.01, 0.01}, 0, true},
+             {Case{"to a tenth on all sides", {0.1, 0.1, 0.1}, 0, true},
+              Case{"to a hundredth on all sides", {0.01, 0.01, 0.01}, 0, true},
               Case{"into a heap of nodes, a hundredth of its size about a point", {0, 0, 0}, 1e-3, false},
               Case{"to a line, but for 1e-9 of its size", {0, 0, 1}, 1e-10, false}}) {
             std::mt19937_64 random(6);
-            LetGo box(model, [&](const Vec3& x) { return Vec3(c.scale.cwiseProduct(x) + c.noise * random_vector(random)); });
-            box.judge_recovery(6, "box of 384 pressed " + std::string(c.name) + ", " + std::string(name_of(model)), c.must_recover);
+            LetGo box(model,
+                      [&](const Vec3& x) { return Vec3(c.scale.cwiseProduct(x) + c.noise * random_vector(random)); });
+            box.judge_recovery(6, "box of 384 pressed " + std::string(c.name) + ", " + std::string(name_of(model)),
+                               c.must_recover);
         }
 }
 
@@ -123,7 +135,8 @@ TEST_CASE("triangles without area and edges without length do no harm to a colli
     const Course course = follow(with, 0.5, 50);
     follow(without, 0.5, 50);
     const std::string scene = "ball on a slab with four triangles of no area, 0.5 s";
-    judge({11, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
+    judge(
+        {11, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
     at_most(11, scene, "penetration / edge", course.max_penetration / with.mean_edge(with.bodies()[0]), 1e-2);
     at_most(11, scene, "distance from where it rests without them, m",
             (with.center_of_mass(with.bodies()[0]) - without.center_of_mass(without.bodies()[0])).norm(), 1e-4);
@@ -132,14 +145,15 @@ TEST_CASE("triangles without area and edges without length do no harm to a colli
 TEST_CASE("a plate crushes a box to a tenth of its height", "[scene][stress]") {
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
         World world;
-        const auto material =
-            world.add_material({.young_modulus = 1e4, .poisson_ratio = 0.3, .friction = 0.4, .damping = 20, .model = model});
+        const auto material = world.add_material(
+            {.young_modulus = 1e4, .poisson_ratio = 0.3, .friction = 0.4, .damping = 20, .model = model});
         world.add_collider(Plane{});
         const Real height = 0.1, shell = 1e-3;
         const auto body = world.add_body(mesh::box({0.1, 0.1, height}, {4, 4, 4}),
                                          {.material = material, .position = {0, 0, 0.0505}, .contact_distance = shell});
         ColliderSettings plate;
-        const Real thickness = 0.02, start = height + shell + thickness / 2 + 1e-4, end = 0.1 * height + shell + thickness / 2;
+        const Real thickness = 0.02, start = height + shell + thickness / 2 + 1e-4,
+                   end = 0.1 * height + shell + thickness / 2;
         plate.motion.keys = {{0, {0, 0, start}, Vec3::Zero()},
                              {0.5, {0, 0, end}, Vec3::Zero()},
                              {0.7, {0, 0, end}, Vec3::Zero()},
@@ -147,7 +161,8 @@ TEST_CASE("a plate crushes a box to a tenth of its height", "[scene][stress]") {
         world.add_collider(Box{{0.4, 0.4, thickness}}, plate);
         const Course crushing = follow(world, 0.7, 70);
         const std::string scene = "box of 384 pressed to a tenth of its height, " + std::string(name_of(model));
-        judge({25, scene, "every step taken, finite", crushing.ok ? "all steps" : crushing.message, crushing.ok && crushing.finite});
+        judge({25, scene, "every step taken, finite", crushing.ok ? "all steps" : crushing.message,
+               crushing.ok && crushing.finite});
         Real top = 0, bottom = 1;
         for (const auto& triangle : world.surface(body))  // inner nodes know no floor
             for (const Index n : triangle) {
@@ -158,8 +173,10 @@ TEST_CASE("a plate crushes a box to a tenth of its height", "[scene][stress]") {
         at_most(25, scene, "height / height at rest", (top - bottom) / height, 0.105);
         at_most(25, scene, "penetration / edge", crushing.max_penetration / (height / 4), 2e-2);
         const Course after = follow(world, 1.3, 65);
-        judge({25, scene + ", then let go", "every step taken, finite", after.ok ? "all steps" : after.message, after.ok && after.finite});
+        judge({25, scene + ", then let go", "every step taken, finite", after.ok ? "all steps" : after.message,
+               after.ok && after.finite});
         const bool recovered = inverted_share(world, body) == 0 && world.report().worst_volume_ratio > 0.9;
-        judge({25, scene + ", 1 s after it was let go", "recovers", recovered ? "recovers" : "stays collapsed", recovered && after.finite});
+        judge({25, scene + ", 1 s after it was let go", "recovers", recovered ? "recovers" : "stays collapsed",
+               recovered && after.finite});
     }
 }

@@ -46,7 +46,8 @@ Real worst_error(const SolvedScene& solved) {
 
 void add_copies(ContactScene& scene, std::size_t count, int copies) {
     for (int k = 1; k < copies; ++k)
-        for (std::size_t i = 0; i < count; ++i) scene.touch(scene.stencil[i], scene.normal[i], scene.static_friction[i]);
+        for (std::size_t i = 0; i < count; ++i)
+            scene.touch(scene.stencil[i], scene.normal[i], scene.static_friction[i]);
 }
 
 }  // namespace
@@ -61,10 +62,12 @@ TEST_CASE("a hundred copies of every contact of two sheets do what one does", "[
     const std::string scene = "32 contacts, each a hundred times";
     at_most(10, scene, "regions not converged", unconverged(single) + unconverged(copied), 0);
     // 1e-10 of an impact of 1 m/s, on contacts that condition the sum a hundred times worse
-    at_most(10, scene, "velocities apart from those of one copy, m/s", largest_difference(single.velocity, copied.velocity), 1e-7);
+    at_most(10, scene, "velocities apart from those of one copy, m/s",
+            largest_difference(single.velocity, copied.velocity), 1e-7);
     std::vector<Vec3> sum(count, Vec3::Zero());
     for (std::size_t i = 0; i < copied.impulse.size(); ++i) sum[i % count] += copied.impulse[i];
-    at_most(10, scene, "summed impulses apart from those of one copy, N s", largest_difference(single.impulse, sum), 1e-6);
+    at_most(10, scene, "summed impulses apart from those of one copy, N s", largest_difference(single.impulse, sum),
+            1e-6);
 }
 
 TEST_CASE("without friction three rows a contact come to what one row does", "[scene][solver][stress]") {
@@ -83,8 +86,9 @@ TEST_CASE("with a friction of a thousand nothing that presses slides", "[scene][
     std::mt19937 random(3);
     std::normal_distribution<Real> noise;
     for (int k = 0; k < 1000; ++k)
-        scene.touch_floor(
-            scene.add_node(std::exp(noise(random)), Vec3(10 * noise(random), 10 * noise(random), -std::abs(noise(random)) - 0.1)), 1e3);
+        scene.touch_floor(scene.add_node(std::exp(noise(random)),
+                                         Vec3(10 * noise(random), 10 * noise(random), -std::abs(noise(random)) - 0.1)),
+                          1e3);
     const SolvedScene solved = scene.solve(tight());
     Real slip = 0;
     for (const Vec3& v : solved.velocity) slip = std::max(slip, v.norm());
@@ -112,7 +116,8 @@ TEST_CASE("three times as many contacts as freedoms have one velocity in the con
         std::mt19937 random(seed);
         std::normal_distribution<Real> noise;
         std::uniform_int_distribution<Index> pick(0, 23);
-        for (int k = 0; k < 24; ++k) scene.add_node(std::exp(0.5 * noise(random)), Vec3(0.3 * noise(random), 0.3 * noise(random), -1));
+        for (int k = 0; k < 24; ++k)
+            scene.add_node(std::exp(0.5 * noise(random)), Vec3(0.3 * noise(random), 0.3 * noise(random), -1));
         for (int k = 0; k < 24; ++k) scene.touch_floor(k, 0.5);
         for (int k = 0; k < 48; ++k) {
             const Index a = pick(random), b = (a + 1 + pick(random) % 23) % 24;
@@ -128,8 +133,10 @@ TEST_CASE("three times as many contacts as freedoms have one velocity in the con
             scene.impulse[i] = cold.impulse[i] + 0.03 * Vec3(noise(random), noise(random), noise(random));
         const SolvedScene elsewhere = scene.solve(settings);
         const std::string name = "24 masses, 72 contacts, problem " + std::to_string(seed);
-        at_least(15, name, "impulses from two starts apart, N s", largest_difference(cold.impulse, elsewhere.impulse), 1e-3);
-        at_most(15, name, "velocities from two starts apart, m/s", largest_difference(cold.velocity, elsewhere.velocity), 1e-8);
+        at_least(15, name, "impulses from two starts apart, N s", largest_difference(cold.impulse, elsewhere.impulse),
+                 1e-3);
+        at_most(15, name, "velocities from two starts apart, m/s",
+                largest_difference(cold.velocity, elsewhere.velocity), 1e-8);
         at_most(15, name, "regions not converged", unconverged(cold) + unconverged(elsewhere), 0);
     }
 }
@@ -139,8 +146,8 @@ TEST_CASE("a region of a hundred thousand contacts is solved", "[scene][solver][
     add_sheets(scene, 226, 0.5, 1);
     SolverSettings settings;
     const SolvedScene solved = scene.solve(settings, ContactRegions::separate, Backend::automatic, 2);
-    const std::string name =
-        "two sheets of " + std::to_string(scene.stencil.size()) + " contacts, " + std::to_string(solved.regions.iterations[0]) + " sweeps";
+    const std::string name = "two sheets of " + std::to_string(scene.stencil.size()) + " contacts, " +
+                             std::to_string(solved.regions.iterations[0]) + " sweeps";
     at_most(16, name, "regions", static_cast<Real>(solved.regions.size()), 1);
     at_most(16, name, "error", worst_error(solved), settings.tolerance);
     judge({16, name, "finite", finite(solved) ? "yes" : "no", finite(solved)});
@@ -151,21 +158,24 @@ TEST_CASE("a hundred thousand regions of one contact are solved in closed form",
     std::mt19937 random(8);
     std::normal_distribution<Real> noise;
     for (int k = 0; k < 100000; ++k)
-        scene.touch_floor(scene.add_node(std::exp(noise(random)), Vec3(noise(random), noise(random), -std::abs(noise(random)))), 0.5);
+        scene.touch_floor(
+            scene.add_node(std::exp(noise(random)), Vec3(noise(random), noise(random), -std::abs(noise(random)))), 0.5);
     const SolvedScene solved = scene.solve({}, ContactRegions::separate, Backend::automatic, 2);
     const auto closed = std::count_if(solved.regions.shortcut.begin(), solved.regions.shortcut.end(),
                                       [](RegionShortcut s) { return (s & shortcut_closed_form) != 0; });
     at_least(17, "100000 masses on a floor", "regions solved in closed form", static_cast<Real>(closed), 1e5);
     Real wrong = 0;
     for (std::size_t i = 0; i < scene.stencil.size(); ++i) {
-        const Vec3& v = scene.velocity[i];  // methods.md 2: friction takes up to mu times the normal speed
+        // docs/methods/friction.md 2.1: friction takes up to mu times the normal speed
+        const Vec3& v = scene.velocity[i];
         const Real slide = std::max(0.0, 1 - 0.5 * -v.z() / v.head<2>().norm());
         wrong = std::max(wrong, (solved.velocity[i] - Vec3(slide * v.x(), slide * v.y(), 0)).norm());
     }
     at_most(17, "100000 masses on a floor", "velocity apart from the closed form, m/s", wrong, 1e-13);
 }
 
-TEST_CASE("a jam of normals at random with a friction of three is solved or flagged, and never made worse", "[scene][solver][stress]") {
+TEST_CASE("a jam of normals at random with a friction of three is solved or flagged, and never made worse",
+          "[scene][solver][stress]") {
     int flagged = 0, problems = 0, silent = 0, worse = 0;
     bool all_finite = true;
     for (unsigned seed = 0; seed < 40; ++seed) {
@@ -192,7 +202,8 @@ TEST_CASE("a jam of normals at random with a friction of three is solved or flag
         }
         worse += scene.kinetic_energy(solved.velocity) > scene.kinetic_energy(scene.velocity);
     }
-    const std::string scene = std::to_string(problems) + " jams of 72 contacts, mu 3, normals tilted by 35 or 70 degrees, " +
+    const std::string scene = std::to_string(problems) +
+                              " jams of 72 contacts, mu 3, normals tilted by 35 or 70 degrees, " +
                               std::to_string(flagged) + " flagged";
     judge({22, scene, "finite", all_finite ? "yes" : "no", all_finite});
     at_most(22, scene, "regions above the tolerance without a flag", silent, 0);
@@ -207,7 +218,8 @@ TEST_CASE("ten thousand points on one triangle are solved", "[scene][solver][str
     std::array<Index, 3> hub;
     for (Index& n : hub) n = scene.add_node(100, Vec3::Zero());
     for (int k = 0; k < 10000; ++k) {
-        const Index point = scene.add_node(0.01 + 0.01 * unit(random), Vec3(0.2 * unit(random), 0.1, -1 - 0.2 * unit(random)));
+        const Index point =
+            scene.add_node(0.01 + 0.01 * unit(random), Vec3(0.2 * unit(random), 0.1, -1 - 0.2 * unit(random)));
         Real a = unit(random), b = unit(random);
         if (a + b > 1) {
             a = 1 - a;
@@ -218,9 +230,11 @@ TEST_CASE("ten thousand points on one triangle are solved", "[scene][solver][str
     SolverSettings settings;
     settings.max_iterations = 2000;
     const SolvedScene solved = scene.solve(settings, ContactRegions::separate, Backend::automatic, 2);
-    const std::string name =
-        "10000 points of 150 kg together on a triangle of 300 kg, " + std::to_string(solved.regions.iterations[0]) + " sweeps";
-    judge({23, name, "one region, finite", finite(solved) ? "yes" : "no", finite(solved) && solved.regions.size() == 1});
+    const std::string name = "10000 points of 150 kg together on a triangle of 300 kg, " +
+                             std::to_string(solved.regions.iterations[0]) + " sweeps";
+    judge(
+        {23, name, "one region, finite", finite(solved) ? "yes" : "no", finite(solved) && solved.regions.size() == 1});
     at_most(23, name, "error", worst_error(solved), settings.tolerance);
-    at_most(23, name, "energy left / before", scene.kinetic_energy(solved.velocity) / scene.kinetic_energy(scene.velocity), 1);
+    at_most(23, name, "energy left / before",
+            scene.kinetic_energy(solved.velocity) / scene.kinetic_energy(scene.velocity), 1);
 }

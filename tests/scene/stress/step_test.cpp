@@ -1,4 +1,5 @@
-// Stress suite: steps that are too long, bodies that are too far, numbers that are too small (items 7, 26 and 27 of docs/stress.md).
+// Stress suite: steps that are too long, bodies that are too far, numbers that are too small (items 7, 26 and 27 of
+// docs/stress.md).
 #include <catch2/catch.hpp>
 #include <cfenv>
 #include <cmath>
@@ -17,16 +18,20 @@ TEST_CASE("a step_size above the stable step is not taken, and the report says f
             settings.step_size = step_size;
             World world(settings);
             world.add_collider(Plane{});
-            const auto soft = world.add_material({.young_modulus = 1e4}), stiff = world.add_material({.young_modulus = 1e6});
-            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = soft, .position = {0, 0, 0.1}, .name = "soft"});
-            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = stiff, .position = {0.01, 0, 0.25}, .name = "stiff"});
+            const auto soft = world.add_material({.young_modulus = 1e4}),
+                       stiff = world.add_material({.young_modulus = 1e6});
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
+                           {.material = soft, .position = {0, 0, 0.1}, .name = "soft"});
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
+                           {.material = stiff, .position = {0.01, 0, 0.25}, .name = "stiff"});
             return world;
         };
         const Real stable = make({}).stable_step();
         World world = make(factor * stable);
         const Course course = follow(world, 0.3, 30);
         const std::string scene = "two boxes dropped, step_size " + text(factor) + " times the stable step, 0.3 s";
-        judge({7, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
+        judge({7, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
+               course.ok && course.finite});
         at_most(7, scene, "energy gained / in play", course.gain(), 1e-2);
         const StepReport report = world.advance(0.01);
         const std::string expected = report.limited_by;
@@ -41,22 +46,25 @@ TEST_CASE("a step_size above the stable step is not taken, and the report says f
     CHECK(within.advance(0.1).warning().empty());
 }
 
-TEST_CASE("a body a thousand kilometres from the origin rests as it does there, one a million kilometres away is refused",
-          "[scene][stress]") {
+TEST_CASE(
+    "a body a thousand kilometres from the origin rests as it does there, one a million kilometres away is refused",
+    "[scene][stress]") {
     const auto rest = [](Real distance) {
         World world;
         const auto material = world.add_material({.young_modulus = 1e5, .friction = 0.5, .damping = 20});
         const Vec3 place(distance, -0.7 * distance, 0.3 * distance);
         world.add_collider(Plane{.normal = {0, 0, 1}, .point = place});
-        world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
-                       {.material = material, .position = place + Vec3(0, 0, 0.0512), .contact_distance = 2e-3, .name = "far"});
+        world.add_body(
+            mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
+            {.material = material, .position = place + Vec3(0, 0, 0.0512), .contact_distance = 2e-3, .name = "far"});
         return world;
     };
     World near = rest(0), far = rest(1e6);
     follow(near, 0.3, 10);
     const Course course = follow(far, 0.3, 10);
     const std::string scene = "box on a plane at 1e6 m, 0.3 s";
-    judge({26, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
+    judge(
+        {26, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
     Real apart = 0;
     const auto at = near.positions(near.bodies()[0]), there = far.positions(far.bodies()[0]);
     for (std::size_t n = 0; n < at.size(); ++n) apart = std::max(apart, (there[n] - there[0] - (at[n] - at[0])).norm());
@@ -68,7 +76,8 @@ TEST_CASE("a body a thousand kilometres from the origin rests as it does there, 
     const StepReport report = lost.advance(0.01);
     judge({26, "box at 1e9 m", "refused; the message names the body and advises a local frame", report.message(),
            !report.ok() && report.status == StepStatus::too_far && report.steps == 0 &&
-               report.message().find("'far'") != std::string::npos && report.message().find("local frame") != std::string::npos});
+               report.message().find("'far'") != std::string::npos &&
+               report.message().find("local frame") != std::string::npos});
     // One that gets there is stopped on its way.
     Settings settings;
     settings.gravity = Vec3::Zero();

@@ -66,9 +66,12 @@ TEST_CASE("figures of the collision stages", "[.benchmark]") {
             find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);
         };
         const double narrow = time_of(20, expire);
-        const double check =
-            time_of(200, [&] { find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs); });
-        const auto contacts = [&] { find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts); };
+        const double check = time_of(200, [&] {
+            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);
+        });
+        const auto contacts = [&] {
+            find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts);
+        };
         contacts();
         const double awake_some = time_of(200, contacts);
         for (auto& column : w.pairs.asleep_until) std::fill(column.begin(), column.end(), 1e9);
@@ -81,20 +84,23 @@ TEST_CASE("figures of the collision stages", "[.benchmark]") {
         for (std::size_t p = 0; p < w.pairs.size(); ++p) {
             busy += !w.pairs.candidates[p].empty();
             for (std::size_t c = 0; c < w.pairs.candidates[p].size(); ++c) {
-                const bool now = !(w.pairs.front[p] < w.pairs.asleep_until[p][c]);
+                const bool now = !(w.pairs.travel_bound[p] < w.pairs.asleep_until[p][c]);
                 awake += now;
                 awake_edges += now && w.pairs.candidates[p][c].feature >> 63;
             }
         }
         const double balls = double(w.body.slot.size()), pairs = double(w.pairs.size());
-        std::printf("%3.0f balls, %zu pairs (%zu with candidates), %zu candidates, %zu awake (%zu edges), %zu contacts\n", balls,
-                    w.pairs.size(), busy, listed, awake, awake_edges, w.contacts.size());
-        std::printf("  all afresh %.1f us a pair; pairs again %.1f us a pair, %.1f us a pair with candidates\n", search / pairs * 1e6,
-                    narrow / pairs * 1e6, narrow / double(busy) * 1e6);
+        std::printf(
+            "%3.0f balls, %zu pairs (%zu with candidates), %zu candidates, %zu awake (%zu edges), %zu contacts\n",
+            balls, w.pairs.size(), busy, listed, awake, awake_edges, w.contacts.size());
+        std::printf("  all afresh %.1f us a pair; pairs again %.1f us a pair, %.1f us a pair with candidates\n",
+                    search / pairs * 1e6, narrow / pairs * 1e6, narrow / double(busy) * 1e6);
         std::printf("  find_candidates, nothing expired: %.0f ns a ball\n", check / balls * 1e9);
         std::printf(
-            "  find_contacts: all asleep %.2f ns a candidate (%.0f ns a ball), all awake %.1f ns a candidate, as it is %.0f ns a ball\n",
-            asleep / double(listed) * 1e9, asleep / balls * 1e9, awake_all / double(listed) * 1e9, awake_some / balls * 1e9);
+            "  find_contacts: all asleep %.2f ns a candidate (%.0f ns a ball), all awake %.1f ns a candidate, as it is "
+            "%.0f ns a ball\n",
+            asleep / double(listed) * 1e9, asleep / balls * 1e9, awake_all / double(listed) * 1e9,
+            awake_some / balls * 1e9);
     }
 }
 
@@ -123,8 +129,10 @@ TEST_CASE("figures of a fall", "[.benchmark]") {
         w.drift(h);
     }
     std::printf(
-        "fall of %zu balls at 2 m/s: find_candidates %.2f us, find_contacts %.2f us a ball and step; %zu broad, %zu pair searches in %d "
+        "fall of %zu balls at 2 m/s: find_candidates %.2f us, find_contacts %.2f us a ball and step; %zu broad, %zu "
+        "pair searches in %d "
         "steps; %.0f contacts a step\n",
-        w.body.slot.size(), candidates / steps / double(w.body.slot.size()) * 1e6, contacts / steps / double(w.body.slot.size()) * 1e6,
-        std::size_t(w.search.broad_searches), std::size_t(w.search.pair_searches), steps, double(found) / steps);
+        w.body.slot.size(), candidates / steps / double(w.body.slot.size()) * 1e6,
+        contacts / steps / double(w.body.slot.size()) * 1e6, std::size_t(w.search.broad_searches),
+        std::size_t(w.search.pair_searches), steps, double(found) / steps);
 }

@@ -85,7 +85,8 @@ std::vector<std::uint64_t> bits(ContactTable& contacts) {
 
 }  // namespace
 
-TEST_CASE("budgets find exactly the contacts that a search of everything finds, over hundreds of random steps", "[unit]") {
+TEST_CASE("budgets find exactly the contacts that a search of everything finds, over hundreds of random steps",
+          "[unit]") {
     Room thrifty, thorough;
     thorough.w.settings.use_budgets = false;
     // Nothing keeps these bodies from going through each other: a pair that was apart once may not be now.
@@ -94,8 +95,8 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
     for (int step = 0; step < 600; ++step) {
         thrifty.steer(step);
         thorough.steer(step);
-        // A course may change at any moment: the speeds that count are those of the step. (In the engine forces are bounded, and what they
-        // add within one step has the factor speed_safety.)
+        // A course may change at any moment: the speeds that count are those of the step. (In the engine forces are
+        // bounded, and what they add within one step has the factor speed_safety.)
         thrifty.w.measure_speed();
         thorough.w.measure_speed();
         thrifty.w.find(h);
@@ -108,8 +109,9 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
             for (std::size_t i = 0; i < thorough.w.contacts.size(); ++i) {
                 const ContactKey key = thorough.w.contacts.key[i];
                 if (have.count({key.pair, key.feature})) continue;
-                UNSCOPED_INFO("step " << step << " missed pair " << std::hex << key.pair << " feature " << key.feature << " gap "
-                                      << thorough.w.contacts.gap[i] << " distance " << thorough.w.contacts.distance[i]);
+                UNSCOPED_INFO("step " << step << " missed pair " << std::hex << key.pair << " feature " << key.feature
+                                      << " gap " << thorough.w.contacts.gap[i] << " distance "
+                                      << thorough.w.contacts.distance[i]);
             }
             REQUIRE(same);
         }

@@ -16,8 +16,8 @@ bool contains(const Aabb& box, const Vec3& p) {
 }
 
 void refit(test::CollisionWorld& world, Index body) {
-    refit_bvh(world.body.bvh_nodes[body], world.bvh.node, world.bvh_leaves.triangle, world.surface.triangles.node, world.nodes.position,
-              world.bvh.box, world.bvh_leaves.box);
+    refit_bvh(world.body.bvh_nodes[body], world.bvh.node, world.bvh_leaves.triangle, world.surface.triangles.node,
+              world.nodes.position, world.bvh.box, world.bvh_leaves.box);
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ bool is_inside(const ColliderGeometry& g, const Vec3& p) {
         case ColliderShape::cylinder:
             return r < s[0] && std::abs(p[2]) < s[1];
         case ColliderShape::bucket:
-            return (r < s[0] + s[2] && p[2] > -s[2] && p[2] < 0) || (r > s[0] && r < s[0] + s[2] && p[2] > -s[2] && p[2] < s[1]);
+            return (r < s[0] + s[2] && p[2] > -s[2] && p[2] < 0) ||
+                   (r > s[0] && r < s[0] + s[2] && p[2] > -s[2] && p[2] < s[1]);
         case ColliderShape::mesh:
             break;
     }
@@ -126,7 +127,8 @@ TEST_CASE("the distance to every shape agrees with its sampled surface, inside a
         const std::vector<Vec3> surface = sample_surface(shape.geometry, step);
         for (int trial = 0; trial < 300; ++trial) {
             const Vec3 local = 1.2 * random.vector();
-            const SurfacePoint found = distance_to_collider(shape.geometry, motion, motion.position + motion.rotation * local);
+            const SurfacePoint found =
+                distance_to_collider(shape.geometry, motion, motion.position + motion.rotation * local);
             Real sampled = 1e300;
             for (const Vec3& x : surface) sampled = std::min(sampled, (x - local).norm());
             CHECK((found.distance < 0) == is_inside(shape.geometry, local));
@@ -159,7 +161,8 @@ TEST_CASE("normal and nearest point belong to the distance, and its gradient is 
             // Near a medial axis the difference straddles it and is no gradient.
             if (std::abs(gradient.norm() - 1) > 1e-6) continue;
             ++compared;
-            CHECK((gradient - found.normal).norm() <= 1e-4);  // curvature at points near the axis of a body of revolution
+            // curvature at points near the axis of a body of revolution
+            CHECK((gradient - found.normal).norm() <= 1e-4);
         }
         CHECK(compared > 290);
     }
@@ -173,10 +176,14 @@ TEST_CASE("on a medial axis one nearest point is chosen, always the same", "[uni
         Real distance;
     };
     const Case cases[] = {
-        {{ColliderShape::sphere, {0.6, 0, 0}}, {0, 0, 0}, -0.6},      {{ColliderShape::box, {0.5, 0.5, 0.5}}, {0, 0, 0}, -0.5},
-        {{ColliderShape::box, {0.5, 0.5, 0.8}}, {0.2, 0.2, 0}, -0.3}, {{ColliderShape::capsule, {0.3, 0.4, 0}}, {0, 0, 0.1}, -0.3},
-        {{ColliderShape::cylinder, {0.5, 0.5, 0}}, {0, 0, 0}, -0.5},  {{ColliderShape::bucket, {0.5, 1, 0.1}}, {0, 0, 0.5}, 0.5},
-        {{ColliderShape::bucket, {0.5, 1, 0.1}}, {0.4, 0, 0.1}, 0.1}, {{ColliderShape::bucket, {0.5, 1, 0.1}}, {0.55, 0, 0.5}, -0.05},
+        {{ColliderShape::sphere, {0.6, 0, 0}}, {0, 0, 0}, -0.6},
+        {{ColliderShape::box, {0.5, 0.5, 0.5}}, {0, 0, 0}, -0.5},
+        {{ColliderShape::box, {0.5, 0.5, 0.8}}, {0.2, 0.2, 0}, -0.3},
+        {{ColliderShape::capsule, {0.3, 0.4, 0}}, {0, 0, 0.1}, -0.3},
+        {{ColliderShape::cylinder, {0.5, 0.5, 0}}, {0, 0, 0}, -0.5},
+        {{ColliderShape::bucket, {0.5, 1, 0.1}}, {0, 0, 0.5}, 0.5},
+        {{ColliderShape::bucket, {0.5, 1, 0.1}}, {0.4, 0, 0.1}, 0.1},
+        {{ColliderShape::bucket, {0.5, 1, 0.1}}, {0.55, 0, 0.5}, -0.05},
     };
     for (const Case& test : cases) {
         const SurfacePoint found = distance_to_collider(test.geometry, motion, test.point);
@@ -195,8 +202,8 @@ TEST_CASE("outside a bucket the nearer of its parts is the distance to it; in it
     for (int trial = 0; trial < 300; ++trial) {
         const Vec3 p = motion.position + motion.rotation * Vec3(random.vector());
         const Real whole = distance_to_collider(bucket, motion, p).distance;
-        const Real least =
-            std::min(distance_to_collider_part(bucket, motion, 0, p).distance, distance_to_collider_part(bucket, motion, 1, p).distance);
+        const Real least = std::min(distance_to_collider_part(bucket, motion, 0, p).distance,
+                                    distance_to_collider_part(bucket, motion, 1, p).distance);
         if (whole > 0)
             CHECK(whole == Approx(least).epsilon(1e-12));
         else

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "systems/collision/contact_key.h"
+#include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/edge_edge_contact.h"
 #include "tests/support/collision_world.h"
 
@@ -31,7 +31,8 @@ void check_rows(const CollisionWorld& w) {
         // The stencil applied to positions is the connection of the two surfaces.
         if (c.kind[i] != ContactKind::point_collider) {
             Vec3 connection = Vec3::Zero();
-            for (std::size_t a = 0; a < 4; ++a) connection += c.stencil[i].weight[a] * w.nodes.position[c.stencil[i].node[a]];
+            for (std::size_t a = 0; a < 4; ++a)
+                connection += c.stencil[i].weight[a] * w.nodes.position[c.stencil[i].node[a]];
             CHECK(connection.dot(c.normal[i]) == Approx(c.distance[i]).margin(1e-12));
         }
         CHECK(c.impulse[i] == Vec3::Zero());
@@ -138,7 +139,8 @@ TEST_CASE("a corner pressed in beside an edge leaves through the nearest face on
     w.find(h);
     int of_tip = 0;
     for (std::size_t i = 0; i < w.contacts.size(); ++i) {
-        if (w.contacts.kind[i] != ContactKind::point_triangle || w.contacts.stencil[i].node[0] != w.body.nodes[1].begin) continue;
+        if (w.contacts.kind[i] != ContactKind::point_triangle || w.contacts.stencil[i].node[0] != w.body.nodes[1].begin)
+            continue;
         ++of_tip;
         CHECK(w.contacts.normal[i][2] == Approx(1));
         CHECK(w.contacts.distance[i] == Approx(-0.03));
@@ -153,12 +155,15 @@ TEST_CASE("a point off an edge or a corner is held by one triangle, along the li
         const Vec3 out = direction.normalized();
         const Vec3 tip = 0.5 * direction + Vec3(0, direction[1] == 0 ? 0.1 : 0, 0) + 0.02 * out;
         Vec3 u = out.cross(Vec3(0.3, 0.5, -0.2)).normalized(), v = out.cross(u);
-        const test::SolidMesh spike{{tip, tip + out + 0.3 * u, tip + out + 0.3 * v, tip + out - 0.3 * u - 0.3 * v}, {{0, 1, 2, 3}}};
+        const test::SolidMesh spike{{tip, tip + out + 0.3 * u, tip + out + 0.3 * v, tip + out - 0.3 * u - 0.3 * v},
+                                    {{0, 1, 2, 3}}};
         const Index b = w.add_solid(spike, w.at(Vec3::Zero()), 0.02);
         w.find(h);
         int of_tip = 0;
         for (std::size_t i = 0; i < w.contacts.size(); ++i) {
-            if (w.contacts.kind[i] != ContactKind::point_triangle || w.contacts.stencil[i].node[0] != w.body.nodes[b].begin) continue;
+            if (w.contacts.kind[i] != ContactKind::point_triangle ||
+                w.contacts.stencil[i].node[0] != w.body.nodes[b].begin)
+                continue;
             ++of_tip;
             CHECK((w.contacts.normal[i] - out).norm() < 1e-9);
             CHECK(w.contacts.gap[i] == Approx(0).margin(1e-12));
@@ -216,8 +221,9 @@ TEST_CASE("a ball on a plane touches it below, with the plane's velocity and the
 TEST_CASE("a point in the corner of a bucket touches floor and wall", "[unit]") {
     CollisionWorld w;
     const Vec3 corner(0.49, 0, 0.01);
-    const test::SolidMesh spike{{corner, corner + Vec3(-0.3, 0, 0.1), corner + Vec3(-0.2, 0.1, 0.3), corner + Vec3(-0.2, -0.1, 0.3)},
-                                {{0, 1, 3, 2}}};
+    const test::SolidMesh spike{
+        {corner, corner + Vec3(-0.3, 0, 0.1), corner + Vec3(-0.2, 0.1, 0.3), corner + Vec3(-0.2, -0.1, 0.3)},
+        {{0, 1, 3, 2}}};
     w.add_solid(spike, w.at(Vec3::Zero()), 0.02);
     w.add_collider(ColliderShape::bucket, {0.5, 1, 0.1}, w.at(Vec3::Zero()));
     w.find(h);
@@ -269,7 +275,8 @@ TEST_CASE("contacts reach as far as the step can close, not much further", "[uni
     for (Real speed : {0.0, 1.0, 100.0}) {
         const auto contacts_at = [&](Real gap) {
             Stack s(gap);
-            for (Index n = s.w.body.nodes[s.upper].begin; n < s.w.body.nodes[s.upper].end; ++n) s.w.nodes.velocity[n] = {0, 0, -speed};
+            for (Index n = s.w.body.nodes[s.upper].begin; n < s.w.body.nodes[s.upper].end; ++n)
+                s.w.nodes.velocity[n] = {0, 0, -speed};
             s.w.find(h);  // max_speed is still zero, as in the first step of a new body
             return s.w.contacts.size();
         };
@@ -333,7 +340,8 @@ TEST_CASE("a body touches itself neither at rest nor when it is squeezed evenly 
         const Index b = w.add_solid(mesh, w.at(Vec3::Zero()), 0.02);
         w.body.self_contact[b] = 1;
         for (Real squeeze : {1.0, 0.5, 0.1}) {
-            for (std::size_t n = 0; n < w.nodes.position.size(); ++n) w.nodes.position[n] = squeeze * w.nodes.rest_position[n];
+            for (std::size_t n = 0; n < w.nodes.position.size(); ++n)
+                w.nodes.position[n] = squeeze * w.nodes.rest_position[n];
             w.search.body_valid_until.clear();
             w.find(h);
             REQUIRE(w.pairs.size() == 1);

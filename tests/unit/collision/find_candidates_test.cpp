@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "systems/collision/contact_key.h"
+#include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/geometry/closest_points.h"
 #include "tests/support/collision_world.h"
@@ -26,8 +26,8 @@ std::set<std::uint64_t> all_features(const CollisionWorld& w, Index first, Index
         for (Index v = vertices.begin; v < vertices.end; ++v)
             for (Index t = triangles.begin; t < triangles.end; ++t) {
                 const auto& n = w.surface.triangles.node[t];
-                if (std::sqrt(closest_point_on_triangle(x[w.surface.vertices.node[v]], x[n[0]], x[n[1]], x[n[2]]).distance_squared) <
-                    distance)
+                if (std::sqrt(closest_point_on_triangle(x[w.surface.vertices.node[v]], x[n[0]], x[n[1]], x[n[2]])
+                                  .distance_squared) < distance)
                     near.insert(point_triangle_feature(of_second, v - vertices.begin, t - triangles.begin));
             }
     };
@@ -97,7 +97,8 @@ TEST_CASE("candidate rows are the features that their numbers name", "[unit]") {
             ++looked_at;
             REQUIRE(w.pairs.first[p] == a);
             REQUIRE(w.pairs.second[p] == b);
-            const Index first_local = static_cast<Index>(point_of_feature(c.feature) & local_mask), second = second_local(c.feature);
+            const Index first_local = static_cast<Index>(point_of_feature(c.feature) & local_mask),
+                        second = second_local(c.feature);
             if (is_edge_edge(c.feature)) {
                 CHECK(c.first == w.body.edges[a].begin + first_local);
                 CHECK(c.second == w.body.edges[b].begin + second);
@@ -142,7 +143,8 @@ TEST_CASE("pairs without a deformable body are never looked at", "[unit]") {
 
     const Index b = w.add_solid(mesh, w.at({0, 0, 1}), 0.1);
     search(w);
-    // With both mesh colliders, the plane and the sphere; the body of a mesh collider is second, under the collider's name.
+    // With both mesh colliders, the plane and the sphere; the body of a mesh collider is second, under the collider's
+    // name.
     REQUIRE(w.pairs.size() == 4);
     for (std::size_t p = 0; p < 4; ++p) CHECK(w.pairs.first[p] == b);
     CHECK(w.pairs.key[0] == collider_pair_key(w.body.slot[b], w.body.slot[a]));
@@ -189,7 +191,8 @@ TEST_CASE("a pair that stays near keeps its list over a broad search, and one th
     CHECK(w.search.pair_searches == narrow);  // nothing else had moved
 }
 
-TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer than the contact distance at rest", "[unit]") {
+TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer than the contact distance at rest",
+          "[unit]") {
     CollisionWorld w;
     // A flat body whose two faces are nearer than the skin.
     const Index b = w.add_solid(test::box_mesh({6, 6, 1}, {6, 6, 0.3}), w.at(Vec3::Zero()), 0.1);
@@ -215,7 +218,8 @@ TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer th
         if (is_edge_edge(c.feature)) continue;
         const auto& n = w.surface.triangles.node[c.second];
         const auto& x = w.nodes.rest_position;
-        CHECK(closest_point_on_triangle(x[w.surface.vertices.node[c.first]], x[n[0]], x[n[1]], x[n[2]]).distance_squared >= 0.31 * 0.31);
+        CHECK(closest_point_on_triangle(x[w.surface.vertices.node[c.first]], x[n[0]], x[n[1]], x[n[2]])
+                  .distance_squared >= 0.31 * 0.31);
     }
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "systems/collision/contact_key.h"
+#include "systems/collision/inputs/contact_key.h"
 #include "tests/support/collision_world.h"
 
 using namespace skerry;
@@ -22,7 +22,8 @@ struct SpikeOverPlate {
 
     explicit SpikeOverPlate(Real height) : tip(0.13, 0.62, height) {
         plate = w.add_solid(test::box_mesh({4, 4, 1}, {4, 4, 0.1}), w.at({0, 0, -0.05}), shell);
-        const test::SolidMesh mesh{{tip, tip + Vec3(0.1, 0, 0.5), tip + Vec3(-0.1, 0.1, 0.5), tip + Vec3(-0.1, -0.1, 0.5)}, {{0, 1, 2, 3}}};
+        const test::SolidMesh mesh{
+            {tip, tip + Vec3(0.1, 0, 0.5), tip + Vec3(-0.1, 0.1, 0.5), tip + Vec3(-0.1, -0.1, 0.5)}, {{0, 1, 2, 3}}};
         spike = w.add_solid(mesh, w.at(Vec3::Zero()), shell);
     }
     void move_spike(const Vec3& velocity) {
@@ -51,7 +52,8 @@ TEST_CASE("a point that would go through a face becomes a contact where it meets
     s.move_spike({200, 0, -50});  // 0.2 along and 0.05 down in the step
     s.w.find(h);
     REQUIRE(s.crossings() > 0);
-    // The way of the tip goes through the plane 0.12 further on. There it is noticed a tenth of its height above, at a slope of 1 to 4.
+    // The way of the tip goes through the plane 0.12 further on. There it is noticed a tenth of its height above, at a
+    // slope of 1 to 4.
     const Vec3 through(0.13 + 0.12, 0.62, 0);
     const ContactRow* row = s.row_of_tip(through);
     REQUIRE(row);
@@ -96,7 +98,8 @@ TEST_CASE("bodies that overlap may leave each other through their surfaces", "[u
     s.w.find(h);
     REQUIRE(s.w.contacts.size() > 0);
     CHECK(s.crossings() == 0);
-    CHECK(std::any_of(s.w.pairs.state.begin(), s.w.pairs.state.end(), [](PairState state) { return state == PairState::overlapping; }));
+    CHECK(std::any_of(s.w.pairs.state.begin(), s.w.pairs.state.end(),
+                      [](PairState state) { return state == PairState::overlapping; }));
 }
 
 TEST_CASE("on the last try a crossing is let through, counted, and its pair overlaps from then on", "[unit]") {
@@ -118,9 +121,10 @@ TEST_CASE("a pair that moves further than its list of candidates is good for sta
     CHECK(s.crossings() > 0);
 }
 
-TEST_CASE("what the nodes of a body drifted before takes nothing from a list that was searched for this step", "[unit]") {
+TEST_CASE("what the nodes of a body drifted before takes nothing from a list that was searched for this step",
+          "[unit]") {
     SpikeOverPlate s(0.03);
-    s.w.body.drift[s.plate] = 10;  // m: a body that flew with one velocity while its nodes swung
+    s.w.body.displacement[s.plate] = 10;  // m: a body that flew with one velocity while its nodes swung
     s.w.find(h);
     s.move_spike({0, 0, -10});
     CHECK(s.crossings() == 0);
@@ -140,23 +144,28 @@ TEST_CASE("a plate turned inside out still holds a point on the side where it is
         s.w.find(h);
         Real least = 1, normals = 1;
         for (std::size_t i = 0; i < s.w.contacts.size(); ++i) {
-            if (s.w.contacts.kind[i] != ContactKind::point_triangle || s.w.contacts.stencil[i].node[0] != s.w.body.nodes[s.spike].begin)
+            if (s.w.contacts.kind[i] != ContactKind::point_triangle ||
+                s.w.contacts.stencil[i].node[0] != s.w.body.nodes[s.spike].begin)
                 continue;
             least = std::min(least, std::abs(s.w.contacts.gap[i]));
             normals = std::min(normals, s.w.contacts.normal[i][2]);
         }
-        // Without the knowledge that the surfaces are apart it is taken for a point inside, and pushed out to the other side.
+        // Without the knowledge that the surfaces are apart it is taken for a point inside, and pushed out to the other
+        // side.
         CHECK(normals == Approx(continuous ? 1 : -1));
         if (continuous) CHECK(least < 1e-12);
     }
 }
 
-TEST_CASE("two edges that would go through each other become a contact although the surface is hollow at one of them", "[unit]") {
-    // A valley along x whose bottom rises, and above it a short ridge across: no rule for close features has a valley touch.
+TEST_CASE("two edges that would go through each other become a contact although the surface is hollow at one of them",
+          "[unit]") {
+    // A valley along x whose bottom rises, and above it a short ridge across: no rule for close features has a valley
+    // touch.
     CollisionWorld w;
     const auto roof = [&](const Vec3& along, const Vec3& across, Real z, Real apex) {
         const Vec3 at(0, 0, z), rise(0, 0, 0.05);
-        const std::vector<Vec3> x{at - 0.5 * along, at + 0.5 * along, at + 0.5 * across + rise, at - 0.5 * across + rise, Vec3(0, 0, apex)};
+        const std::vector<Vec3> x{at - 0.5 * along, at + 0.5 * along, at + 0.5 * across + rise,
+                                  at - 0.5 * across + rise, Vec3(0, 0, apex)};
         return test::SolidMesh{x, {{0, 1, 2, 4}, {1, 0, 3, 4}}};
     };
     const Index valley = w.add_solid(roof(Vec3::UnitX(), Vec3::UnitY(), 0, -0.5), w.at(Vec3::Zero()), shell);
@@ -167,8 +176,9 @@ TEST_CASE("two edges that would go through each other become a contact although 
     w.find(h);
     REQUIRE(w.pairs.state[0] == PairState::apart);
     REQUIRE(find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, still, w.pairs, w.crossings) > 0);
-    const auto crossing = std::find_if(w.crossings.row.begin(), w.crossings.row.end(),
-                                       [](const ContactRow& row) { return row.kind == ContactKind::edge_edge && row.point.norm() < 0.05; });
+    const auto crossing = std::find_if(w.crossings.row.begin(), w.crossings.row.end(), [](const ContactRow& row) {
+        return row.kind == ContactKind::edge_edge && row.point.norm() < 0.05;
+    });
     REQUIRE(crossing != w.crossings.row.end());
     CHECK(std::abs(crossing->normal[2]) == Approx(1));
     CHECK(std::find(w.contacts.key.begin(), w.contacts.key.end(), crossing->key) == w.contacts.key.end());

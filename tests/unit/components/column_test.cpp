@@ -17,8 +17,8 @@ Column<int> counting(int count) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a column starts on a cache line, whatever its rows and however it grew", "[unit]", std::uint8_t, int, Real, Vec3,
-                   Mat3) {
+TEMPLATE_TEST_CASE("a column starts on a cache line, whatever its rows and however it grew", "[unit]", std::uint8_t,
+                   int, Real, Vec3, Mat3) {
     Column<TestType> column;
     for (std::size_t rows = 1; rows < 3000; rows = 2 * rows + 1) {
         column.resize(rows);

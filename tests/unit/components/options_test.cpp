@@ -23,8 +23,8 @@ void require_names_to_be_unique() {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("every choice has a name of its own that leads back to it", "[unit]", MaterialModel, Friction, ContactRegions,
-                   SolverMethod, Backend, WarmStart) {
+TEMPLATE_TEST_CASE("every choice has a name of its own that leads back to it", "[unit]", MaterialModel, Friction,
+                   ContactRegions, SolverMethod, Backend, WarmStart) {
     require_names_to_be_unique<TestType>();
 }
 

@@ -14,30 +14,32 @@
 
 using namespace skerry;
 
-// A column that is missing from the list would be lost by a snapshot. All columns have the same size in memory, so the table's size
-// says how many there are; a flag or two beside them (RegionTable) is less than one column more.
-TEMPLATE_TEST_CASE("the list of a table names every column of it once", "[unit]", NodeTable, ElementBlockTable, BodyTable, BvhTable,
-                   MaterialTable, NodeBlockTable, ColliderTable, AttachmentTable, ContactTable, WarmStartTable, RegionTable,
-                   RegionHistoryTable, TriangleTable, EdgeTable, VertexTable, SurfaceTables) {
+// A column that is missing from the list would be lost by a snapshot. All columns have the same size in memory, so the
+// table's size says how many there are; a flag or two beside them (RegionTable) is less than one column more.
+TEMPLATE_TEST_CASE("the list of a table names every column of it once", "[unit]", NodeTable, ElementBlockTable,
+                   BodyTable, BvhTable, MaterialTable, NodeBlockTable, ColliderTable, AttachmentTable, ContactTable,
+                   WarmStartTable, RegionTable, RegionHistoryTable, TriangleTable, EdgeTable, VertexTable,
+                   SurfaceTables) {
     TestType table;
     std::set<const void*> columns;
     std::set<std::string> names;
     std::size_t visits = 0;
-    table.for_each_column([&](const char* name, auto& column) {
+    table.for_each_column([&](const char* name, auto& column, ColumnRole) {
         columns.insert(&column);
         names.insert(name);
         ++visits;
     });
     REQUIRE(columns.size() == visits);
     REQUIRE(sizeof(TestType) / sizeof(Column<Real>) == visits);
-    if constexpr (!std::is_same_v<TestType, SurfaceTables>) REQUIRE(names.size() == visits);  // its parts have columns of the same name
+    // its parts have columns of the same name
+    if constexpr (!std::is_same_v<TestType, SurfaceTables>) REQUIRE(names.size() == visits);
 }
 
 TEST_CASE("resizing the contact table resizes every column", "[unit]") {
     ContactTable contacts;
     contacts.resize(5);
     REQUIRE(contacts.size() == 5);
-    contacts.for_each_column([](const char* name, auto& column) {
+    contacts.for_each_column([](const char* name, auto& column, ColumnRole) {
         CAPTURE(name);
         REQUIRE(column.size() == 5);
     });

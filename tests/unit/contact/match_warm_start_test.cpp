@@ -33,25 +33,27 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
 
 TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]") {
     WarmStartTable last, next;
-    store_warm_start(std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()), std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}},
-                     {}, 1, last, next);
+    store_warm_start(std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()),
+                     std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}}, {}, 1, last, next);
     std::vector<Vec3> matched(3);
-    match_warm_start(*serial, std::vector<ContactKey>{{1, 3}, {2, 3}, {2, 9}}, std::vector<Vec3>(3, Vec3::UnitX()), last, 1, matched);
+    match_warm_start(*serial, std::vector<ContactKey>{{1, 3}, {2, 3}, {2, 9}}, std::vector<Vec3>(3, Vec3::UnitX()),
+                     last, 1, matched);
     CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 0, 0}});
 }
 
-TEST_CASE("impulses of resting pairs are kept in their places, for the new step", "[unit][contact]") {
+TEST_CASE("impulses of idle pairs are kept in their places, for the new step", "[unit][contact]") {
     WarmStartTable last, next;
     const auto ups = [](std::size_t count) { return std::vector<Vec3>(count, Vec3::UnitZ()); };
     store_warm_start(std::vector<ContactKey>{{1, 1}, {2, 1}, {2, 2}, {4, 1}}, ups(4),
                      std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, {}, 1, last, next);
     // pair 2 rests, 1 and 4 were looked for again: 1 has another contact, 4 has none, 5 is new
     const std::vector<std::uint64_t> pair{1, 2, 3, 4, 5};
-    const std::vector<std::uint8_t> resting{0, 1, 1, 0, 0};
-    store_warm_start(std::vector<ContactKey>{{1, 7}, {5, 1}}, ups(2), std::vector<Vec3>{{5, 0, 0}, {6, 0, 0}}, {pair, resting}, 0.5, last,
-                     next);
+    const std::vector<std::uint8_t> idle{0, 1, 1, 0, 0};
+    store_warm_start(std::vector<ContactKey>{{1, 7}, {5, 1}}, ups(2), std::vector<Vec3>{{5, 0, 0}, {6, 0, 0}},
+                     {pair, idle}, 0.5, last, next);
     CHECK(std::vector(last.key.begin(), last.key.end()) == std::vector<ContactKey>{{1, 7}, {2, 1}, {2, 2}, {5, 1}});
-    CHECK(std::vector(last.impulse.begin(), last.impulse.end()) == std::vector<Vec3>{{5, 0, 0}, {1, 0, 0}, {1.5, 0, 0}, {6, 0, 0}});
+    CHECK(std::vector(last.impulse.begin(), last.impulse.end()) ==
+          std::vector<Vec3>{{5, 0, 0}, {1, 0, 0}, {1.5, 0, 0}, {6, 0, 0}});
     CHECK(last.step[0] == 0.5);
 }
 
@@ -60,7 +62,8 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
     std::normal_distribution<Real> normal_number;
     for (int trial = 0; trial < 200; ++trial) {
         const Vec3 from = Vec3(normal_number(random), normal_number(random), normal_number(random)).normalized();
-        const Vec3 to = (from + 0.5 * Vec3(normal_number(random), normal_number(random), normal_number(random))).normalized();
+        const Vec3 to =
+            (from + 0.5 * Vec3(normal_number(random), normal_number(random), normal_number(random))).normalized();
         if (from.dot(to) < -0.99) continue;
         const Vec3 impulse(normal_number(random), normal_number(random), normal_number(random));
         WarmStartTable last, next;
@@ -75,7 +78,8 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
 
 TEST_CASE("a normal that flipped carries nothing over", "[unit][contact]") {
     WarmStartTable last, next;
-    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, {}, 1, last, next);
+    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, {}, 1,
+                     last, next);
     std::vector<Vec3> matched(1, Vec3::Ones());
     match_warm_start(*serial, std::vector{key(1)}, std::vector<Vec3>{-Vec3::UnitZ()}, last, 1, matched);
     CHECK(matched[0] == Vec3::Zero());
@@ -83,7 +87,8 @@ TEST_CASE("a normal that flipped carries nothing over", "[unit][contact]") {
 
 TEST_CASE("without a last step all impulses start at zero and the stage is skipped", "[unit][contact]") {
     std::vector<Vec3> matched(2, Vec3::Ones());
-    CHECK_FALSE(match_warm_start(*serial, std::vector{key(1), key(2)}, std::vector<Vec3>(2, Vec3::UnitZ()), {}, 1, matched));
+    CHECK_FALSE(
+        match_warm_start(*serial, std::vector{key(1), key(2)}, std::vector<Vec3>(2, Vec3::UnitZ()), {}, 1, matched));
     CHECK(matched == std::vector<Vec3>(2, Vec3::Zero()));
     CHECK_FALSE(match_warm_start(*serial, {}, {}, {}, 1, {}));
 }

@@ -31,19 +31,20 @@ struct Measured {
     std::vector<ContactState> state;
 };
 
-Measured measure(const ContactTable& table, const std::vector<Vec3>& before, const std::vector<Vec3>& after, int workers = 1,
-                 Friction friction = Friction::cone) {
+Measured measure(const ContactTable& table, const std::vector<Vec3>& before, const std::vector<Vec3>& after,
+                 int workers = 1, Friction friction = Friction::cone) {
     Measured result{{}, std::vector<Vec3>(table.size()), std::vector<ContactState>(table.size())};
     const auto executor = make_executor(Backend::threads, workers);
-    result.sums =
-        measure_contacts(*executor, table, std::vector<Real>(before.size(), 1.0), before, after, result.slip, result.state, friction);
+    result.sums = measure_contacts(*executor, table, std::vector<Real>(before.size(), 1.0), before, after, result.slip,
+                                   result.state, friction);
     return result;
 }
 
 }  // namespace
 
 TEST_CASE("a contact is open without impulse, sticks inside the cone, slides on it", "[unit][contact]") {
-    const ContactTable table = floor_contacts({{0, 0, 0}, {0.1, 0, 1}, {0.4, 0, 1}, {0.45, 0, 1}, {0.5, 0, 1}, {0, 0, 1}});
+    const ContactTable table =
+        floor_contacts({{0, 0, 0}, {0.1, 0, 1}, {0.4, 0, 1}, {0.45, 0, 1}, {0.5, 0, 1}, {0, 0, 1}});
     const std::vector<Vec3> zero(6, Vec3::Zero());
     const Measured result = measure(table, zero, zero);
     using enum ContactState;
@@ -56,7 +57,8 @@ TEST_CASE("the pyramid slides on its faces, not on the circle inside", "[unit][c
     ContactTable table = floor_contacts({{0.35, 0.35, 1}, {0.5, 0.1, 1}});
     for (std::size_t i = 0; i < 2; ++i) table.dynamic_friction[i] = 0.5;
     const std::vector<Vec3> zero(2, Vec3::Zero());
-    CHECK(measure(table, zero, zero, 1, Friction::pyramid).state == std::vector{ContactState::stick, ContactState::slide});
+    CHECK(measure(table, zero, zero, 1, Friction::pyramid).state ==
+          std::vector{ContactState::stick, ContactState::slide});
     CHECK(measure(table, zero, zero, 1, Friction::cone).state[0] == ContactState::stick);
     table.impulse[0] = Vec3(0.4, 0.4, 1);  // outside the circle, inside the box
     CHECK(measure(table, zero, zero, 1, Friction::pyramid).state[0] == ContactState::stick);
@@ -100,8 +102,8 @@ TEST_CASE("the sum over many contacts has the same bits on any number of workers
 }
 
 TEST_CASE("the tangent frame is orthonormal and right-handed for every normal", "[unit][contact]") {
-    for (const Vec3& direction :
-         {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(1e-12, 0, -1), Vec3(1, 2, -3), Vec3(1, 1, -0.0)}) {
+    for (const Vec3& direction : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(1e-12, 0, -1),
+                                  Vec3(1, 2, -3), Vec3(1, 1, -0.0)}) {
         const Vec3 normal = direction.normalized();
         const TangentFrame frame = tangent_frame(normal);
         Mat3 axes;

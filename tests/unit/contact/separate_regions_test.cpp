@@ -130,7 +130,8 @@ TEST_CASE("a node of weight zero does not join contacts", "[unit][contact]") {
 TEST_CASE("a contact without a moving node belongs to no region", "[unit][contact]") {
     const std::vector<Real> inverse_mass{0, 0, 1, 1};
     const std::vector<Stencil> stencil{touching({0, 1}), touching({2, 3}), touching({1})};
-    for (const ContactRegions mode : {ContactRegions::separate, ContactRegions::global, ContactRegions::paper_algorithm_1}) {
+    for (const ContactRegions mode :
+         {ContactRegions::separate, ContactRegions::global, ContactRegions::paper_algorithm_1}) {
         const Separated result = separate(stencil, inverse_mass, mode);
         CHECK(result.region == std::vector<Index>{no_index, 0, no_index});
         CHECK(result.regions.contacts.item.size() == 1);
@@ -144,7 +145,8 @@ TEST_CASE("no contacts are no regions, and old ones go", "[unit][contact]") {
     UnionFind memory;
     RegionTable regions;
     std::vector<Index> region(1);
-    separate_regions(std::vector{touching({1, 2})}, std::vector<Real>(3, 1), ContactRegions::separate, memory, regions, region);
+    separate_regions(std::vector{touching({1, 2})}, std::vector<Real>(3, 1), ContactRegions::separate, memory, regions,
+                     region);
     REQUIRE(regions.size() == 1);
     CHECK_FALSE(separate_regions({}, std::vector<Real>(3, 1), ContactRegions::separate, memory, regions, {}));
     CHECK(regions.size() == 0);
@@ -152,9 +154,11 @@ TEST_CASE("no contacts are no regions, and old ones go", "[unit][contact]") {
 }
 
 TEST_CASE("global puts all contacts into one region in contact order", "[unit][contact]") {
-    const Separated result = separate({touching({1}), touching({2}), touching({3})}, std::vector<Real>(4, 1), ContactRegions::global);
+    const Separated result =
+        separate({touching({1}), touching({2}), touching({3})}, std::vector<Real>(4, 1), ContactRegions::global);
     CHECK(result.regions.size() == 1);
-    CHECK(std::vector<Index>(result.regions.contacts[0].begin(), result.regions.contacts[0].end()) == std::vector<Index>{0, 1, 2});
+    CHECK(std::vector<Index>(result.regions.contacts[0].begin(), result.regions.contacts[0].end()) ==
+          std::vector<Index>{0, 1, 2});
 }
 
 TEST_CASE("the paper's Algorithm 1 leaves areas {1,2,5} and {5,6} apart, which share point 5", "[unit][contact]") {
@@ -170,7 +174,8 @@ TEST_CASE("the paper's Algorithm 1 leaves areas {1,2,5} and {5,6} apart, which s
 }
 
 TEST_CASE("the paper's Algorithm 1 is right on chains in order", "[unit][contact]") {
-    const std::vector<Stencil> stencil{touching({1, 2}), touching({2, 3}), touching({3, 4}), touching({7, 8}), touching({8, 9})};
+    const std::vector<Stencil> stencil{touching({1, 2}), touching({2, 3}), touching({3, 4}), touching({7, 8}),
+                                       touching({8, 9})};
     const std::vector<Real> inverse_mass(10, 1);
     const Separated paper = separate(stencil, inverse_mass, ContactRegions::paper_algorithm_1);
     CHECK(paper.region == separate(stencil, inverse_mass, ContactRegions::separate).region);
@@ -183,7 +188,8 @@ TEST_CASE("the paper's Algorithm 1 goes wrong more often the more contacts there
         int wrong = 0;
         for (int trial = 0; trial < 100; ++trial) {
             const std::vector<Stencil> stencil = random_stencils(random, contacts, 3 * contacts);
-            wrong += !separate(stencil, std::vector<Real>(3 * static_cast<std::size_t>(contacts), 1), ContactRegions::paper_algorithm_1)
+            wrong += !separate(stencil, std::vector<Real>(3 * static_cast<std::size_t>(contacts), 1),
+                               ContactRegions::paper_algorithm_1)
                           .regions.independent;
         }
         return wrong;

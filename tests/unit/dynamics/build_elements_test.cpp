@@ -1,4 +1,4 @@
-#include "systems/dynamics/build_elements.h"
+#include "systems/dynamics/elements/build_elements.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "systems/dynamics/check_state.h"
+#include "systems/dynamics/checks/check_state.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -118,7 +118,8 @@ TEST_CASE("common motion does no harm, however fast", "[unit]") {
 
 TEST_CASE("a turn that is slow for each element is allowed to a large body", "[unit]") {
     State state;
-    for (std::size_t n = 0; n < 600; ++n) state.next[n] = Vec3(0, 0.1 * static_cast<Real>(n), 0);  // 30 m/s at the far end
+    // 30 m/s at the far end
+    for (std::size_t n = 0; n < 600; ++n) state.next[n] = Vec3(0, 0.1 * static_cast<Real>(n), 0);
     CHECK(state.check().fault == StepFault::none);
 }
 

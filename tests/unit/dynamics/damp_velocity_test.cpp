@@ -1,4 +1,4 @@
-#include "systems/dynamics/damp_velocity.h"
+#include "systems/dynamics/motion/damp_velocity.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -44,9 +44,10 @@ struct Cloud {
         return damped;
     }
     bool damp_from(Executor& executor, Real h, std::vector<Vec3>& velocity_next) {
-        return damp_velocity(
-            executor, {block_begin, block_end, block_body, node_blocks, body_material, pinned, damping, position, mass, inverse_mass, lag},
-            velocity, h, sums, velocity_next, dissipated);
+        return damp_velocity(executor,
+                             {block_begin, block_end, block_body, node_blocks, body_material, pinned, damping, position,
+                              mass, inverse_mass, lag},
+                             velocity, h, sums, velocity_next, dissipated);
     }
 };
 
@@ -133,7 +134,8 @@ TEST_CASE("places that turn on while velocities lag behind are rigid motion", "[
         cloud.add(now, velocities, 1);
         cloud.damp(*executor, h);
         Real largest = 0;
-        for (std::size_t n = 0; n < now.size(); ++n) largest = std::max(largest, (cloud.velocity[n] - velocities[n]).norm());
+        for (std::size_t n = 0; n < now.size(); ++n)
+            largest = std::max(largest, (cloud.velocity[n] - velocities[n]).norm());
         return largest;
     };
     CHECK(excess_with_lag(h / 2) <= 1e-12);
@@ -155,7 +157,9 @@ TEST_CASE("nodes in a point and on a line are damped without a rotation they can
     cloud.lag = GENERATE(0.0, 0.02);
     cloud.add({Vec3(1, 1, 1)}, {Vec3(1, 2, 3)}, 1);                                 // one node: all of it is rigid
     cloud.add({Vec3(2, 2, 2), Vec3(2, 2, 2)}, {Vec3(1, 0, 0), Vec3(-1, 0, 0)}, 1);  // one place
-    cloud.add({Vec3(0, 0, 0), Vec3(0.1, 0.2, 0.3), Vec3(0.3, 0.6, 0.9)}, {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}, 1);  // a line
+    // a line
+    cloud.add({Vec3(0, 0, 0), Vec3(0.1, 0.2, 0.3), Vec3(0.3, 0.6, 0.9)}, {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)},
+              1);
     const Momenta before = momenta(cloud);
     cloud.damp(*executor, 0.1);
     const Momenta after = momenta(cloud);
@@ -196,7 +200,8 @@ TEST_CASE("damping has the same bits on any number of workers", "[unit][determin
         const auto executor = make_executor(available_backends().front(), workers);
         Cloud cloud;
         for (std::uint64_t body = 0; body < 5; ++body)
-            cloud.add(random_vectors(3000, 0.5, Vec3(1, 2, 3), body), random_vectors(3000, 2, Vec3(3, 1, 0), body + 9), body % 2 == 0);
+            cloud.add(random_vectors(3000, 0.5, Vec3(1, 2, 3), body), random_vectors(3000, 2, Vec3(3, 1, 0), body + 9),
+                      body % 2 == 0);
         for (int step = 0; step < 3; ++step) cloud.damp(*executor, 1e-3);
         if (workers == 1)
             reference = cloud.velocity;

@@ -1,17 +1,16 @@
-#include "systems/dynamics/element_energy.h"
+#include "systems/dynamics/elements/element_energy.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "tests/support/elastic_body.h"
+#include "tests/support/material_models.h"
 
 using namespace skerry;
 using test::ElasticBody;
 using test::jittered_box;
 
 namespace {
-
-constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean};
 
 MaterialConstants rubber(MaterialModel model) {
     return material_constants(model, 1e5, 0.3, 1000);
@@ -20,32 +19,34 @@ MaterialConstants rubber(MaterialModel model) {
 }  // namespace
 
 TEST_CASE("elastic energy is the sum over the elements", "[unit]") {
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({2, 3, 2}, 0.1, 0.2, 1), rubber(model));
         CHECK(std::abs(elastic_energy(body.inputs(), body.blocks, body.position)) <= 1e-12);
         std::mt19937_64 random(2);
         for (Vec3& x : body.position) x += 0.02 * test::random_vector(random);
         Real sum = 0;
-        for (std::size_t e = 0; e < 72; ++e) sum += body.volume(e) * energy_density(body.constants[0], body.deformation(e));
+        for (std::size_t e = 0; e < 72; ++e)
+            sum += body.volume(e) * energy_density(body.constants[0], body.deformation(e));
         CHECK(elastic_energy(body.inputs(), body.blocks, body.position) == Approx(sum).epsilon(1e-12));
         CHECK(elastic_energy(body.inputs(), {0, 0}, body.position) == 0);
     }
 }
 
 TEST_CASE("von Mises stress of uniaxial strain is 2 mu strain", "[unit]") {
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
         const Real strain = 1e-6;
         for (Vec3& x : body.position) x.z() *= 1 + strain;
         std::vector<Real> stress(8, -1);
         von_mises_stress(body.inputs(), body.blocks, body.position, stress);
-        for (std::size_t e = 0; e < 6; ++e) CHECK(stress[e] == Approx(2 * body.constants[0].shear_modulus * strain).epsilon(1e-5));
+        for (std::size_t e = 0; e < 6; ++e)
+            CHECK(stress[e] == Approx(2 * body.constants[0].shear_modulus * strain).epsilon(1e-5));
         CHECK(stress[6] == 0);  // a lane that is left over
     }
 }
 
 TEST_CASE("von Mises stress is finite for a flat body", "[unit]") {
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
         for (Vec3& x : body.position) x.z() = 0;
         std::vector<Real> stress(8);

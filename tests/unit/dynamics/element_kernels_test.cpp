@@ -4,14 +4,13 @@
 
 #include "jobs/executor.h"
 #include "tests/support/elastic_body.h"
+#include "tests/support/material_models.h"
 
 using namespace skerry;
 using test::ElasticBody;
 using test::jittered_box;
 
 namespace {
-
-constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean};
 
 MaterialConstants rubber(MaterialModel model) {
     return material_constants(model, 1e5, 0.4, 1000);
@@ -31,21 +30,23 @@ bool same_bits(std::span<const T> a, std::span<const T> b) {
 
 TEST_CASE("element forces are those of the textbook, element by element", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         for (Real size : {0.01, 0.08}) {  // the second inverts some
             ElasticBody body(jittered_box({3, 3, 3}, 0.1, 0.2, 1), rubber(model));
             deform(body, size, 2);
             body.compute_elements(*executor);
             for (std::size_t e = 0; e < 162; ++e) {
                 const Mat3 F = body.deformation(e);
-                if (model == MaterialModel::corotational && stiffness_bound(body.constants[0], F) > 1e8) continue;  // about to jump
+                // about to jump
+                if (model == MaterialModel::corotational && stiffness_bound(body.constants[0], F) > 1e8) continue;
                 Mat3 B;
                 for (std::size_t i = 0; i < 9; ++i) B.data()[i] = body.elements.inverse_rest[e / 8][i][e % 8];
                 const Mat3 H = -body.volume(e) * stress(body.constants[0], F) * B.transpose();
                 const auto& force = body.elements.force[e / 8][e % 8];
                 const Real scale = 1e5 * 1e-2 * std::pow(1 + F.norm(), 5);
                 INFO("model " << name_of(model) << " element " << e);
-                for (int a = 0; a < 3; ++a) CHECK((force[static_cast<std::size_t>(a) + 1] - H.col(a)).norm() <= 1e-12 * scale);
+                for (int a = 0; a < 3; ++a)
+                    CHECK((force[static_cast<std::size_t>(a) + 1] - H.col(a)).norm() <= 1e-12 * scale);
                 CHECK((force[0] + H.rowwise().sum()).norm() <= 1e-12 * scale);
             }
         }
@@ -70,7 +71,7 @@ TEST_CASE("the element that touches the last node is not read past its end", "[u
 
 TEST_CASE("lanes that are left over give no force", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
         deform(body, 0.02, 3);
         body.compute_elements(*executor);
@@ -81,7 +82,7 @@ TEST_CASE("lanes that are left over give no force", "[unit]") {
 
 TEST_CASE("only corotational elements touch the frames", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
         const Eigen::AngleAxis<Real> turn(0.5, Vec3::UnitX());
         for (Vec3& x : body.position) x = turn * x;
@@ -104,14 +105,15 @@ TEST_CASE("a node sums its corners, its weight and its load", "[unit]") {
         Vec3 sum = Vec3::Zero();
         for (std::size_t e = 0; e < 48; ++e)
             for (std::size_t a = 0; a < 4; ++a)
-                if (body.elements.node[e / 8][a][e % 8] == static_cast<Index>(n)) sum += body.elements.force[e / 8][e % 8][a];
+                if (body.elements.node[e / 8][a][e % 8] == static_cast<Index>(n))
+                    sum += body.elements.force[e / 8][e % 8][a];
         CHECK(body.force[n] == sum + body.mass[n] * gravity + body.load[n]);
     }
 }
 
 TEST_CASE("a position that is not a number reaches the nodes of its elements only", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({4, 1, 1}, 0.1, 0, 1), rubber(model));
         body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();
         body.compute_forces(*executor);
@@ -121,7 +123,7 @@ TEST_CASE("a position that is not a number reaches the nodes of its elements onl
 }
 
 TEST_CASE("element and node forces have the same bits on any number of workers", "[unit][determinism]") {
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         std::vector<Vec3> reference;
         for (int workers : {1, 2, 3, 4, 8}) {
             const auto executor = make_executor(available_backends().front(), workers);

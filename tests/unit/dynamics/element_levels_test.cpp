@@ -1,10 +1,10 @@
 // Levels of elements, impulses of several steps, and the viscosity of fine elements.
 #include <catch2/catch.hpp>
 
-#include "systems/dynamics/element_levels.h"
-#include "systems/dynamics/keep_frames.h"
-#include "systems/dynamics/predict_velocity.h"
-#include "systems/dynamics/stable_step.h"
+#include "systems/dynamics/elements/keep_frames.h"
+#include "systems/dynamics/motion/predict_velocity.h"
+#include "systems/dynamics/stability/element_levels.h"
+#include "systems/dynamics/stability/stable_step.h"
 #include "tests/support/elastic_body.h"
 
 using namespace skerry;
@@ -27,7 +27,8 @@ struct SliverBody : ElasticBody {
         for (Vec3& v : velocity) v = random_vector(random);
     }
     void compute(const ElementInputs& inputs) {
-        compute_element_forces(*executor, inputs, position, velocity, elements.rotation, elements.rotation_next, elements.force);
+        compute_element_forces(*executor, inputs, position, velocity, elements.rotation, elements.rotation_next,
+                               elements.force);
     }
 };
 
@@ -42,11 +43,12 @@ TEST_CASE("every level of a mesh with slivers stands its own step", "[unit]") {
     CHECK(*std::min_element(level.begin(), level.end()) == 0);
     CHECK(*std::max_element(level.begin(), level.end()) >= 1);
 
-    // Blocks have the lowest level of their lanes. Then level by level the bound gives back the step of the body, and a level more for all
-    // that are above 0 does not.
+    // Blocks have the lowest level of their lanes. Then level by level the bound gives back the step of the body, and a
+    // level more for all that are above 0 does not.
     for (std::size_t b = 0; b < body.elements.level.size(); ++b)
-        body.elements.level[b] = *std::min_element(level.begin() + static_cast<std::ptrdiff_t>(b * element_lanes),
-                                                   level.begin() + static_cast<std::ptrdiff_t>((b + 1) * element_lanes));
+        body.elements.level[b] =
+            *std::min_element(level.begin() + static_cast<std::ptrdiff_t>(b * element_lanes),
+                              level.begin() + static_cast<std::ptrdiff_t>((b + 1) * element_lanes));
     ElementInputs inputs = body.inputs();
     inputs.schedule.level = body.elements.level;
     CHECK(stable_step(inputs, body.blocks, body.position, body.mass, sums).step == Approx(step).epsilon(1e-12));
@@ -65,8 +67,8 @@ TEST_CASE("blocks that are not due keep their force, those due for four steps ge
     for (auto& forces : body.elements.force)
         for (auto& lane : forces) lane.fill(Vec3(1, 2, 3));
     inputs.schedule = {body.elements.level, of_body, body_level, {}};
-    inputs.schedule.due.duration.fill(0);
-    inputs.schedule.due.duration[2] = 4;  // level 1 of a body of level 1
+    inputs.schedule.active.duration.fill(0);
+    inputs.schedule.active.duration[2] = 4;  // level 1 of a body of level 1
     body.compute(inputs);
     for (std::size_t b = 0; b < once.size(); ++b)
         for (std::size_t l = 0; l < element_lanes; ++l)
@@ -85,7 +87,8 @@ TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[uni
         for (std::size_t l = 0; l < element_lanes; ++l)
             for (std::size_t a = 0; a < 4; ++a)
                 if (body.elements.volume[b][l] > 0)
-                    levels[static_cast<std::size_t>(body.elements.node[b][a][l])] |= static_cast<LevelMask>(1u << body.elements.level[b]);
+                    levels[static_cast<std::size_t>(body.elements.node[b][a][l])] |=
+                        static_cast<LevelMask>(1u << body.elements.level[b]);
     }
     for (Vec3& f : body.load) f = random_vector(body.random);
     const Vec3 gravity = GENERATE(Vec3(0, 0, -9.81), Vec3(0, 0, 0));
@@ -117,11 +120,13 @@ TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[uni
             for (const Index corner : body.corners[n]) {
                 const auto e = static_cast<std::size_t>(corner / 4);
                 if ((mask >> body.elements.level[e / element_lanes] & 1) != 0)
-                    sum += body.elements.force[e / element_lanes][e % element_lanes][static_cast<std::size_t>(corner % 4)];
+                    sum +=
+                        body.elements.force[e / element_lanes][e % element_lanes][static_cast<std::size_t>(corner % 4)];
             }
             sum = sum + body.mass[n] * gravity + body.load[n];
             if (body.inverse_mass[n] == 0) CHECK(body.force[n] == sum);
-            const Vec3 expected = body.inverse_mass[n] == 0 ? body.velocity[n] : Vec3(body.velocity[n] + (h * body.inverse_mass[n]) * sum);
+            const Vec3 expected = body.inverse_mass[n] == 0 ? body.velocity[n]
+                                                            : Vec3(body.velocity[n] + (h * body.inverse_mass[n]) * sum);
             CHECK(next[n] == expected);
         }
     }
@@ -137,7 +142,9 @@ TEST_CASE("all elements due, the kick has the bits of forces gathered first", "[
     const Vec3 gravity(1, 2, -9.81);
     constexpr Real h = 1e-3;
     std::vector<Vec3> next(body.position.size(), Vec3::Zero()), expected = next, held = next;
-    KickInputs inputs{begin, end, of_block, body.corners.view(), body.elements.force, {}, body.mass, body.inverse_mass, gravity, body.load};
+    KickInputs inputs{
+        begin,   end,      of_block, body.corners.view(), body.elements.force, {}, body.mass, body.inverse_mass,
+        gravity, body.load};
     predict_velocity(*body.executor, inputs, body.velocity, h, held, next);
     body.gather(gravity);
     kick(body.force, body.inverse_mass, body.velocity, h, expected);
@@ -157,10 +164,11 @@ TEST_CASE("a range of blocks is passed over only if none of them is due", "[unit
             for (const std::uint8_t rests : std::array<std::uint8_t, 2>{0, 1}) {
                 const std::vector<std::uint8_t> body_level{0, second, 1}, asleep{0, rests, 0};
                 ElementSchedule schedule{level, of_body, body_level, {}, asleep};
-                for (std::size_t l = 0; l < step_level_count; ++l) schedule.due.duration[l] = (mask >> l & 1) != 0 ? 2 : 0;
+                for (std::size_t l = 0; l < step_level_count; ++l)
+                    schedule.active.duration[l] = (mask >> l & 1) != 0 ? 2 : 0;
                 for (std::size_t begin = 0; begin < level.size(); ++begin)
                     for (std::size_t end = begin + 1; end <= level.size(); ++end) {
-                        if (!schedule.none_due(begin, end)) continue;
+                        if (!schedule.none_active(begin, end)) continue;
                         ++passed;
                         for (std::size_t b = begin; b < end; ++b) CHECK(schedule.duration(b) == 0);
                     }
@@ -201,7 +209,8 @@ TEST_CASE("viscosity gives no force and no torque as a whole, takes energy, and 
     CHECK(sum.norm() < 1e-12 * size);
     CHECK(torque.norm() < 1e-12 * size);
     CHECK(power < -1e-3 * size);
-    for (std::size_t n = 0; n < force.size(); ++n) body.velocity[n] = Vec3(1, 2, 3) + Vec3(-2, 1, 4).cross(body.position[n]);
+    for (std::size_t n = 0; n < force.size(); ++n)
+        body.velocity[n] = Vec3(1, 2, 3) + Vec3(-2, 1, 4).cross(body.position[n]);
     force = viscous_part();
     for (const Vec3& f : force) CHECK(f.norm() < 1e-11 * size);
 }
@@ -213,8 +222,8 @@ TEST_CASE("frames are kept of corotational blocks that were due", "[unit]") {
     for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
     ElementInputs inputs = body.inputs();
     inputs.schedule = {body.elements.level, of_body, body_level, {}};
-    inputs.schedule.due.duration.fill(0);
-    inputs.schedule.due.duration[1] = 2;
+    inputs.schedule.active.duration.fill(0);
+    inputs.schedule.active.duration[1] = 2;
     body.compute(inputs);
     keep_frames(*body.executor, inputs, body.elements.rotation_next, body.elements.rotation);
     for (std::size_t b = 0; b < body.elements.level.size(); ++b) {

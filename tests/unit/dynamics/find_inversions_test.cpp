@@ -1,4 +1,4 @@
-#include "systems/dynamics/find_inversions.h"
+#include "systems/dynamics/checks/find_inversions.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ struct Loose {
     std::vector<ElementNodes> node;
     std::vector<ElementLane> volume;
     std::vector<Range> blocks;
-    std::vector<Real> max_speed, travel, drift, sound_until, block_sound_until;
+    std::vector<Real> max_speed, travel, displacement, uninverted_until, block_uninverted_until;
     std::vector<Vec3> position, velocity, push;
     Column<InversionPart> parts;
 
@@ -30,22 +30,24 @@ struct Loose {
                     node.emplace_back();
                     volume.emplace_back();
                     for (auto& corner : node.back())
-                        for (std::size_t lane = 0; lane < element_lanes; ++lane) corner[lane] = static_cast<Index>(position.size());
+                        for (std::size_t lane = 0; lane < element_lanes; ++lane)
+                            corner[lane] = static_cast<Index>(position.size());
                 }
                 for (std::size_t a = 0; a < 4; ++a) {
                     node.back()[a][l] = static_cast<Index>(position.size());
                     position.emplace_back(place(random), place(random), place(random));
                 }
-                if (determinant(position, node.size() - 1, l) < 0) std::swap(position.back(), position[position.size() - 2]);
+                if (determinant(position, node.size() - 1, l) < 0)
+                    std::swap(position.back(), position[position.size() - 2]);
                 volume.back()[l] = 1;
             }
             blocks.push_back({first, static_cast<Index>(node.size())});
             max_speed.push_back(0);
             travel.push_back(0);
-            drift.push_back(0);
-            sound_until.push_back(-std::numeric_limits<Real>::infinity());
+            displacement.push_back(0);
+            uninverted_until.push_back(-std::numeric_limits<Real>::infinity());
         }
-        block_sound_until.assign(node.size(), -std::numeric_limits<Real>::infinity());
+        block_uninverted_until.assign(node.size(), -std::numeric_limits<Real>::infinity());
         velocity.assign(position.size(), Vec3::Zero());
         push = velocity;
     }
@@ -60,8 +62,9 @@ struct Loose {
     }
     Inversions find(int workers = 1) {
         const auto executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
-        return find_inversions(*executor, {node, volume, blocks, max_speed, travel, drift, position, velocity, push}, h, parts,
-                               {block_sound_until, sound_until});
+        return find_inversions(*executor,
+                               {node, volume, blocks, max_speed, travel, displacement, position, velocity, push}, h,
+                               parts, {block_uninverted_until, uninverted_until});
     }
     /// The same by looking at every element.
     Inversions by_hand() const {
@@ -106,19 +109,21 @@ TEST_CASE("what turns inside out is found, as by looking at every element in eve
                             const auto n = static_cast<std::size_t>(loose.node[static_cast<std::size_t>(b)][a][l]);
                             loose.velocity[n] = speed * Vec3(kick(random), kick(random), kick(random));
                             loose.push[n] = 0.1 * speed * Vec3(kick(random), kick(random), kick(random));
-                            loose.max_speed[body] = std::max(loose.max_speed[body], (loose.velocity[n] + loose.push[n]).norm());
+                            loose.max_speed[body] =
+                                std::max(loose.max_speed[body], (loose.velocity[n] + loose.push[n]).norm());
                         }
             }
-            const std::vector<Real> before = loose.block_sound_until;
+            const std::vector<Real> before = loose.block_uninverted_until;
             const Inversions found = loose.find(workers), expected = loose.by_hand();
             REQUIRE(found.count == expected.count);
             REQUIRE(found.body == expected.body);
             REQUIRE(found.element == expected.element);
             REQUIRE(found.first == expected.first);
             with += found.count > 0;
-            for (std::size_t b = 0; b < before.size(); ++b) skipped += before[b] == loose.block_sound_until[b];
+            for (std::size_t b = 0; b < before.size(); ++b) skipped += before[b] == loose.block_uninverted_until[b];
             loose.position = loose.next();
-            for (std::size_t body = 0; body < loose.blocks.size(); ++body) {  // as measure_drift does, without its origins
+            // as measure_displacement does, without its origins
+            for (std::size_t body = 0; body < loose.blocks.size(); ++body) {
                 loose.travel[body] += h * loose.max_speed[body];
                 loose.max_speed[body] = 0;
             }
@@ -133,15 +138,15 @@ TEST_CASE("an element is safe until its corners have moved by half of its width"
     Loose loose(random, {1});
     loose.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     REQUIRE(loose.find().count == 0);
-    CHECK(loose.sound_until[0] == Approx(std::sqrt(1.0 / 3) / 2));  // from the corner to the slanting face
+    CHECK(loose.uninverted_until[0] == Approx(std::sqrt(1.0 / 3) / 2));  // from the corner to the slanting face
     loose.travel[0] = 5;
-    loose.drift[0] = 0.1;
+    loose.displacement[0] = 0.1;
     REQUIRE(loose.find().count == 0);
-    CHECK(loose.sound_until[0] == Approx(5 - 0.2 + std::sqrt(1.0 / 3) / 2));
+    CHECK(loose.uninverted_until[0] == Approx(5 - 0.2 + std::sqrt(1.0 / 3) / 2));
     // A flat tetrahedron whose two crossing edges are nearest: no corner is as near to its face.
     loose.position = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.1}, {0, 1, 0.1}};
     if (loose.determinant(loose.position, 0, 0) < 0) std::swap(loose.position[0], loose.position[1]);
-    loose.sound_until[0] = loose.block_sound_until[0] = -1;
+    loose.uninverted_until[0] = loose.block_uninverted_until[0] = -1;
     REQUIRE(loose.find().count == 0);
-    CHECK(loose.sound_until[0] == Approx(5 - 0.2 + 0.1 / 2));
+    CHECK(loose.uninverted_until[0] == Approx(5 - 0.2 + 0.1 / 2));
 }

@@ -1,4 +1,4 @@
-#include "systems/dynamics/move_colliders.h"
+#include "systems/dynamics/motion/move_colliders.h"
 
 #include <catch2/catch.hpp>
 #include <vector>
@@ -31,7 +31,8 @@ TEST_CASE("constant velocities move and turn it from its initial pose", "[unit]"
     const RigidPose pose = pose_at(script, {}, start, 0.5);
     CHECK((pose.position - Vec3(1.5, 2, 3)).norm() <= 1e-15);
     CHECK((pose.rotation - rotation_matrix(Vec3(0, 0, 1)) * start.rotation).norm() <= 1e-15);
-    CHECK(motion_of_step(script, {}, start, 0.5, 10).angular_velocity == Vec3(0, 0, 2));  // even when a step is many turns
+    // even when a step is many turns
+    CHECK(motion_of_step(script, {}, start, 0.5, 10).angular_velocity == Vec3(0, 0, 2));
 }
 
 TEST_CASE("keys are held before the first and after the last", "[unit]") {
@@ -48,14 +49,18 @@ TEST_CASE("between keys position is linear and the turn steady about a fixed axi
     const RigidPose first = pose_at(keys_of(keys), keys, start, 0.5), second = pose_at(keys_of(keys), keys, start, 1.0),
                     third = pose_at(keys_of(keys), keys, start, 1.5);
     CHECK((second.position - Vec3(1, 2, 0)).norm() <= 1e-15);
-    CHECK((second.rotation * first.rotation.transpose() - third.rotation * second.rotation.transpose()).norm() <= 1e-14);
-    CHECK((pose_at(keys_of(keys), keys, start, 2 - 1e-12).rotation - rotation_matrix(keys[1].rotation)).norm() <= 1e-11);
+    CHECK((second.rotation * first.rotation.transpose() - third.rotation * second.rotation.transpose()).norm() <=
+          1e-14);
+    CHECK((pose_at(keys_of(keys), keys, start, 2 - 1e-12).rotation - rotation_matrix(keys[1].rotation)).norm() <=
+          1e-11);
 }
 
 TEST_CASE("two keys about one axis may be several turns apart", "[unit]") {
     const std::vector<Keyframe> keys{{0, Vec3::Zero(), Vec3::Zero()}, {1, Vec3::Zero(), Vec3(0, 0, 8 * M_PI)}};
-    CHECK((pose_at(keys_of(keys), keys, start, 1.0 / 16).rotation - rotation_matrix(Vec3(0, 0, M_PI / 2))).norm() <= 1e-14);
-    CHECK((motion_of_step(keys_of(keys), keys, start, 0.3, 0.01).angular_velocity - Vec3(0, 0, 8 * M_PI)).norm() <= 1e-10);
+    CHECK((pose_at(keys_of(keys), keys, start, 1.0 / 16).rotation - rotation_matrix(Vec3(0, 0, M_PI / 2))).norm() <=
+          1e-14);
+    CHECK((motion_of_step(keys_of(keys), keys, start, 0.3, 0.01).angular_velocity - Vec3(0, 0, 8 * M_PI)).norm() <=
+          1e-10);
 }
 
 TEST_CASE("the velocities of a step lead to the pose at its end", "[unit]") {
@@ -69,7 +74,8 @@ TEST_CASE("the velocities of a step lead to the pose at its end", "[unit]") {
 }
 
 TEST_CASE("every collider reads its own keys", "[unit]") {
-    const std::vector<Keyframe> keys{{0, Vec3(9, 9, 9), Vec3::Zero()}, {0, Vec3(0, 0, 0), Vec3::Zero()}, {1, Vec3(1, 0, 0), Vec3::Zero()}};
+    const std::vector<Keyframe> keys{
+        {0, Vec3(9, 9, 9), Vec3::Zero()}, {0, Vec3(0, 0, 0), Vec3::Zero()}, {1, Vec3(1, 0, 0), Vec3::Zero()}};
     const std::vector<MotionScript> script{{Vec3::Zero(), Vec3::Zero(), 1, 3}, {Vec3(0, 0, 1), Vec3::Zero(), 0, 0}};
     const std::vector<RigidMotion> initial{start, start};
     std::vector<RigidMotion> motion(2);
@@ -85,7 +91,8 @@ TEST_CASE("driven nodes arrive where the motion ends", "[unit]") {
     const std::vector<RigidMotion> motions{motion};
     const std::vector<Range> ranges{{0, 2}};
     const std::vector<Index> node{2, 0};
-    const std::vector<Vec3> anchor{Vec3(0.5, 0, 0), Vec3(0, 0.5, 1)}, position{Vec3(7, 7, 7), Vec3(8, 8, 8), Vec3(9, 9, 9)};
+    const std::vector<Vec3> anchor{Vec3(0.5, 0, 0), Vec3(0, 0.5, 1)},
+        position{Vec3(7, 7, 7), Vec3(8, 8, 8), Vec3(9, 9, 9)};
     std::vector<Vec3> velocity(3, Vec3(-1, -1, -1));
     const Real h = 0.1;
     drive_nodes({motions, ranges, node, anchor}, h, position, velocity);

@@ -4,10 +4,10 @@
 #include <random>
 #include <vector>
 
-#include "systems/dynamics/advance_positions.h"
-#include "systems/dynamics/largest_length.h"
-#include "systems/dynamics/measure_drift.h"
-#include "systems/dynamics/predict_velocity.h"
+#include "systems/dynamics/motion/advance_positions.h"
+#include "systems/dynamics/motion/measure_displacement.h"
+#include "systems/dynamics/motion/predict_velocity.h"
+#include "systems/dynamics/stability/largest_length.h"
 
 using namespace skerry;
 
@@ -19,13 +19,14 @@ constexpr Real infinite = std::numeric_limits<Real>::infinity();
 /// Nodes without elements, in blocks of three.
 struct Nodes {
     std::vector<Vec3> position, velocity, next, push, load, origin, force;
-    std::vector<Real> mass, inverse_mass, drift_squared;
+    std::vector<Real> mass, inverse_mass, displacement_squared;
     std::vector<Index> begin, end, body;
     Ragged<Index> corners;
     std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
 
     explicit Nodes(std::size_t count) {
-        for (auto* column : {&position, &velocity, &next, &push, &load, &origin, &force}) column->assign(count, Vec3::Zero());
+        for (auto* column : {&position, &velocity, &next, &push, &load, &origin, &force})
+            column->assign(count, Vec3::Zero());
         mass.assign(count, 1);
         inverse_mass.assign(count, 1);
         corners.offset.assign(count + 1, 0);
@@ -34,17 +35,18 @@ struct Nodes {
             end.push_back(static_cast<Index>(std::min(n + 3, count)));
             body.push_back(n >= 3);  // the first block is a body of its own
         }
-        drift_squared.resize(begin.size());
+        displacement_squared.resize(begin.size());
     }
     void predict(Real h, const Vec3& gravity = Vec3::Zero(), bool loaded = true) {
         KickInputs inputs{begin, end, body, corners.view(), {}, {}, mass, inverse_mass, gravity};
         if (loaded) inputs.load = load;
         predict_velocity(*executor, inputs, velocity, h, force, next);
     }
-    void advance(Real h, bool pushed, Integrator integrator = Integrator::symplectic_euler, std::span<const std::uint8_t> asleep = {}) {
+    void advance(Real h, bool pushed, Integrator integrator = Integrator::symplectic_euler,
+                 std::span<const std::uint8_t> asleep = {}) {
         const std::span<Vec3> none;
         advance_positions(*executor, {begin, end, body, asleep, next, origin}, h, integrator,
-                          {pushed ? std::span<Vec3>(push) : none, position, velocity, drift_squared});
+                          {pushed ? std::span<Vec3>(push) : none, position, velocity, displacement_squared});
     }
 };
 
@@ -90,7 +92,7 @@ TEST_CASE("a drift commits velocity and push-out, and uses the push-out up", "[u
 }
 
 TEST_CASE("a drift without a push-out has the bits of one with a push-out of zero", "[unit]") {
-    const auto integrator = GENERATE(Integrator::symplectic_euler, Integrator::literal);
+    const auto integrator = GENERATE(Integrator::symplectic_euler, Integrator::forward_euler);
     const std::vector<std::uint8_t> asleep{0, 1};
     std::mt19937_64 random(5);
     std::uniform_real_distribution<Real> uniform(-1, 1);
@@ -100,12 +102,14 @@ TEST_CASE("a drift without a push-out has the bits of one with a push-out of zer
     for (const bool rest : {false, true}) {
         Nodes plain(11), pushed(11), start(11);
         for (Nodes* copy : {&plain, &pushed, &start}) {
-            copy->position = nodes.position, copy->velocity = nodes.velocity, copy->next = nodes.next, copy->origin = nodes.origin;
-            if (copy != &start) copy->advance(0.3, copy == &pushed, integrator, rest ? asleep : std::vector<std::uint8_t>());
+            copy->position = nodes.position, copy->velocity = nodes.velocity, copy->next = nodes.next,
+            copy->origin = nodes.origin;
+            if (copy != &start)
+                copy->advance(0.3, copy == &pushed, integrator, rest ? asleep : std::vector<std::uint8_t>());
         }
         for (std::size_t n = 0; n < 11; ++n) {
             const bool moves = n < 3 || !rest;
-            const Vec3 with = integrator == Integrator::literal ? start.velocity[n] : start.next[n];
+            const Vec3 with = integrator == Integrator::forward_euler ? start.velocity[n] : start.next[n];
             CHECK(plain.position[n] == (moves ? Vec3(start.position[n] + 0.3 * with) : start.position[n]));
             CHECK(plain.velocity[n] == (moves ? start.next[n] : start.velocity[n]));
             CHECK(pushed.position[n] == plain.position[n]);
@@ -114,9 +118,10 @@ TEST_CASE("a drift without a push-out has the bits of one with a push-out of zer
         for (std::size_t b = 0; b < plain.begin.size(); ++b) {
             Real largest = 0;
             for (Index n = plain.begin[b]; n < plain.end[b]; ++n)
-                largest = std::max(largest,
-                                   (plain.position[static_cast<std::size_t>(n)] - plain.origin[static_cast<std::size_t>(n)]).squaredNorm());
-            CHECK(plain.drift_squared[b] == Approx(largest).epsilon(1e-15));  // the order of three summands
+                largest = std::max(
+                    largest, (plain.position[static_cast<std::size_t>(n)] - plain.origin[static_cast<std::size_t>(n)])
+                                 .squaredNorm());
+            CHECK(plain.displacement_squared[b] == Approx(largest).epsilon(1e-15));  // the order of three summands
         }
     }
 }
@@ -130,7 +135,8 @@ TEST_CASE("the largest length is found among any number of vectors, and what is 
         const auto found = [&] { return largest_squared_length(count, [&](std::size_t i) { return flat[i]; }); };
         Real largest = 0;
         for (std::size_t n = 0; n < count; ++n)
-            largest = std::max(largest, flat[3 * n] * flat[3 * n] + flat[3 * n + 1] * flat[3 * n + 1] + flat[3 * n + 2] * flat[3 * n + 2]);
+            largest = std::max(largest, flat[3 * n] * flat[3 * n] + flat[3 * n + 1] * flat[3 * n + 1] +
+                                            flat[3 * n + 2] * flat[3 * n + 2]);
         CHECK(found() == largest);
         for (const std::size_t place : {std::size_t{0}, flat.size() / 2, flat.size() - 1}) {
             if (count == 0) break;
@@ -144,7 +150,7 @@ TEST_CASE("the largest length is found among any number of vectors, and what is 
 }
 
 TEST_CASE("free fall follows its discrete law", "[unit]") {
-    // methods.md 8.1: v_n = -g n h, x_n = -g h^2 n (n + 1) / 2.
+    // docs/methods/accuracy.md 1: v_n = -g n h, x_n = -g h^2 n (n + 1) / 2.
     const Real g = 9.81, h = 1e-3, mass = 0.3;
     Nodes nodes(1);
     nodes.mass[0] = mass;

@@ -1,10 +1,11 @@
-#include "systems/dynamics/stable_step.h"
+#include "systems/dynamics/stability/stable_step.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "tests/support/elastic_body.h"
 #include "tests/support/exact_frequency.h"
+#include "tests/support/material_models.h"
 
 using namespace skerry;
 using test::ElasticBody;
@@ -12,8 +13,6 @@ using test::exact_frequency_squared;
 using test::jittered_box;
 
 namespace {
-
-constexpr std::array models{MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean};
 
 StableStep step_of(const ElasticBody& body) {
     std::vector<Real> scratch(body.position.size(), 1e300);  // what was there before must not matter
@@ -23,11 +22,12 @@ StableStep step_of(const ElasticBody& body) {
 }  // namespace
 
 TEST_CASE("the stable step is never above the limit and not far below it", "[unit]") {
-    // methods.md 4.2, the table: 0.68 to 0.78 of the exact limit, of which 0.9 are used here.
-    for (MaterialModel model : models) {
+    // docs/methods/stable_step.md 2: 0.60 to 0.83 of the exact limit, of which 0.9 are used here.
+    for (MaterialModel model : test::material_models) {
         for (Real jitter : {0.0, 0.1, 0.3}) {
             for (Real nu : {0.0, 0.3, 0.45, 0.499}) {
-                ElasticBody body(jittered_box({4, 3, 3}, 0.1, jitter, 11, 0.02), material_constants(model, 1e5, nu, 1000));
+                ElasticBody body(jittered_box({4, 3, 3}, 0.1, jitter, 11, 0.02),
+                                 material_constants(model, 1e5, nu, 1000));
                 const Real limit = 2 / std::sqrt(exact_frequency_squared(body));
                 const Real step = step_of(body).step;
                 INFO("model " << name_of(model) << " jitter " << jitter << " nu " << nu << ": " << step / limit);
@@ -39,8 +39,9 @@ TEST_CASE("the stable step is never above the limit and not far below it", "[uni
 }
 
 TEST_CASE("the stable step stays below the limit under large deformation", "[unit]") {
-    for (MaterialModel model : models) {
-        for (const Vec3& stretch : {Vec3(1.6, 1.6, 1.6), Vec3(2.5, 0.7, 0.7), Vec3(0.5, 0.5, 0.5), Vec3(1, 1, 0.2), Vec3(1.3, 1, -0.5)}) {
+    for (MaterialModel model : test::material_models) {
+        for (const Vec3& stretch :
+             {Vec3(1.6, 1.6, 1.6), Vec3(2.5, 0.7, 0.7), Vec3(0.5, 0.5, 0.5), Vec3(1, 1, 0.2), Vec3(1.3, 1, -0.5)}) {
             ElasticBody body(jittered_box({3, 3, 2}, 0.1, 0.2, 12), material_constants(model, 1e5, 0.4, 1000));
             std::mt19937_64 random(13);
             const Eigen::AngleAxis<Real> turn(2.5, Vec3(1, -2, 0.5).normalized());
@@ -54,11 +55,15 @@ TEST_CASE("the stable step stays below the limit under large deformation", "[uni
     }
 }
 
-TEST_CASE("a stable neo-Hookean body pressed, stretched or inside out is stepped below its limit, for every Poisson ratio", "[unit]") {
+TEST_CASE(
+    "a stable neo-Hookean body pressed, stretched or inside out is stepped below its limit, for every Poisson ratio",
+    "[unit]") {
     for (Real nu : {-0.9, -0.5, 0.0, 0.3, 0.49})
-        for (const Vec3& stretch : {Vec3(1, 1, 1), Vec3(3, 3, 3), Vec3(4, 0.6, 0.6), Vec3(0.3, 0.3, 0.3), Vec3(0.02, 0.02, 0.02),
-                                    Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(1, 0.1, -0.1), Vec3(-1, -1, -1), Vec3(-2, 1, 1)}) {
-            ElasticBody body(jittered_box({3, 2, 2}, 0.1, 0.2, 14), material_constants(MaterialModel::stable_neo_hookean, 1e5, nu, 1000));
+        for (const Vec3& stretch :
+             {Vec3(1, 1, 1), Vec3(3, 3, 3), Vec3(4, 0.6, 0.6), Vec3(0.3, 0.3, 0.3), Vec3(0.02, 0.02, 0.02),
+              Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(1, 0.1, -0.1), Vec3(-1, -1, -1), Vec3(-2, 1, 1)}) {
+            ElasticBody body(jittered_box({3, 2, 2}, 0.1, 0.2, 14),
+                             material_constants(MaterialModel::stable_neo_hookean, 1e5, nu, 1000));
             std::mt19937_64 random(15);
             for (Vec3& x : body.position) x = stretch.cwiseProduct(x) + 0.002 * test::random_vector(random);
             const Real limit = test::exact_limit(body);  // not a number where nothing pushes back
@@ -70,9 +75,11 @@ TEST_CASE("a stable neo-Hookean body pressed, stretched or inside out is stepped
 }
 
 TEST_CASE("a sliver does not ruin the step", "[unit]") {
-    // A free node almost in the plane of its neighbours' faces: the usual element bound drops with the altitude, the shared mass does not.
+    // A free node almost in the plane of its neighbours' faces: the usual element bound drops with the altitude, the
+    // shared mass does not.
     const MaterialConstants material = material_constants(MaterialModel::linear, 1e5, 0.3, 1000);
-    ElasticBody even(jittered_box({4, 4, 4}, 0.1, 0, 1), material), slivers(jittered_box({4, 4, 4}, 0.1, 0.35, 3, 1e-3), material);
+    ElasticBody even(jittered_box({4, 4, 4}, 0.1, 0, 1), material),
+        slivers(jittered_box({4, 4, 4}, 0.1, 0.35, 3, 1e-3), material);
     const Real ratio = step_of(slivers).step / step_of(even).step;
     const Real limit = 2 / std::sqrt(exact_frequency_squared(slivers));
     CHECK(step_of(slivers).step <= 0.9 * limit * (1 + 1e-6));
@@ -98,7 +105,7 @@ TEST_CASE("a body without elements has no limit, one that is not finite has no s
     const StableStep none = stable_step({}, {0, 0}, {}, {}, {});
     CHECK(none.step == std::numeric_limits<Real>::infinity());
     CHECK(none.element == no_index);
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0, 1), material_constants(model, 1e5, 0.3, 1000));
         body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();
         CHECK(step_of(body).step == 0);
@@ -106,7 +113,7 @@ TEST_CASE("a body without elements has no limit, one that is not finite has no s
 }
 
 TEST_CASE("a flat body and a point have a finite step", "[unit]") {
-    for (MaterialModel model : models) {
+    for (MaterialModel model : test::material_models) {
         for (const Vec3& stretch : {Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0)}) {
             ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0, 1), material_constants(model, 1e5, 0.4, 1000));
             for (Vec3& x : body.position) x = stretch.cwiseProduct(x);
@@ -120,7 +127,8 @@ TEST_CASE("a flat body and a point have a finite step", "[unit]") {
 TEST_CASE("power iteration approaches the highest frequency from below", "[unit]") {
     ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.2, 5), material_constants(MaterialModel::linear, 1e5, 0.4, 1000));
     const Real exact = exact_frequency_squared(body);
-    const Real estimate = estimate_max_frequency_squared(body.inputs(), body.blocks, body.position, body.inverse_mass, 60);
+    const Real estimate =
+        estimate_max_frequency_squared(body.inputs(), body.blocks, body.position, body.inverse_mass, 60);
     CHECK(estimate <= exact * (1 + 1e-6));
     CHECK(estimate >= 0.95 * exact);
     CHECK(estimate_max_frequency_squared(body.inputs(), {0, 0}, body.position, body.inverse_mass, 5) == 0);

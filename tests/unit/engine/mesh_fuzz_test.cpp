@@ -52,7 +52,8 @@ Mesh small_mesh() {
     return mesh::box({0.1, 0.2, 0.3}, {1, 1, 1});
 }
 
-/// The name under which this file is to be damaged. A .node and a .ele are read together: writes a good pair of that name.
+/// The name under which this file is to be damaged. A .node and a .ele are read together: writes a good pair of that
+/// name.
 std::string write_partners(const TemporaryFolder& folder, const SampleFile& file) {
     const int first_number = file.name.starts_with("one") ? 1 : 0;
     folder.write("hit.node", node_file(small_mesh(), first_number));
@@ -73,7 +74,8 @@ bool loads(const std::string& path, std::size_t size) {
     } catch (const SceneError& error) {
         REQUIRE(std::string(error.what()).size() > path.size());
     }
-    // Nothing in a file may ask for more than rows that its bytes could hold: 24 bytes of position for 3 of text, faces of a tetrahedron.
+    // Nothing in a file may ask for more than rows that its bytes could hold: 24 bytes of position for 3 of text, faces
+    // of a tetrahedron.
     REQUIRE(largest_request <= 64 * size + 65536);
     return loaded;
 }

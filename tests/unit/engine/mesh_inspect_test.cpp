@@ -46,9 +46,10 @@ TEST_CASE("inverted and flat tetrahedra are counted apart", "[unit]") {
     CHECK(report.inverted == 1);
     CHECK(report.min_altitude == 0);
     CHECK(report.min_quality < 0);
-    CHECK_THROWS_WITH(mesh::require_positive(mesh, "wreck.msh"),
-                      Contains("wreck.msh: tetrahedron 1 (nodes 0 1 2 4): rest volume: found 0 m^3, expected a positive volume") &&
-                          Contains("of 3 tetrahedra 1 are inverted and 1 flat"));
+    CHECK_THROWS_WITH(
+        mesh::require_positive(mesh, "wreck.msh"),
+        Contains("wreck.msh: tetrahedron 1 (nodes 0 1 2 4): rest volume: found 0 m^3, expected a positive volume") &&
+            Contains("of 3 tetrahedra 1 are inverted and 1 flat"));
 }
 
 TEST_CASE("flat does not depend on the unit of length", "[unit]") {
@@ -109,7 +110,8 @@ TEST_CASE("boundary triangles look outwards", "[unit]") {
     Real volume = 0;  // by the divergence theorem
     for (const auto& t : surface.triangles) {
         Mat3 corners;
-        for (int a = 0; a < 3; ++a) corners.col(a) = surface.nodes[static_cast<std::size_t>(t[static_cast<std::size_t>(a)])];
+        for (int a = 0; a < 3; ++a)
+            corners.col(a) = surface.nodes[static_cast<std::size_t>(t[static_cast<std::size_t>(a)])];
         volume += corners.col(0).dot(corners.col(1).cross(corners.col(2))) / 6;
     }
     CHECK(volume == Approx(1));

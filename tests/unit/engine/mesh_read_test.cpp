@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include "mesh_samples.h"
 #include "skerry/error.h"
@@ -43,9 +44,12 @@ bool is_surface_file(const std::string& name) {
     return name.ends_with(".obj") || name.ends_with(".stl");
 }
 
-std::filesystem::path shared_meshes() {
-    if (const char* folder = std::getenv("SKERRY_SHARED_DATA")) return std::filesystem::path(folder) / "meshes";
-    return std::filesystem::path(SKERRY_SOURCE_DIR) / "../shared/data/meshes";
+/// Meshes of other programs are not ours to ship: the folder `meshes` of the one that the environment names, if it
+/// does.
+std::optional<std::filesystem::path> meshes_of_others() {
+    const char* folder = std::getenv("SKERRY_TEST_DATA");
+    if (folder == nullptr) return std::nullopt;
+    return std::filesystem::path(folder) / "meshes";
 }
 
 }  // namespace
@@ -85,7 +89,8 @@ TEST_CASE("every format gives the boundary as a surface", "[unit]") {
 
 TEST_CASE("either name of a TetGen pair reads both", "[unit]") {
     const TemporaryFolder folder;
-    const std::string nodes = folder.write("m.node", node_file(sample(), 0)), elements = folder.write("m.ele", ele_file(sample(), 0));
+    const std::string nodes = folder.write("m.node", node_file(sample(), 0)),
+                      elements = folder.write("m.ele", ele_file(sample(), 0));
     CHECK(mesh::read(nodes).tetrahedra == sample().tetrahedra);
     CHECK(mesh::read(elements).tetrahedra == sample().tetrahedra);
 }
@@ -109,7 +114,8 @@ TEST_CASE("a file with some inverted tetrahedra is read as it is", "[unit]") {
 }
 
 TEST_CASE("a bad Gmsh file is refused with the place and the reason", "[unit]") {
-    const std::string good = gmsh2_file(one_tetrahedron(), Bytes::text), new_good = gmsh41_file(one_tetrahedron(), Bytes::text);
+    const std::string good = gmsh2_file(one_tetrahedron(), Bytes::text),
+                      new_good = gmsh41_file(one_tetrahedron(), Bytes::text);
     const std::string element = "2 4 2 1 1 1 2 3 4";
     CHECK(refusal("a.msh", good) == "nothing refused");
     CHECK(refusal("a.msh", new_good) == "nothing refused");
@@ -117,19 +123,24 @@ TEST_CASE("a bad Gmsh file is refused with the place and the reason", "[unit]") 
                Contains("$Elements, element 2 of 2, line 20: node: found 5, expected the number of a node"));
     CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3 3")), Contains("the same node twice"));
     CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3")), Contains("found 8 numbers, expected 9"));
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 11 2 1 1 1 2 3 4 1 2 3 4 1 2")), Contains("second or higher order"));
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 11 2 1 1 1 2 3 4 1 2 3 4 1 2")),
+               Contains("second or higher order"));
     CHECK_THAT(refusal("a.msh", replaced(good, element, "2 77 2 1 1 1 2 3 4")), Contains("type: found 77"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "1 1 0 0")), Contains("$Nodes, node 2 of 5") && Contains("1 a second time"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 nan 0 0")), Contains("position: found nan, expected a finite number"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "1 1 0 0")),
+               Contains("$Nodes, node 2 of 5") && Contains("1 a second time"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 nan 0 0")),
+               Contains("position: found nan, expected a finite number"));
     CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 1e999 0 0")), Contains("not finite"));
     CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 1,0 0 0")), Contains("found \"1,0\", expected a number"));
     CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0\n", "")), Contains("node 5 of 5") && Contains("fewer rows"));
     CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n4")), Contains("expected $EndNodes"));
     CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n-5")), Contains("found -5"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n500000000")), Contains("count: found 500000000, expected at most"));
+    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n500000000")),
+               Contains("count: found 500000000, expected at most"));
     CHECK_THAT(refusal("a.msh", replaced(good, "2.2 0 8", "3 0 8")), Contains("version: found \"3\""));
     CHECK_THAT(refusal("a.msh", replaced(good, "2.2 0 8", "2.2 7 8")), Contains("file type: found 7"));
-    CHECK_THAT(refusal("a.msh", replaced(new_good, "2 5 1 999", "2 5 1 1000")), Contains("node numbers 1 to 1000, expected 1 to 999"));
+    CHECK_THAT(refusal("a.msh", replaced(new_good, "2 5 1 999", "2 5 1 1000")),
+               Contains("node numbers 1 to 1000, expected 1 to 999"));
     CHECK_THAT(refusal("a.msh", replaced(new_good, "2 5 1 999", "2 6 1 999")), Contains("6 in the header, expected 5"));
     CHECK_THAT(refusal("a.msh", "hello"), Contains("$MeshFormat or $NOD"));
     CHECK_THAT(refusal("a.msh", ""), Contains("the end of the file"));
@@ -142,17 +153,23 @@ TEST_CASE("a binary Gmsh file with a wrong byte order mark or a cut end is refus
 }
 
 TEST_CASE("a bad VTK file is refused with the place and the reason", "[unit]") {
-    const std::string good = vtk_file(one_tetrahedron(), false, false), new_good = vtk_file(one_tetrahedron(), true, false);
+    const std::string good = vtk_file(one_tetrahedron(), false, false),
+                      new_good = vtk_file(one_tetrahedron(), true, false);
     CHECK(refusal("a.vtk", good) == "nothing refused");
-    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "4 0 1 2 9")), Contains("CELLS, cell 2 of 2") && Contains("node: found 9"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "3 0 1 2")), Contains("size: found 9 in the header, expected 8"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "4 0 1 2 9")),
+               Contains("CELLS, cell 2 of 2") && Contains("node: found 9"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "3 0 1 2")),
+               Contains("size: found 9 in the header, expected 8"));
     CHECK_THAT(refusal("a.vtk", replaced(good, "5 10", "5 24")), Contains("second or higher order"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "CELL_TYPES 2", "CELL_TYPES 1")), Contains("count: found 1, expected 2, the cells"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "POINTS 5", "POINTS 6")), Contains("point 6 of 6") && Contains("METADATA"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "CELL_TYPES 2", "CELL_TYPES 1")),
+               Contains("count: found 1, expected 2, the cells"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "POINTS 5", "POINTS 6")),
+               Contains("point 6 of 6") && Contains("METADATA"));
     CHECK_THAT(refusal("a.vtk", replaced(good, "double\n0 0 0", "double\n0 x 0")), Contains("found \"x\""));
     CHECK_THAT(refusal("a.vtk", replaced(new_good, "0 3 7", "0 8 7")), Contains("offset: found 8"));
     CHECK_THAT(refusal("a.vtk", replaced(good, "ASCII", "ascii art")), Contains("expected ASCII or BINARY"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "UNSTRUCTURED_GRID", "STRUCTURED_POINTS")), Contains("UNSTRUCTURED_GRID or POLYDATA"));
+    CHECK_THAT(refusal("a.vtk", replaced(good, "UNSTRUCTURED_GRID", "STRUCTURED_POINTS")),
+               Contains("UNSTRUCTURED_GRID or POLYDATA"));
 }
 
 TEST_CASE("a bad TetGen file is refused with the place and the reason", "[unit]") {
@@ -169,7 +186,8 @@ TEST_CASE("a bad TetGen file is refused with the place and the reason", "[unit]"
     const Mesh mesh = one_tetrahedron();
     const std::string nodes = node_file(mesh, 1), elements = ele_file(mesh, 1);
     CHECK(refused(nodes, elements) == "nothing refused");
-    CHECK_THAT(refused(nodes, ele_file(mesh, 0)), Contains("a.ele: tetrahedra, tetrahedron 1 of 1, line 2: node: found 0"));
+    CHECK_THAT(refused(nodes, ele_file(mesh, 0)),
+               Contains("a.ele: tetrahedra, tetrahedron 1 of 1, line 2: node: found 0"));
     CHECK_THAT(refused(nodes, replaced(elements, "1 4 1", "1 10 1")), Contains("second order"));
     CHECK_THAT(refused(nodes, replaced(elements, "1 4 1", "2 4 1")), Contains("end of the file"));
     CHECK_THAT(refused(nodes, elements + "2 1 2 3 4 7\n"), Contains("more tetrahedra than the header announces"));
@@ -183,16 +201,19 @@ TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are
     const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     CHECK(mesh::read_surface(folder.write("a.obj", square + "f 1 2 3 4\n")).triangles ==
           std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}});
-    CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.obj", square + "f 1 2 5\n")), Contains("line 5: node: found 5, expected 1 to 4"));
+    CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.obj", square + "f 1 2 5\n")),
+                      Contains("line 5: node: found 5, expected 1 to 4"));
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("c.obj", square + "f 1 2 0\n")), Contains("node: found 0"));
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("d.obj", square)), Contains("no triangles"));
     CHECK_THROWS_WITH(mesh::read(folder.write("e.obj", square)), Contains("expected .msh, .vtk, .node or .ele"));
 }
 
 TEST_CASE("polygons of a VTK file become triangles, its lines are passed over", "[unit]") {
-    const std::string head = "# vtk DataFile Version 3.0\nsquare\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0\n0 1 0\n";
+    const std::string head =
+        "# vtk DataFile Version 3.0\nsquare\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0\n0 1 0\n";
     const TemporaryFolder folder;
-    const SurfaceMesh surface = mesh::read_surface(folder.write("a.vtk", head + "LINES 1 3\n2 0 1\nPOLYGONS 2 9\n4 0 1 2 3\n3 0 1 2\n"));
+    const SurfaceMesh surface =
+        mesh::read_surface(folder.write("a.vtk", head + "LINES 1 3\n2 0 1\nPOLYGONS 2 9\n4 0 1 2 3\n3 0 1 2\n"));
     CHECK(surface.triangles == std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}});
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("b.vtk", head + "POLYGONS 1 3\n2 0 1\n")),
                       Contains("polygon 1 of 1") && Contains("at least 3"));
@@ -217,8 +238,9 @@ TEST_CASE("a file that is not there, or is a folder, is refused", "[unit]") {
 }
 
 TEST_CASE("meshes of other programs load, and malformed ones are refused for what is wrong with them", "[unit]") {
-    const std::filesystem::path folder = shared_meshes();
-    if (!std::filesystem::exists(folder)) return;  // needs no such folder
+    const std::optional<std::filesystem::path> given = meshes_of_others();
+    if (!given) return;
+    const std::filesystem::path& folder = *given;
     struct Known {
         const char* name;
         std::size_t nodes, tetrahedra;
@@ -250,7 +272,8 @@ TEST_CASE("meshes of other programs load, and malformed ones are refused for wha
         return std::string("nothing refused");
     };
     CHECK_THAT(refused("22_ascii_missing_element"), Contains("element 24 of 24") && Contains("fewer rows"));
-    CHECK_THAT(refused("41_ascii_mismatch_between_max_nodes_and_nodes_in_block"), Contains("node numbers 1 to 100, expected 1 to 14"));
+    CHECK_THAT(refused("41_ascii_mismatch_between_max_nodes_and_nodes_in_block"),
+               Contains("node numbers 1 to 100, expected 1 to 14"));
     CHECK_THAT(refused("41_ascii_missing_element_header"), Contains("$Elements, line 41: header"));
     CHECK_THAT(refused("41_ascii_missing_node"), Contains("position of node 14 of 14") && Contains("$EndNodes"));
 }

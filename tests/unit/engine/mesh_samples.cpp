@@ -39,7 +39,8 @@ std::string gmsh1_file(const Mesh& mesh) {
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n) out << n + 1 << ' ' << text(mesh.nodes[n]) << '\n';
     out << "999 9 9 9\n$ENDNOD\n$ELM\n" << mesh.tetrahedra.size() + 2 << '\n';
     out << "1 15 1 1 1 1\n2 2 1 1 3 1 2 3\n";
-    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) out << e + 3 << " 4 1 1 4" << text(mesh.tetrahedra[e], 1) << '\n';
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
+        out << e + 3 << " 4 1 1 4" << text(mesh.tetrahedra[e], 1) << '\n';
     out << "$ENDELM\n";
     return out.str();
 }
@@ -49,8 +50,8 @@ std::string gmsh2_file(const Mesh& mesh, Bytes bytes) {
     std::string file = binary ? "$MeshFormat\n2.2 1 8\n" : "$MeshFormat\n2.2 0 8\n";
     if (binary) put<std::int32_t>(file, 1, swap);
     if (binary) file += "\n";
-    file +=
-        "$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body $1\"\n$EndPhysicalNames\n$Nodes\n" + std::to_string(mesh.nodes.size() + 1) + "\n";
+    file += "$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body $1\"\n$EndPhysicalNames\n$Nodes\n" +
+            std::to_string(mesh.nodes.size() + 1) + "\n";
     for (std::size_t n = 0; n <= mesh.nodes.size(); ++n) {
         const int number = n < mesh.nodes.size() ? static_cast<int>(n) + 1 : 999;
         const Vec3 x = n < mesh.nodes.size() ? mesh.nodes[n] : Vec3(9, 9, 9);
@@ -83,10 +84,12 @@ std::string gmsh41_file(const Mesh& mesh, Bytes bytes) {
     const bool binary = bytes != Bytes::text, swap = bytes == Bytes::foreign;
     std::string file = binary ? "$MeshFormat\n4.1 1 8\n" : "$MeshFormat\n4.1 0 8\n";
     const auto ints = [&](std::initializer_list<std::int32_t> values) {
-        for (const std::int32_t value : values) binary ? put(file, value, swap) : void(file += std::to_string(value) + ' ');
+        for (const std::int32_t value : values)
+            binary ? put(file, value, swap) : void(file += std::to_string(value) + ' ');
     };
     const auto sizes = [&](std::initializer_list<std::uint64_t> values) {
-        for (const std::uint64_t value : values) binary ? put(file, value, swap) : void(file += std::to_string(value) + ' ');
+        for (const std::uint64_t value : values)
+            binary ? put(file, value, swap) : void(file += std::to_string(value) + ' ');
     };
     const auto end_line = [&] { binary ? void() : void(file += '\n'); };
     if (binary) put<std::int32_t>(file, 1, swap);
@@ -123,8 +126,8 @@ std::string gmsh41_file(const Mesh& mesh, Bytes bytes) {
 std::string vtk_file(const Mesh& mesh, bool offsets, bool binary) {
     constexpr bool swap = std::endian::native == std::endian::little;
     const std::size_t cells = mesh.tetrahedra.size() + 1;  // and a triangle
-    std::string file = std::string("# vtk DataFile Version ") + (offsets ? "5.1" : "3.0") + "\na title\n" + (binary ? "BINARY" : "ASCII") +
-                       "\nDATASET UNSTRUCTURED_GRID\n";
+    std::string file = std::string("# vtk DataFile Version ") + (offsets ? "5.1" : "3.0") + "\na title\n" +
+                       (binary ? "BINARY" : "ASCII") + "\nDATASET UNSTRUCTURED_GRID\n";
     const auto reals = [&](const Vec3& x) {
         if (!binary)
             file += text(x) + '\n';

@@ -12,7 +12,8 @@ namespace skerry::test {
 
 enum class Bytes { text, native, foreign };  // foreign: the other byte order
 
-/// With a triangle, a line and a point among the elements, which readers of tetrahedra pass over, and a node nobody uses.
+/// With a triangle, a line and a point among the elements, which readers of tetrahedra pass over, and a node nobody
+/// uses.
 std::string gmsh1_file(const Mesh& mesh);
 std::string gmsh2_file(const Mesh& mesh, Bytes bytes);
 std::string gmsh41_file(const Mesh& mesh, Bytes bytes);
@@ -30,7 +31,8 @@ struct SampleFile {
     std::string name;
     std::string content;
 };
-/// One file of each kind, of the same small mesh; .obj and .stl of its boundary. A .ele needs the .node before it beside it.
+/// One file of each kind, of the same small mesh; .obj and .stl of its boundary. A .ele needs the .node before it
+/// beside it.
 std::vector<SampleFile> all_sample_files(const Mesh& mesh);
 
 }  // namespace skerry::test

@@ -20,7 +20,8 @@ void check_sound(const Mesh& mesh) {
     const MeshReport report = inspect(mesh);
     CHECK(report.closed_manifold);
     CHECK(report.components == 1);
-    // Conforming: a face belongs to two tetrahedra at most. And no holes: the boundary has V - E + F = 2 with E = 3 F / 2.
+    // Conforming: a face belongs to two tetrahedra at most. And no holes: the boundary has V - E + F = 2 with E = 3 F /
+    // 2.
     std::map<std::array<Index, 3>, int> faces;
     for (const auto& t : mesh.tetrahedra)
         for (std::size_t skip = 0; skip < 4; ++skip) {
@@ -62,7 +63,9 @@ TEST_CASE("a box has the volume of its size and fills its cells", "[unit]") {
 TEST_CASE("the cells of a box mirror each other: an even box is its own mirror image", "[unit]") {
     const Mesh box = mesh::box({1, 1, 1}, {2, 2, 2});
     std::map<std::array<long, 3>, Index> node_at;
-    const auto key = [](const Vec3& x) { return std::array<long, 3>{std::lround(4 * x[0]), std::lround(4 * x[1]), std::lround(4 * x[2])}; };
+    const auto key = [](const Vec3& x) {
+        return std::array<long, 3>{std::lround(4 * x[0]), std::lround(4 * x[1]), std::lround(4 * x[2])};
+    };
     for (std::size_t n = 0; n < box.nodes.size(); ++n) node_at[key(box.nodes[n])] = static_cast<Index>(n);
     std::set<std::set<Index>> tetrahedra;
     for (const auto& t : box.tetrahedra) tetrahedra.insert({t.begin(), t.end()});
@@ -101,7 +104,8 @@ TEST_CASE("a cylinder is a prism that nears the round one", "[unit]") {
     CHECK(inspect(cylinder).volume == Approx(0.3 * 0.01 * sides / 2 * std::sin(2 * pi / sides)));
     CHECK(altitude_over_edge(cylinder) > 0.45);
     for (const Vec3& x : mesh::boundary(cylinder).nodes) {
-        const bool round = std::abs(std::hypot(x[0], x[1]) - 0.1) < 1e-14, end = std::abs(std::abs(x[2]) - 0.15) < 1e-14;
+        const bool round = std::abs(std::hypot(x[0], x[1]) - 0.1) < 1e-14,
+                   end = std::abs(std::abs(x[2]) - 0.15) < 1e-14;
         CHECK((round || end));
     }
 }
@@ -135,10 +139,10 @@ TEST_CASE("the outline of a lathe bounds its nodes, and its volume converges", "
 
 TEST_CASE("outlines with sudden steps, thin ends or hardly any height still give sound meshes", "[unit]") {
     using Profile = std::vector<std::array<Real, 2>>;
-    const Profile profile =
-        GENERATE(Profile{{0.1, 0}, {0.1, 0.1}, {0.05, 0.1001}, {0.05, 0.2}}, Profile{{0.1, 0}, {0.0001, 0.3}},
-                 Profile{{1e-4, 0}, {0.1, 0.02}, {1e-4, 0.04}}, Profile{{0.1, 0}, {0.1, 1}}, Profile{{0.01, 0}, {1, 0.001}},
-                 Profile{{0.1, 0}, {1e-5, 0.1}, {0.1, 0.2}}, Profile{{1e-4, -0.1}, {0.1, -0.09}, {0.1, 0.09}, {1e-4, 0.1}});
+    const Profile profile = GENERATE(
+        Profile{{0.1, 0}, {0.1, 0.1}, {0.05, 0.1001}, {0.05, 0.2}}, Profile{{0.1, 0}, {0.0001, 0.3}},
+        Profile{{1e-4, 0}, {0.1, 0.02}, {1e-4, 0.04}}, Profile{{0.1, 0}, {0.1, 1}}, Profile{{0.01, 0}, {1, 0.001}},
+        Profile{{0.1, 0}, {1e-5, 0.1}, {0.1, 0.2}}, Profile{{1e-4, -0.1}, {0.1, -0.09}, {0.1, 0.09}, {1e-4, 0.1}});
     const int resolution = GENERATE(1, 2, 5, 8);
     check_sound(mesh::lathe(profile, resolution));
 }

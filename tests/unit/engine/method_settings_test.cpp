@@ -51,15 +51,18 @@ TEST_CASE("a method that knows no friction is refused where there is some", "[un
     CHECK(complaint_of([&] { world.add_material({.friction = 0}); }) == "");
 }
 
-TEST_CASE("over-relaxation outside of its range is refused, inside it changes the path and not the solution", "[unit][problem]") {
+TEST_CASE("over-relaxation outside of its range is refused, inside it changes the path and not the solution",
+          "[unit][problem]") {
     for (const Real wrong : {0.0, 2.0, -1.0, std::nan("")}) {
-        CHECK(complaint_of([&] { solve_problem(pair_problem(0.3), {.relaxation = wrong}); }).find("relaxation") != std::string::npos);
+        CHECK(complaint_of([&] { solve_problem(pair_problem(0.3), {.relaxation = wrong}); }).find("relaxation") !=
+              std::string::npos);
         CHECK(complaint_of([&] { World world({.relaxation = wrong}); }).find("relaxation") != std::string::npos);
     }
     const ProblemSettings plain{.method = SolverMethod::pgs, .tolerance = 1e-12};
     ProblemSettings relaxed = plain;
     relaxed.relaxation = 1.3;
-    const ProblemSolution one = solve_problem(pair_problem(0.3), plain), other = solve_problem(pair_problem(0.3), relaxed);
+    const ProblemSolution one = solve_problem(pair_problem(0.3), plain),
+                          other = solve_problem(pair_problem(0.3), relaxed);
     CHECK(one.converged);
     CHECK(other.converged);
     CHECK(one.iterations != other.iterations);

@@ -39,7 +39,8 @@ std::string complaint_of(auto&& action) {
 
 }  // namespace
 
-TEST_CASE("a file is replaced as a whole, and what fails on the way leaves the old one and nothing beside it", "[unit][output]") {
+TEST_CASE("a file is replaced as a whole, and what fails on the way leaves the old one and nothing beside it",
+          "[unit][output]") {
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "made" / "on" / "demand.txt";
     write_file(file, [](std::ostream& out) { out << "first"; });
@@ -70,8 +71,9 @@ TEST_CASE("a folder that cannot be made is named, with what was found and what w
         CHECK(complaint.find("expected a folder") != std::string::npos);
     }
     fs::create_directories(folder.path() / "taken");
-    CHECK(complaint_of([&] { write_file(folder.path() / "taken", [](std::ostream& out) { out << 1; }); }).find("taken") !=
-          std::string::npos);
+    CHECK(complaint_of([&] {
+              write_file(folder.path() / "taken", [](std::ostream& out) { out << 1; });
+          }).find("taken") != std::string::npos);
     CHECK(complaint_of([&] { VtkSeries(folder.path(), "a/b"); }).find("\"a/b\"") != std::string::npos);
     CHECK(complaint_of([&] { VtkSeries(folder.path(), ""); }).find("expected a file name") != std::string::npos);
 }
@@ -96,7 +98,8 @@ TEST_CASE("colliders are written again only when one of them came, went or moved
     series.write_index();
     const std::string index = content(folder.path() / "run.pvd");
     // Every time names all three parts, the second one the colliders of the first.
-    CHECK(index.find("timestep=\"1\" group=\"\" part=\"2\" name=\"colliders\" file=\"run_colliders_0000.vtp\"") != std::string::npos);
+    CHECK(index.find("timestep=\"1\" group=\"\" part=\"2\" name=\"colliders\" file=\"run_colliders_0000.vtp\"") !=
+          std::string::npos);
 }
 
 TEST_CASE("a frame of nothing is written, too", "[unit][output]") {
@@ -104,7 +107,8 @@ TEST_CASE("a frame of nothing is written, too", "[unit][output]") {
     VtkSeries series(folder.path(), "run");
     series.write_frame(Frame{});
     series.write_index();
-    CHECK(content(folder.path() / "run_bodies_0000.vtu").find("NumberOfPoints=\"0\" NumberOfCells=\"0\"") != std::string::npos);
+    CHECK(content(folder.path() / "run_bodies_0000.vtu").find("NumberOfPoints=\"0\" NumberOfCells=\"0\"") !=
+          std::string::npos);
     CHECK(content(folder.path() / "run_contacts_0000.vtp").find("NumberOfVerts=\"0\"") != std::string::npos);
 }
 

@@ -82,7 +82,8 @@ TEST_CASE("codes round to the nearest and stay in range whatever comes", "[unit]
     CHECK(code_of<std::uint16_t>(1, 0) == 0);
 }
 
-TEST_CASE("packed points come back within half a code, and a point that is not finite harms no other", "[unit][output]") {
+TEST_CASE("packed points come back within half a code, and a point that is not finite harms no other",
+          "[unit][output]") {
     const std::vector<Vec3> points{{-1, 5, 3}, {2, 5, not_a_number}, {0.123, 5, -4}, {infinity, 0, 0}};
     std::string bytes;
     put_points(bytes, points);
@@ -129,7 +130,8 @@ TEST_CASE("a packed frame gives back the bodies that it has, their places, speed
         for (const Index n : node)
             for (int axis = 0; axis < 3; ++axis) {
                 const Real back = lower[axis] + extent[axis] * reader.take<std::uint16_t>() / 65535;
-                CHECK(back == Approx(body.position[static_cast<std::size_t>(n)][axis]).margin(1e-5));  // 0.2 m / 131070, and float
+                // 0.2 m / 131070, and float
+                CHECK(back == Approx(body.position[static_cast<std::size_t>(n)][axis]).margin(1e-5));
             }
         reader.fill_up();
         for (const Index n : node)
@@ -137,7 +139,8 @@ TEST_CASE("a packed frame gives back the bodies that it has, their places, speed
                   Approx(body.velocity[static_cast<std::size_t>(n)].norm()).margin(top_speed / 500));
         reader.fill_up();
         Real largest = 0;
-        for (std::size_t i = 0; i < node.size(); ++i) largest = std::max<Real>(largest, top_stress * reader.take<std::uint8_t>() / 255);
+        for (std::size_t i = 0; i < node.size(); ++i)
+            largest = std::max<Real>(largest, top_stress * reader.take<std::uint8_t>() / 255);
         reader.fill_up();
         CHECK(largest == Approx(top_stress));
         CHECK(top_stress <= *std::ranges::max_element(body.von_mises) * (1 + 1e-6));

@@ -17,8 +17,9 @@ struct Icosphere {
         const Real g = std::numbers::phi;
         nodes = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-        triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                     {3, 9, 4},  {3, 4, 2}, {3, 2, 6}, {3, 6, 8},  {3, 8, 9},   {4, 9, 5}, {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+        triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                     {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
         for (int i = 0; i < level; ++i) refine();
         for (Vec3& node : nodes) node.normalize();
     }
@@ -27,7 +28,9 @@ struct Icosphere {
         const auto half = [&](Index a, Index b) {
             const auto [place, is_new] = middle.try_emplace(std::minmax(a, b), static_cast<Index>(nodes.size()));
             if (is_new)
-                nodes.push_back((nodes[static_cast<std::size_t>(a)].normalized() + nodes[static_cast<std::size_t>(b)].normalized()) / 2);
+                nodes.push_back((nodes[static_cast<std::size_t>(a)].normalized() +
+                                 nodes[static_cast<std::size_t>(b)].normalized()) /
+                                2);
             return place->second;
         };
         std::vector<std::array<Index, 3>> finer;
@@ -88,11 +91,14 @@ void OutputSample::place_ball(int number, Real time) {
         height = std::max(up * t - gravity * t * t / 2, 0.0);
         speed = up > 0.05 ? up - gravity * t : 0;
     }
-    const Real squash = 0.35 * std::exp(-height / 0.02) * std::cos(40 * t) * std::exp(-2 * time) + 0.08 * std::exp(-height / 0.02);
+    const Real squash =
+        0.35 * std::exp(-height / 0.02) * std::cos(40 * t) * std::exp(-2 * time) + 0.08 * std::exp(-height / 0.02);
     const Vec3 stretch(1 + squash / 2, 1 + squash / 2, 1 - squash);
     for (std::size_t node = 0; node < direction_.size(); ++node) {
-        ball.position[node] = ball.home + Vec3(0, 0, height + radius * stretch.z()) + radius * stretch.cwiseProduct(direction_[node]);
-        ball.velocity[node] = Vec3(0, 0, speed) + 2 * squash * Vec3(direction_[node].x(), direction_[node].y(), -direction_[node].z());
+        ball.position[node] =
+            ball.home + Vec3(0, 0, height + radius * stretch.z()) + radius * stretch.cwiseProduct(direction_[node]);
+        ball.velocity[node] =
+            Vec3(0, 0, speed) + 2 * squash * Vec3(direction_[node].x(), direction_[node].y(), -direction_[node].z());
     }
     for (std::size_t element = 0; element < tetrahedra_.size(); ++element) {
         const Vec3& side = direction_[static_cast<std::size_t>(tetrahedra_[element][1])];
@@ -154,7 +160,8 @@ const Frame& OutputSample::frame(int number) {
                                          {time, {0.75, -0.2, 0.05}, {std::numbers::pi / 2, 0, 0}},
                                          {time, {0.6, 0.3, 0}, Vec3::Zero()}}};
     for (std::uint32_t i = 0; i < shapes_.size(); ++i)
-        frame_.colliders.push_back({.handle = {i, 0}, .name = "collider " + std::to_string(i), .shape = &shapes_[i], .pose = pose[i]});
+        frame_.colliders.push_back(
+            {.handle = {i, 0}, .name = "collider " + std::to_string(i), .shape = &shapes_[i], .pose = pose[i]});
     const Real lost = 10 * (1 - std::exp(-1.5 * time));
     frame_.energy = {.kinetic = (12 - lost) * std::pow(std::sin(3 * time), 2),
                      .elastic = 0.4 * std::abs(std::sin(9 * time)) * std::exp(-time),
@@ -164,7 +171,8 @@ const Frame& OutputSample::frame(int number) {
 }
 
 PageSummary OutputSample::summary() const {
-    PageSummary summary{.title = "Balls into a bucket </title> & \"quotes\"", .report = {}, .state_hash = 0x0123456789abcdefu};
+    PageSummary summary{
+        .title = "Balls into a bucket </title> & \"quotes\"", .report = {}, .state_hash = 0x0123456789abcdefu};
     WorldReport& report = summary.report;
     report.time = frame_step * (frame_count_ - 1);
     report.steps = static_cast<std::uint64_t>(20 * (frame_count_ - 1));
@@ -174,8 +182,8 @@ PageSummary OutputSample::summary() const {
     report.elements = tetrahedra_.size() * balls_.size();
     const Real steps = static_cast<Real>(report.steps);
     const auto stage = [&](const char* name, double ms, Real share) {
-        report.stages.push_back(
-            {name, 1e-3 * ms * steps, static_cast<std::uint64_t>(share * steps), static_cast<std::uint64_t>((1 - share) * steps)});
+        report.stages.push_back({name, 1e-3 * ms * steps, static_cast<std::uint64_t>(share * steps),
+                                 static_cast<std::uint64_t>((1 - share) * steps)});
     };
     stage("dynamics/compute_element_forces", 0.81, 1);
     stage("dynamics/predict_velocity", 0.18, 1);

@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Balls of a centre node and `level` times refined icosahedra around it: 10 * 4^level + 2 surface nodes. Ball 1 is added at a third of
-/// the run, ball 0 removed at two thirds. A plane, a bucket, a box that moves, a capsule.
+/// Balls of a centre node and `level` times refined icosahedra around it: 10 * 4^level + 2 surface nodes. Ball 1 is
+/// added at a third of the run, ball 0 removed at two thirds. A plane, a bucket, a box that moves, a capsule.
 class OutputSample {
 public:
     OutputSample(int ball_count, int level, int frame_count);

@@ -26,7 +26,8 @@ Json expected(const Frame& frame) {
     for (const BodyFrame& body : frame.bodies) {
         for (const Vec3& p : body.position) json["position"].push_back(json_of(p));
         for (const Vec3& v : body.velocity) json["velocity"].push_back(json_of(v));
-        for (const auto& [a, b, c, d] : body.tetrahedra) json["cells"].push_back({first + a, first + b, first + c, first + d});
+        for (const auto& [a, b, c, d] : body.tetrahedra)
+            json["cells"].push_back({first + a, first + b, first + c, first + d});
         for (const Real stress : body.von_mises) {
             json["von_mises"].push_back(stress);
             json["body"].push_back(body.handle.slot);
@@ -55,7 +56,8 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = argv[1];
     std::filesystem::remove_all(folder);
 
-    // Few nodes for what is compared number by number. The first ball is number 0 although it goes; the second comes late.
+    // Few nodes for what is compared number by number. The first ball is number 0 although it goes; the second comes
+    // late.
     OutputSample small(3, 1, 45);
     VtkSeries series(folder / "vtk", "drop & bounce");
     Json frames = Json::array();
@@ -63,10 +65,12 @@ int main(int argc, char** argv) {
     for (int i = 0; i < small.frame_count(); ++i) {
         const Frame& frame = small.frame(i);
         series.write_frame(frame);
-        for (const BodyFrame& body : frame.bodies) number.try_emplace(body.handle.slot, static_cast<int>(number.size()));
+        for (const BodyFrame& body : frame.bodies)
+            number.try_emplace(body.handle.slot, static_cast<int>(number.size()));
         Json json = expected(frame);
         for (Json& slot : json["body"]) slot = number.at(slot.get<std::uint32_t>());
-        for (Json& contact : json["contacts"]) contact["first_body"] = number.at(contact["first_body"].get<std::uint32_t>());
+        for (Json& contact : json["contacts"])
+            contact["first_body"] = number.at(contact["first_body"].get<std::uint32_t>());
         frames.push_back(json);
     }
     series.write_index();

@@ -19,10 +19,14 @@ struct Sum {
 
 Sum sum_of(const SurfaceMesh& mesh) {
     Sum sum;
-    const auto key = [](const Vec3& p) { return std::tuple(std::lround(p.x() * 1e9), std::lround(p.y() * 1e9), std::lround(p.z() * 1e9)); };
+    const auto key = [](const Vec3& p) {
+        return std::tuple(std::lround(p.x() * 1e9), std::lround(p.y() * 1e9), std::lround(p.z() * 1e9));
+    };
     std::map<std::pair<std::tuple<long, long, long>, std::tuple<long, long, long>>, int> edges;
     for (const auto& triangle : mesh.triangles) {
-        const auto node = [&](int k) { return mesh.nodes[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k % 3)])]; };
+        const auto node = [&](int k) {
+            return mesh.nodes[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k % 3)])];
+        };
         sum.volume += node(0).dot(node(1).cross(node(2))) / 6;
         sum.flat_triangle |= (node(1) - node(0)).cross(node(2) - node(0)).norm() < 1e-12;
         for (int k = 0; k < 3; ++k) ++edges[{key(node(k)), key(node(k + 1))}];
@@ -38,7 +42,8 @@ constexpr Real pi = std::numbers::pi;
 
 }  // namespace
 
-TEST_CASE("pictures of solid colliders are closed, face outwards and have the volume of their shape", "[unit][output]") {
+TEST_CASE("pictures of solid colliders are closed, face outwards and have the volume of their shape",
+          "[unit][output]") {
     const auto [shape, volume, tolerance] = GENERATE(table<Shape, Real, Real>({
         {Sphere{.radius = 0.7}, 4.0 / 3 * pi * 0.343, 0.01},
         {Box{.size = {0.5, 2, 3}}, 3.0, 1e-12},
@@ -69,8 +74,10 @@ TEST_CASE("a bucket is drawn with its floor at zero and its wall outside of the 
     CHECK(has_floor);
 }
 
-TEST_CASE("the picture of a plane is the square of z = 0 around the foot of what is shown, facing up", "[unit][output]") {
-    const SurfaceMesh mesh = shape_picture(Plane{.normal = {1, 1, 1}, .point = {5, 5, 5}}, {.center = {2, 3, 7}, .half_size = 4});
+TEST_CASE("the picture of a plane is the square of z = 0 around the foot of what is shown, facing up",
+          "[unit][output]") {
+    const SurfaceMesh mesh =
+        shape_picture(Plane{.normal = {1, 1, 1}, .point = {5, 5, 5}}, {.center = {2, 3, 7}, .half_size = 4});
     Vec3 lower = mesh.nodes[0], upper = lower;
     for (const Vec3& node : mesh.nodes) {
         lower = lower.cwiseMin(node);

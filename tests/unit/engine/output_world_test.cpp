@@ -16,9 +16,10 @@ namespace fs = std::filesystem;
 
 World box_on_floor(BodyHandle& box) {
     World world;
-    const MaterialHandle rubber =
-        world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.5, .damping = 20});
-    box = world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = rubber, .position = {0, 0, 0.052}, .name = "box"});
+    const MaterialHandle rubber = world.add_material(
+        {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.5, .damping = 20});
+    box = world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}),
+                         {.material = rubber, .position = {0, 0, 0.052}, .name = "box"});
     world.add_collider(Plane{.normal = {0, 0, 2}}, {.name = "floor"});
     world.add_collider(Bucket{}, {.position = {0, 0, -0.5}, .motion = {.velocity = {0, 0, -1}}, .name = "bucket"});
     return world;
@@ -26,7 +27,8 @@ World box_on_floor(BodyHandle& box) {
 
 }  // namespace
 
-TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world, and forces that carry the weight", "[unit][output]") {
+TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world, and forces that carry the weight",
+          "[unit][output]") {
     BodyHandle box;
     World world = box_on_floor(box);
     FrameCollector collector;
@@ -67,7 +69,8 @@ TEST_CASE("a world that bodies join and leave is written as a series and as a pa
         BodyHandle ball;
         for (int i = 0; i < 6; ++i) {
             if (i == 2)
-                ball = world.add_body(mesh::ball(0.05, 4), {.material = world.add_material({}), .position = {0, 0, 0.2}, .name = "ball"});
+                ball = world.add_body(mesh::ball(0.05, 4),
+                                      {.material = world.add_material({}), .position = {0, 0, 0.2}, .name = "ball"});
             if (i == 4) world.remove(box);
             REQUIRE(world.advance(0.01).ok());
             series.write_frame(world);

@@ -20,12 +20,15 @@ struct Stack {
     std::vector<StepProblem> problems;
     std::vector<std::vector<Contact>> contacts;
 
-    explicit Stack(Settings settings = exact(), const MaterialSettings& material = {.young_modulus = 2e4, .density = 500})
+    explicit Stack(Settings settings = exact(),
+                   const MaterialSettings& material = {.young_modulus = 2e4, .density = 500})
         : world(settings) {
         const auto rubber = world.add_material(material);
         world.add_collider(Plane{});
         const Mesh block = mesh::box({0.2, 0.2, 0.1}, {2, 2, 1});
-        world.add_body(block, {.material = rubber, .position = {0, 0, 0.055}, .velocity = {0.3, 0, -0.5}, .contact_distance = 0.002});
+        world.add_body(
+            block,
+            {.material = rubber, .position = {0, 0, 0.055}, .velocity = {0.3, 0, -0.5}, .contact_distance = 0.002});
         world.add_body(block, {.material = rubber,
                                .position = {0.03, 0.02, 0.165},
                                .rotation = {0, 0, 0.3},
@@ -78,7 +81,8 @@ TEST_CASE("the impulses of a step solve the problem that it shows", "[unit][prob
     for (std::size_t k = 0; k < stack.problems.size(); ++k) {
         const StepProblem& step = stack.problems[k];
         INFO("step " << step.step << ", " << step.problem.contacts() << " contacts");
-        // the solver was asked for 1e-11 in its own measure, which weighs contacts by their masses: three digits for that
+        // the solver was asked for 1e-11 in its own measure, which weighs contacts by their masses: three digits for
+        // that
         CHECK(independent_error(step.problem, step.impulse) < 1e-8);
         const std::vector<Vec3> u = velocities(step.problem, step.impulse);
         for (std::size_t i = 0; i < u.size(); ++i) {
@@ -126,7 +130,8 @@ TEST_CASE("the lumped form of a step and its blocks give the same velocities", "
     }
 }
 
-TEST_CASE("a step's problem goes to a file and back, and its solution moves contacts as the step did", "[unit][problem]") {
+TEST_CASE("a step's problem goes to a file and back, and its solution moves contacts as the step did",
+          "[unit][problem]") {
     const TemporaryFolder folder;
     Stack stack;
     stack.watch(7);

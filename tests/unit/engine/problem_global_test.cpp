@@ -15,7 +15,8 @@ Eigen::MatrixXd dense(const FclibFile& file, const std::string& group) {
     const auto rows = full(file, group);
     Eigen::MatrixXd matrix(rows.size(), rows[0].size());
     for (Eigen::Index r = 0; r < matrix.rows(); ++r)
-        for (Eigen::Index c = 0; c < matrix.cols(); ++c) matrix(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+        for (Eigen::Index c = 0; c < matrix.cols(); ++c)
+            matrix(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
     return matrix;
 }
 
@@ -30,7 +31,8 @@ TEST_CASE("a global problem is condensed to H^T M^-1 H and H^T M^-1 f + w, in ev
     const Eigen::MatrixXd mass = dense(sample, "M"), h = dense(sample, "H");
     const Eigen::MatrixXd inverse = mass.inverse();
     const Eigen::MatrixXd w = h.transpose() * inverse * h;
-    const Eigen::VectorXd q = h.transpose() * inverse * dense(sample.reals.at("vectors/f")) + dense(sample.reals.at("vectors/w"));
+    const Eigen::VectorXd q =
+        h.transpose() * inverse * dense(sample.reals.at("vectors/f")) + dense(sample.reals.at("vectors/w"));
     for (const Storage mass_storage : {Storage::columns, Storage::rows, Storage::triplets})
         for (const Storage h_storage : {Storage::columns, Storage::rows, Storage::triplets}) {
             FclibFile file = sample;
@@ -60,12 +62,14 @@ TEST_CASE("contacts on different bodies are not coupled by condensing", "[unit][
 }
 
 TEST_CASE("couplings that cancel to rounding are dropped", "[unit][problem]") {
-    // two contacts on one rigid body that do not feel each other: 1/m - arm^2/I = 0 up to rounding, along and across alike
+    // two contacts on one rigid body that do not feel each other: 1/m - arm^2/I = 0 up to rounding, along and across
+    // alike
     FclibFile file;
     file.root = "fclib_global";
     file.integers["spacedim"] = {3};
     const double mass = 3, arm = 0.1, inertia = mass * arm * arm;
-    file.integers.merge(std::map<std::string, std::vector<int>>{{"M/m", {6}}, {"M/n", {6}}, {"M/nz", {6}}, {"M/nzmax", {6}}});
+    file.integers.merge(
+        std::map<std::string, std::vector<int>>{{"M/m", {6}}, {"M/n", {6}}, {"M/nz", {6}}, {"M/nzmax", {6}}});
     file.integers["M/p"] = file.integers["M/i"] = {0, 1, 2, 3, 4, 5};
     file.reals["M/x"] = {mass, mass, mass, inertia, inertia, inertia};
     std::vector<int> row, column;
@@ -77,7 +81,8 @@ TEST_CASE("couplings that cancel to rounding are dropped", "[unit][problem]") {
             value.insert(value.end(), {1.0, contact == 0 ? arm : -arm});
         }
     const int entries = static_cast<int>(row.size());
-    file.integers.merge(std::map<std::string, std::vector<int>>{{"H/m", {6}}, {"H/n", {6}}, {"H/nz", {entries}}, {"H/nzmax", {entries}}});
+    file.integers.merge(std::map<std::string, std::vector<int>>{
+        {"H/m", {6}}, {"H/n", {6}}, {"H/nz", {entries}}, {"H/nzmax", {entries}}});
     file.integers["H/p"] = column;
     file.integers["H/i"] = row;
     file.reals["H/x"] = value;
@@ -126,7 +131,8 @@ TEST_CASE("a body of many contacts is condensed in batches as if at once", "[uni
     for (std::size_t k = 0; k < row.size(); ++k) h(row[k], column[k]) += value[k];
     const Eigen::MatrixXd w = h.transpose() * dense(file, "M").inverse() * h;
     for (int r = 0; r < 3 * contacts; r += 7)
-        for (int c = 0; c < 3 * contacts; c += 5) CHECK(entry(problem, r, c) == Approx(w(r, c)).margin(1e-12));  // entries up to 20
+        // entries up to 20
+        for (int c = 0; c < 3 * contacts; c += 5) CHECK(entry(problem, r, c) == Approx(w(r, c)).margin(1e-12));
 }
 
 TEST_CASE("every malformed global file is refused by name of what is wrong", "[unit][problem]") {
@@ -136,7 +142,8 @@ TEST_CASE("every malformed global file is refused by name of what is wrong", "[u
         return refusal(file);
     };
     for (const char* name : {"M", "H", "vectors", "spacedim", "M/p", "H/x", "vectors/f", "vectors/w", "vectors/mu"})
-        check_says(spoil([&](auto& f) { f.leave_out(name); }), {"fclib_global", std::filesystem::path(name).filename().c_str(), "nothing"});
+        check_says(spoil([&](auto& f) { f.leave_out(name); }),
+                   {"fclib_global", std::filesystem::path(name).filename().c_str(), "nothing"});
     check_says(spoil([](auto& f) { f.integers["spacedim"] = {2}; }), {"spacedim", "2"});
     check_says(spoil([](auto& f) { f.integers["M/n"] = {8}; }), {"M", "n", "8", "9"});
     check_says(spoil([](auto& f) { f.integers["H/m"] = {8}; }), {"H", "m", "8", "9 (rows of M)"});
@@ -150,11 +157,14 @@ TEST_CASE("every malformed global file is refused by name of what is wrong", "[u
                    f.integers.merge(std::map<std::string, std::vector<int>>{{"G/m", {9}}, {"G/n", {1}}});
                }),
                {"G", "equality constraints"});
-    check_says(spoil([](auto& f) { f.reals["M/x"][0] = -2; }), {"M", "-2", "diagonal of freedom 0", "positive definite"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][0] = -2; }),
+               {"M", "-2", "diagonal of freedom 0", "positive definite"});
     check_says(spoil([](auto& f) { f.reals["M/x"][4] = 2; }), {"M", "not symmetric", "freedom 3", "freedom 4"});
     // [4 4; 4 4] and its neighbour: singular, then indefinite
-    check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 4; }), {"M", "not positive definite", "freedom 3"});
-    check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 40; }), {"M", "not positive definite", "freedom 3"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 4; }),
+               {"M", "not positive definite", "freedom 3"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 40; }),
+               {"M", "not positive definite", "freedom 3"});
 }
 
 TEST_CASE("an empty set of equality constraints is none", "[unit][problem]") {

@@ -25,7 +25,8 @@ TEST_CASE("a written problem reads back entry by entry", "[unit][problem]") {
     const auto expected = full(file, "W");
     for (int row = 0; row < 6; ++row)
         for (int column = 0; column < 6; ++column)
-            CHECK(entry(problem, row, column) == expected[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
+            CHECK(entry(problem, row, column) ==
+                  expected[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
 }
 
 TEST_CASE("rows and triplets are read like columns", "[unit][problem]") {
@@ -45,9 +46,11 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
     };
     check_says(spoil([](auto& f) { f.integers["spacedim"] = {2}; }), {"fclib_local", "spacedim", "2", "expected 3"});
     check_says(spoil([](auto& f) { f.integers["spacedim"] = {3, 3}; }), {"spacedim", "2 values", "one integer"});
-    for (const char* name : {"W", "vectors", "spacedim", "W/m", "W/n", "W/nz", "W/nzmax", "W/p", "W/i", "W/x", "vectors/q", "vectors/mu"})
+    for (const char* name :
+         {"W", "vectors", "spacedim", "W/m", "W/n", "W/nz", "W/nzmax", "W/p", "W/i", "W/x", "vectors/q", "vectors/mu"})
         check_says(spoil([&](auto& f) { f.leave_out(name); }), {fs::path(name).filename().c_str(), "nothing"});
-    check_says(spoil([](auto& f) { f.root = "something"; }), {"fclib_local", "nothing", "a group", "no contact problem"});
+    check_says(spoil([](auto& f) { f.root = "something"; }),
+               {"fclib_local", "nothing", "a group", "no contact problem"});
     check_says(spoil([](auto& f) { f.empty_groups = {"V"}; }), {"V", "equality constraints"});
     check_says(spoil([](auto& f) { f.integers["W/m"] = f.integers["W/n"] = {7}; }), {"W", "m", "7", "multiple of 3"});
     check_says(spoil([](auto& f) { f.integers["W/m"] = {0}; }), {"W", "m", "0"});
@@ -72,8 +75,10 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
     check_says(spoil([](auto& f) { f.reals["vectors/mu"][1] = -0.1; }), {"mu", "-0.1", ">= 0"});
     check_says(spoil([](auto& f) { f.reals["vectors/q"][2] = std::numeric_limits<double>::quiet_NaN(); }),
                {"q", "nan", "entry 2", "finite"});
-    check_says(spoil([](auto& f) { f.reals["W/x"][4] = std::numeric_limits<double>::infinity(); }), {"x", "inf", "entry 4", "finite"});
-    check_says(spoil([](auto& f) { f.reals["vectors/mu"][0] = std::numeric_limits<double>::quiet_NaN(); }), {"mu", "nan"});
+    check_says(spoil([](auto& f) { f.reals["W/x"][4] = std::numeric_limits<double>::infinity(); }),
+               {"x", "inf", "entry 4", "finite"});
+    check_says(spoil([](auto& f) { f.reals["vectors/mu"][0] = std::numeric_limits<double>::quiet_NaN(); }),
+               {"mu", "nan"});
     // every number is finite, their sum is not
     check_says(spoil([](auto& f) {
                    f.integers["W/i"][1] = 0;
@@ -100,7 +105,8 @@ std::string refusal_of_empty_q(hid_t type, hsize_t size) {
 
 }  // namespace
 
-TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for", "[unit][problem]") {
+TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for",
+          "[unit][problem]") {
     CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 2000000000),
                Catch::Contains("2000000000 values, expected values that the file can hold"));
     const hid_t wide = H5Tcopy(H5T_NATIVE_INT);

@@ -115,7 +115,8 @@ FclibFile global_file() {
     std::vector<std::vector<double>> h(9, std::vector<double>(9, 0.0));
     const double c = 0.8, s = 0.6;
     h[0][0] = c, h[1][0] = s, h[0][1] = -s, h[1][1] = c, h[2][2] = 1;
-    for (std::size_t k = 0; k < 3; ++k) h[k][3 + k] = -1, h[3 + k][3 + k] = 1, h[3 + k][6 + k] = -1, h[6 + k][6 + k] = 1;
+    for (std::size_t k = 0; k < 3; ++k)
+        h[k][3 + k] = -1, h[3 + k][3 + k] = 1, h[3 + k][6 + k] = -1, h[6 + k][6 + k] = 1;
     put_columns(file, "H", h);
     file.reals["vectors/f"] = {-3, 1, 0.5, -8, 2, -1, -2, 0.3, 0.7};
     file.reals["vectors/w"] = {0, 0, 0.1, -0.2, 0, 0, 0.05, 0, 0};
@@ -187,7 +188,8 @@ Real entry(const ContactProblem& problem, int row, int column) {
 std::vector<Vec3> velocities(const ContactProblem& problem, const std::vector<Vec3>& reaction) {
     std::vector<Vec3> u = problem.q;
     for (std::size_t c = 0; c < u.size(); ++c)
-        for (Index k = problem.row_offset[c]; k < problem.row_offset[c + 1]; ++k) u[c] += problem.block[k] * reaction[problem.column[k]];
+        for (Index k = problem.row_offset[c]; k < problem.row_offset[c + 1]; ++k)
+            u[c] += problem.block[k] * reaction[problem.column[k]];
     return u;
 }
 
@@ -233,10 +235,10 @@ Real difference(const ContactProblem& a, const ContactProblem& b) {
     return largest;
 }
 
-fs::path shared_problems() {
-    const char* variable = std::getenv("SKERRY_SHARED_DATA");
-    const fs::path data = variable ? fs::path(variable) : fs::path(SKERRY_SOURCE_DIR) / ".." / "shared" / "data";
-    return data / "friction_problems";
+std::optional<fs::path> problems_of_others() {
+    const char* folder = std::getenv("SKERRY_TEST_DATA");
+    if (folder == nullptr) return std::nullopt;
+    return fs::path(folder) / "friction_problems";
 }
 
 }  // namespace skerry::test

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ struct FclibFile {
 
 /// Two contacts, W in compressed columns.
 FclibFile local_file();
-/// Three bodies of three freedoms each (the second with a full M), three contacts: ground and 1, 1 and 2, 2 and 3; dense columns.
+/// Three bodies of three freedoms each (the second with a full M), three contacts: ground and 1, 1 and 2, 2 and 3;
+/// dense columns.
 FclibFile global_file();
 
 /// How a matrix is stored.
@@ -48,12 +50,13 @@ void check_says(const std::string& text, std::initializer_list<const char*> word
 Real entry(const ContactProblem& problem, int row, int column);
 /// u = W r + q.
 std::vector<Vec3> velocities(const ContactProblem& problem, const std::vector<Vec3>& reaction);
-/// |e| / max(|q|, |r|, |u|), written down once more from methods.md 2.1, sharing no code with the library.
+/// |e| / max(|q|, |r|, |u|), written down once more from docs/methods/errors.md 3, sharing no code with the library.
 Real independent_error(const ContactProblem& problem, const std::vector<Vec3>& reaction);
 /// The largest difference of two problems, in W, q and mu.
 Real difference(const ContactProblem& a, const ContactProblem& b);
 
-/// The folder of problems from elsewhere, if this machine has one.
-std::filesystem::path shared_problems();
+/// FCLIB problems of others are not ours to ship: the folder `friction_problems` of the one that SKERRY_TEST_DATA
+/// names, if it does.
+std::optional<std::filesystem::path> problems_of_others();
 
 }  // namespace skerry::test

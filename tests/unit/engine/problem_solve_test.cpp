@@ -28,7 +28,8 @@ TEST_CASE("a problem of two contacts is solved with both methods and laws", "[un
     const ContactProblem problem = read_back(local_file());
     for (const SolverMethod method : {SolverMethod::pgs, SolverMethod::pcg_pgs})
         for (const Friction friction : {Friction::cone, Friction::pyramid}) {
-            const ProblemSolution solution = solve_problem(problem, {.method = method, .friction = friction, .tolerance = 1e-10});
+            const ProblemSolution solution =
+                solve_problem(problem, {.method = method, .friction = friction, .tolerance = 1e-10});
             CHECK(solution.converged);
             CHECK(solution.error <= 1e-10);
             CHECK(solution.regions == 1);
@@ -81,9 +82,12 @@ TEST_CASE("the energy gap is the work that Coulomb's law does not explain", "[un
     const ProblemSolution solution = solve_problem(problem, {.tolerance = 1e-12});
     CHECK(std::abs(solution.energy_gap) < 1e-12);
     // by hand: u = 2 r + q, gap = r_n u_n + mu r_n |u_t| + r_t . u_t
-    CHECK(problem_error(problem, std::vector<Vec3>{{1, 0, 0}, Vec3::Zero(), Vec3::Zero()}).energy_gap == Approx(1).epsilon(1e-15));
-    CHECK(problem_error(problem, std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), {1, 0, 0}}).energy_gap == Approx(0.5 * 8).epsilon(1e-15));
-    CHECK(problem_error(problem, std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), {1, -0.5, 0}}).energy_gap == Approx(0).margin(1e-14));
+    CHECK(problem_error(problem, std::vector<Vec3>{{1, 0, 0}, Vec3::Zero(), Vec3::Zero()}).energy_gap ==
+          Approx(1).epsilon(1e-15));
+    CHECK(problem_error(problem, std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), {1, 0, 0}}).energy_gap ==
+          Approx(0.5 * 8).epsilon(1e-15));
+    CHECK(problem_error(problem, std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), {1, -0.5, 0}}).energy_gap ==
+          Approx(0).margin(1e-14));
     // the pyramid's gap is measured against the pyramid: sliding askew, both tangents at their bounds
     ContactProblem askew = problem;
     askew.q[2] = {-2, 8, 8};
@@ -92,14 +96,11 @@ TEST_CASE("the energy gap is the work that Coulomb's law does not explain", "[un
     CHECK(std::abs(pyramid.energy_gap) < 1e-12);
 }
 
-TEST_CASE("all problems of the shared data load, and all but one are solved to 1e-6", "[unit][problem][slow]") {
-    const fs::path folder = shared_problems();
-    if (!fs::is_directory(folder)) {
-        WARN("no folder " << folder << ": set SKERRY_SHARED_DATA");
-        return;
-    }
+TEST_CASE("problems of the FCLIB collection load, and all but one are solved to 1e-6", "[unit][problem][slow]") {
+    const std::optional<fs::path> folder = problems_of_others();
+    if (!folder) return;
     int count = 0;
-    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+    for (const fs::directory_entry& file : fs::directory_iterator(*folder)) {
         if (file.path().extension() != ".hdf5") continue;
         ++count;
         const ContactProblem problem = read_problem(file.path());

@@ -22,10 +22,13 @@ std::map<std::string, std::string> shapes_in(const fs::path& path) {
     const auto visit = [](hid_t file, const char* name, const H5O_info_t* info, void* into) -> herr_t {
         if (info->type != H5O_TYPE_DATASET) return 0;
         const hid_t data = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(data), space = H5Dget_space(data);
-        const char* kind = H5Tget_class(type) == H5T_INTEGER ? "integer" : H5Tget_class(type) == H5T_FLOAT ? "real" : "text";
-        (*static_cast<std::map<std::string, std::string>*>(into))[name] = kind + std::string(":") + std::to_string(H5Tget_size(type)) +
-                                                                          ":" + std::to_string(H5Sget_simple_extent_ndims(space)) + ":" +
-                                                                          std::to_string(H5Sget_simple_extent_npoints(space));
+        const char* kind = H5Tget_class(type) == H5T_INTEGER ? "integer"
+                           : H5Tget_class(type) == H5T_FLOAT ? "real"
+                                                             : "text";
+        (*static_cast<std::map<std::string, std::string>*>(into))[name] =
+            kind + std::string(":") + std::to_string(H5Tget_size(type)) + ":" +
+            std::to_string(H5Sget_simple_extent_ndims(space)) + ":" +
+            std::to_string(H5Sget_simple_extent_npoints(space));
         H5Sclose(space);
         H5Tclose(type);
         H5Dclose(data);
@@ -39,7 +42,8 @@ std::map<std::string, std::string> shapes_in(const fs::path& path) {
 
 std::vector<double> numbers(const fs::path& path, const char* name, std::size_t count) {
     std::vector<double> values(count);
-    const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), data = H5Dopen2(file, name, H5P_DEFAULT);
+    const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
+                data = H5Dopen2(file, name, H5P_DEFAULT);
     H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
     H5Dclose(data);
     H5Fclose(file);

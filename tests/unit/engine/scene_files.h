@@ -9,13 +9,15 @@ namespace skerry {
 
 /// A small scene with `more` keys at its top.
 inline std::string scene_with(const std::string& more) {
-    return R"({"materials": {"rubber": {"E": 1e5}}, "bodies": [{"name": "ball", "mesh": {"ball": {"radius": 0.1, "resolution": 3}}, "material": "rubber"}])" +
+    return R"({"materials": {"rubber": {"E": 1e5}}, "bodies": [
+                  {"name": "ball", "mesh": {"ball": {"radius": 0.1, "resolution": 3}}, "material": "rubber"}])" +
            (more.empty() ? std::string() : ", " + more) + "}";
 }
 
 /// A small scene whose only body has `more` keys.
 inline std::string body_with(const std::string& more) {
-    return R"({"materials": {"rubber": {}}, "bodies": [{"name": "block", "mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "rubber")" +
+    return R"({"materials": {"rubber": {}}, "bodies": [
+                  {"name": "block", "mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "rubber")" +
            (more.empty() ? std::string() : ", " + more) + "}]}";
 }
 

@@ -10,9 +10,10 @@ using namespace skerry;
 TEST_CASE("a grid of copies has the same jitter every time, and another one for another seed", "[unit][determinism]") {
     const TemporaryFolder folder;
     const auto grid = [&](int seed) {
-        return plan_scene(folder.write(
-            "g.json", body_with(R"("position": [0, 0, 1], "repeat": {"count": [2, 3, 2], "spacing": [2, 3, 4], "jitter": 0.1, "seed": )" +
-                                std::to_string(seed) + "}")));
+        return plan_scene(folder.write("g.json", body_with(
+                                                     R"("position": [0, 0, 1],
+                   "repeat": {"count": [2, 3, 2], "spacing": [2, 3, 4], "jitter": 0.1, "seed": )" +
+                                                     std::to_string(seed) + "}")));
     };
     const ScenePlan one = grid(1), again = grid(1), other = grid(2);
     REQUIRE(one.bodies.size() == 12);
@@ -25,7 +26,8 @@ TEST_CASE("a grid of copies has the same jitter every time, and another one for 
         const Vec3 position = one.bodies[i].settings.position;
         CHECK(position == again.bodies[i].settings.position);
         differs = differs || position != other.bodies[i].settings.position;
-        const Vec3 regular(2.0 * static_cast<Real>(i % 2), 3.0 * static_cast<Real>(i / 2 % 3), 1 + 4.0 * static_cast<Real>(i / 6));
+        const Vec3 regular(2.0 * static_cast<Real>(i % 2), 3.0 * static_cast<Real>(i / 2 % 3),
+                           1 + 4.0 * static_cast<Real>(i / 6));
         CHECK((position - regular).cwiseAbs().maxCoeff() <= 0.1 + 1e-12);  // rounding of the sum
         shifts.insert((position - regular).x());
     }
@@ -35,60 +37,71 @@ TEST_CASE("a grid of copies has the same jitter every time, and another one for 
 
 TEST_CASE("without jitter a grid is exact", "[unit]") {
     const TemporaryFolder folder;
-    const ScenePlan plan = plan_scene(folder.write("g.json", body_with(R"("repeat": {"count": [2, 1, 1], "spacing": [0.5, 0, 0]})")));
+    const ScenePlan plan =
+        plan_scene(folder.write("g.json", body_with(R"("repeat": {"count": [2, 1, 1], "spacing": [0.5, 0, 0]})")));
     REQUIRE(plan.bodies.size() == 2);
     CHECK(plan.bodies[1].settings.position == Vec3(0.5, 0, 0));
 }
 
 TEST_CASE("a material that is not there is named with the nearest one", "[unit]") {
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(
-        plan_scene(folder.write(
-            "m.json",
-            R"({"materials": {"rubber": {}, "wood": {}}, "bodies": [{"name": "b", "mesh": {"ball": {"radius": 1, "resolution": 3}}, "material": "ruber"}]})")),
-        Catch::Contains("body \"b\": bodies[0].material: found \"ruber\"") && Catch::Contains("\"rubber\", \"wood\"") &&
-            Catch::Contains("nearest known one is \"rubber\""));
+    CHECK_THROWS_WITH(plan_scene(folder.write("m.json",
+                                              R"({"materials": {"rubber": {}, "wood": {}}, "bodies": [{"name": "b",
+                "mesh": {"ball": {"radius": 1, "resolution": 3}}, "material": "ruber"}]})")),
+                      Catch::Contains("body \"b\": bodies[0].material: found \"ruber\"") &&
+                          Catch::Contains("\"rubber\", \"wood\"") &&
+                          Catch::Contains("nearest known one is \"rubber\""));
 }
 
 TEST_CASE("two bodies of one name are refused", "[unit]") {
     const TemporaryFolder folder;
     const std::string body = R"({"name": "b", "mesh": {"ball": {"radius": 1, "resolution": 3}}, "material": "m"})";
-    CHECK_THROWS_WITH(plan_scene(folder.write("n.json", R"({"materials": {"m": {}}, "bodies": [)" + body + ", " + body + "]}")),
-                      Catch::Contains("bodies[1].name: found \"b\" again"));
+    CHECK_THROWS_WITH(
+        plan_scene(folder.write("n.json", R"({"materials": {"m": {}}, "bodies": [)" + body + ", " + body + "]}")),
+        Catch::Contains("bodies[1].name: found \"b\" again"));
 }
 
 TEST_CASE("pins take the nodes inside their box, and say when there are none", "[unit]") {
     const TemporaryFolder folder;
     const ScenePlan plan = plan_scene(folder.write(
-        "p.json", body_with(R"("pin": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, -0.4]}, "motion": {"velocity": [0, 0, 1]}})")));
+        "p.json",
+        body_with(
+            R"("pin": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, -0.4]}, "motion": {"velocity": [0, 0, 1]}})")));
     REQUIRE(plan.bodies[0].pins.size() == 1);
     CHECK(plan.bodies[0].pins[0].nodes.size() == 4);  // the lower face of one cell
     CHECK(plan.bodies[0].pins[0].motion.velocity == Vec3(0, 0, 1));
-    CHECK(plan_scene(folder.write("q.json", body_with(R"("pin": [{"nodes": [0]}, {"nodes": [3, 2]}])"))).bodies[0].pins.size() == 2);
-    CHECK_THROWS_WITH(plan_scene(folder.write("e.json", body_with(R"("pin": {"box": {"lower": [5, 5, 5], "upper": [6, 6, 6]}})"))),
-                      Catch::Contains("bodies[0].pin.box: found a box without any node"));
+    CHECK(plan_scene(folder.write("q.json", body_with(R"("pin": [{"nodes": [0]}, {"nodes": [3, 2]}])")))
+              .bodies[0]
+              .pins.size() == 2);
+    CHECK_THROWS_WITH(
+        plan_scene(folder.write("e.json", body_with(R"("pin": {"box": {"lower": [5, 5, 5], "upper": [6, 6, 6]}})"))),
+        Catch::Contains("bodies[0].pin.box: found a box without any node"));
     CHECK_THROWS_WITH(plan_scene(folder.write("f.json", body_with(R"("pin": [{"nodes": [0, 99]}])"))),
                       Catch::Contains("bodies[0].pin[0].nodes[1]: found node 99"));
-    CHECK_THROWS_WITH(plan_scene(folder.write("h.json", body_with(R"("pin": {"nodes": [1, 1]})"))), Catch::Contains("node 1 again"));
+    CHECK_THROWS_WITH(plan_scene(folder.write("h.json", body_with(R"("pin": {"nodes": [1, 1]})"))),
+                      Catch::Contains("node 1 again"));
 }
 
 TEST_CASE("probes find their body and nodes", "[unit]") {
     const TemporaryFolder folder;
     const auto with = [&](const std::string& body) {
-        return plan_scene(folder.write("p.json", scene_with(R"("probes": [{"name": "south", "body": ")" + body +
-                                                            R"(", "box": {"lower": [-1, -1, -1], "upper": [1, 1, 0]}}])")));
+        return plan_scene(
+            folder.write("p.json", scene_with(R"("probes": [{"name": "south", "body": ")" + body +
+                                              R"(", "box": {"lower": [-1, -1, -1], "upper": [1, 1, 0]}}])")));
     };
     const ScenePlan plan = with("ball");
     REQUIRE(plan.probes.size() == 1);
     CHECK_FALSE(plan.probes[0].nodes.empty());
     CHECK(plan.probes[0].nodes.size() < plan.meshes[0].nodes.size());
-    CHECK_THROWS_WITH(with("bal"), Catch::Contains("probe \"south\": probes[0].body: found \"bal\"") && Catch::Contains("\"ball\""));
+    CHECK_THROWS_WITH(with("bal"),
+                      Catch::Contains("probe \"south\": probes[0].body: found \"bal\"") && Catch::Contains("\"ball\""));
 }
 
 TEST_CASE("a scale stretches the mesh, overrides replace settings", "[unit]") {
     const TemporaryFolder folder;
     const std::string text =
-        R"({"materials": {"m": {}}, "settings": {"threads": 4, "tolerance": 0.1}, "bodies": [{"mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "scale": 2}, "material": "m"}]})";
+        R"({"materials": {"m": {}}, "settings": {"threads": 4, "tolerance": 0.1}, "bodies": [{
+            "mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}, "scale": 2}, "material": "m"}]})";
     SceneOverrides overrides;
     overrides.threads = 1;
     const ScenePlan plan = plan_scene(folder.write("s.json", text), overrides);
@@ -102,17 +115,17 @@ TEST_CASE("a scale stretches the mesh, overrides replace settings", "[unit]") {
 
 TEST_CASE("sizes that a built-in mesh refuses are refused with their place", "[unit]") {
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(
-        plan_scene(folder.write(
-            "l.json",
-            R"({"materials": {"m": {}}, "bodies": [{"mesh": {"lathe": {"profile": [[1, 1], [1, 0]], "resolution": 3}}, "material": "m"}]})")),
-        Catch::Contains("l.json: bodies[0].mesh: "));
+    CHECK_THROWS_WITH(plan_scene(folder.write("l.json",
+                                              R"({"materials": {"m": {}}, "bodies": [{
+                "mesh": {"lathe": {"profile": [[1, 1], [1, 0]], "resolution": 3}}, "material": "m"}]})")),
+                      Catch::Contains("l.json: bodies[0].mesh: "));
 }
 
 TEST_CASE("a broken mesh file is refused with the scene's place and the mesh file's name", "[unit]") {
     const TemporaryFolder folder;
     folder.write("broken.msh", "$MeshFormat\nnonsense\n");
     CHECK_THROWS_WITH(
-        plan_scene(folder.write("b.json", R"({"materials": {"m": {}}, "bodies": [{"mesh": {"file": "broken.msh"}, "material": "m"}]})")),
+        plan_scene(folder.write(
+            "b.json", R"({"materials": {"m": {}}, "bodies": [{"mesh": {"file": "broken.msh"}, "material": "m"}]})")),
         Catch::Contains("b.json: bodies[0].mesh: ") && Catch::Contains("broken.msh"));
 }

@@ -1,4 +1,5 @@
-"""Every scene that ships is valid by the published schema, and the schema refuses what the reader refuses. Skipped without python3-jsonschema."""
+"""Every scene that ships is valid by the published schema, and the schema refuses what the reader refuses. Skipped
+without python3-jsonschema."""
 import copy
 import json
 import pathlib
@@ -15,8 +16,8 @@ schema = json.loads((ROOT / "docs/scene.schema.json").read_text())
 jsonschema.Draft202012Validator.check_schema(schema)
 validator = jsonschema.Draft202012Validator(schema)
 
-scenes = {path.name: json.loads(path.read_text()) for path in sorted((ROOT / "scenes").glob("*.json"))}
-assert len(scenes) >= 5, "the scenes are not where they were"
+scenes = {path.name: json.loads(path.read_text()) for path in sorted((ROOT / "scenes").rglob("*.json"))}
+assert len(scenes) >= 9, "the scenes are not where they were"
 for name, scene in scenes.items():
     errors = [f"{name}: {error.json_path}: {error.message}" for error in validator.iter_errors(scene)]
     assert not errors, "\n".join(errors)
@@ -37,7 +38,8 @@ MISTAKES = {
     "unknown body key": lambda s: set_in(s["bodies"][0], "postion", [0, 0, 0]),
     "negative modulus": lambda s: set_in(s["materials"]["ball"], "young_modulus", -1),
     "both names of a key": lambda s: set_in(s["materials"]["ball"], "E", 1e5),
-    "only static friction": lambda s: (s["materials"]["ball"].pop("friction"), set_in(s["materials"]["ball"], "static_friction", 1)),
+    "only static friction": lambda s: (s["materials"]["ball"].pop("friction"),
+                                       set_in(s["materials"]["ball"], "static_friction", 1)),
     "two meshes": lambda s: set_in(s["bodies"][1]["mesh"], "file", "x.msh"),
     "no material": lambda s: s["bodies"][1].pop("material"),
     "two numbers": lambda s: set_in(s["bodies"][1], "position", [1, 2]),

@@ -69,9 +69,12 @@ TEST_CASE("each Voronoi region of a triangle is named, with zero weights outside
         std::array<Real, 3> weight;
     };
     const Case cases[] = {
-        {{0.25, 0.25, 0.5}, TriangleRegion::face, {0.5, 0.25, 0.25}}, {{0.5, -1, 0.5}, TriangleRegion::edge01, {0.5, 0.5, 0}},
-        {{1, 1, -0.5}, TriangleRegion::edge12, {0, 0.5, 0.5}},        {{-1, 0.5, 0.5}, TriangleRegion::edge20, {0.5, 0, 0.5}},
-        {{-1, -1, 0.3}, TriangleRegion::vertex0, {1, 0, 0}},          {{2, -0.5, 0.3}, TriangleRegion::vertex1, {0, 1, 0}},
+        {{0.25, 0.25, 0.5}, TriangleRegion::face, {0.5, 0.25, 0.25}},
+        {{0.5, -1, 0.5}, TriangleRegion::edge01, {0.5, 0.5, 0}},
+        {{1, 1, -0.5}, TriangleRegion::edge12, {0, 0.5, 0.5}},
+        {{-1, 0.5, 0.5}, TriangleRegion::edge20, {0.5, 0, 0.5}},
+        {{-1, -1, 0.3}, TriangleRegion::vertex0, {1, 0, 0}},
+        {{2, -0.5, 0.3}, TriangleRegion::vertex1, {0, 1, 0}},
         {{-0.5, 2, 0.3}, TriangleRegion::vertex2, {0, 0, 1}},
     };
     for (const Case& test : cases) {
@@ -93,12 +96,14 @@ TEST_CASE("beside an edge of a triangle no weight is below zero", "[unit]") {
         const Vec3 p = a + s * (b - a) + inside * (c - a) + random.number() * normal;
         const std::array<Vec3, 3> corner{a, b, c};
         const std::size_t turn = static_cast<std::size_t>(trial % 3);
-        const PointTriangle found = closest_point_on_triangle(p, corner[turn], corner[(turn + 1) % 3], corner[(turn + 2) % 3]);
+        const PointTriangle found =
+            closest_point_on_triangle(p, corner[turn], corner[(turn + 1) % 3], corner[(turn + 2) % 3]);
         for (const Real weight : found.weight) {
             REQUIRE(weight >= 0);
             REQUIRE(weight <= 1);
         }
-        rounded += found.region == TriangleRegion::face && *std::min_element(found.weight.begin(), found.weight.end()) == 0;
+        rounded +=
+            found.region == TriangleRegion::face && *std::min_element(found.weight.begin(), found.weight.end()) == 0;
     }
     CHECK(rounded > 100);
 }
@@ -133,7 +138,8 @@ TEST_CASE("slivers give the distance that a height of theirs can be off", "[unit
         for (int trial = 0; trial < 50; ++trial) {
             const Vec3 a(0, 0, 0), b(1, 0, 0), c(0.5 + 0.4 * random.number(), height, 0), p = random.vector();
             const Real edge = std::sqrt((p - Vec3(std::clamp(p[0], 0.0, 1.0), 0, 0)).squaredNorm());
-            CHECK(std::abs(std::sqrt(closest_point_on_triangle(p, a, b, c).distance_squared) - edge) <= 1.01 * height + 1e-12);
+            CHECK(std::abs(std::sqrt(closest_point_on_triangle(p, a, b, c).distance_squared) - edge) <=
+                  1.01 * height + 1e-12);
         }
     }
 }

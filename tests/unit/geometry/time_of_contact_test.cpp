@@ -25,8 +25,8 @@ FourPoints random_points(Random& random, Real scale) {
     return {scale * random.vector(), scale * random.vector(), scale * random.vector(), scale * random.vector()};
 }
 
-/// The slow answer: where the four points are in one plane (roots of a cubic, between its extrema, by bisection), and of these the first
-/// time at which the features really meet. In extended precision.
+/// The slow answer: where the four points are in one plane (roots of a cubic, between its extrema, by bisection), and
+/// of these the first time at which the features really meet. In extended precision.
 class Oracle {
 public:
     Oracle(FeaturePair kind, const FourPoints& x, const FourPoints& d) : kind_(kind) {
@@ -74,7 +74,8 @@ private:
     /// The points are in one plane: do the features have a point in common?
     bool meet(Wide t) const {
         const std::array<WideVector, 4> x{at(0, t), at(1, t), at(2, t), at(3, t)};
-        if (kind_ == FeaturePair::edge_edge) return separates(x[0], x[1], x[2], x[3]) && separates(x[2], x[3], x[0], x[1]);
+        if (kind_ == FeaturePair::edge_edge)
+            return separates(x[0], x[1], x[2], x[3]) && separates(x[2], x[3], x[0], x[1]);
         const WideVector normal = (x[2] - x[1]).cross(x[3] - x[1]);
         for (std::size_t k = 0; k < 3; ++k) {
             const WideVector &a = x[1 + k], &b = x[1 + (k + 1) % 3];
@@ -94,8 +95,9 @@ private:
 Real distance_at(FeaturePair kind, const FourPoints& x, const FourPoints& d, Real t) {
     FourPoints y;
     for (std::size_t i = 0; i < 4; ++i) y[i] = x[i] + t * d[i];
-    return std::sqrt(kind == FeaturePair::point_triangle ? closest_point_on_triangle(y[0], y[1], y[2], y[3]).distance_squared
-                                                         : closest_points_of_segments(y[0], y[1], y[2], y[3]).distance_squared);
+    return std::sqrt(kind == FeaturePair::point_triangle
+                         ? closest_point_on_triangle(y[0], y[1], y[2], y[3]).distance_squared
+                         : closest_points_of_segments(y[0], y[1], y[2], y[3]).distance_squared);
 }
 
 /// Never later than the truth, and what it calls near is near.
@@ -126,8 +128,9 @@ TEST_CASE("the time of contact is never later than the exact one, and then they 
             FourPoints d = random_points(random, 1);
             if (trial % 2) {
                 const Real a = std::abs(random.number()), b = std::abs(random.number());
-                const Vec3 aim = kind == FeaturePair::point_triangle ? Vec3(x[1] + a * (1 - b) * (x[2] - x[1]) + b * (x[3] - x[1]) - x[0])
-                                                                     : Vec3(x[2] + a * (x[3] - x[2]) - x[0] - b * (x[1] - x[0]));
+                const Vec3 aim = kind == FeaturePair::point_triangle
+                                     ? Vec3(x[1] + a * (1 - b) * (x[2] - x[1]) + b * (x[3] - x[1]) - x[0])
+                                     : Vec3(x[2] + a * (x[3] - x[2]) - x[0] - b * (x[1] - x[0]));
                 const Vec3 common = 100 * random.vector();
                 for (std::size_t i = 0; i < 4; ++i) d[i] = 0.1 * d[i] + common;
                 d[0] += 2 * aim;
@@ -201,8 +204,9 @@ TEST_CASE("degenerate motions have the time of contact that they should", "[unit
     SECTION("features of no extent are points") {
         const FourPoints points{Vec3(0, 0, 1), Vec3(0, 0, 1), Vec3(0, 0, 0), Vec3(0, 0, 0)};
         CHECK(time_of_contact(edge_edge, points, {down, down, none, none}).value_or(2) == Approx(0.45).margin(0.05));
-        CHECK(time_of_contact(point_triangle, {Vec3(0, 0, 1), none, none, none}, {down, none, none, none}).value_or(2) ==
-              Approx(0.45).margin(0.05));
+        CHECK(
+            time_of_contact(point_triangle, {Vec3(0, 0, 1), none, none, none}, {down, none, none, none}).value_or(2) ==
+            Approx(0.45).margin(0.05));
     }
     SECTION("a long slide at a small distance is no contact") {
         FourPoints x = triangle;

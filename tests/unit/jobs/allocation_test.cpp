@@ -13,8 +13,8 @@ using namespace skerry;
 
 namespace {
 
-// A thread that a library starts late asks for memory when it comes, which is not ours to avoid: every worker takes one block here, and
-// waits for the others.
+// A thread that a library starts late asks for memory when it comes, which is not ours to avoid: every worker takes one
+// block here, and waits for the others.
 void wait_for_all_workers(Executor& executor) {
     std::atomic<int> here{0};
     const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(100);
@@ -56,7 +56,7 @@ TEST_CASE("a graph with blocks and sums inside allocates nothing once it has run
                 [](Real a, Real b) { return a + b; });
         },
         read(rows), write(results));
-    graph.stage("never", fill, value(h), write(rows), only_if([&h] { return h > 1; }, reads(h)));
+    graph.stage("never", fill, value(h), write(rows), only_if([](Real step) { return step > 1; }, value(h)));
     graph.compile();
 
     for (const ExecutorChoice& choice : executor_choices()) {

@@ -31,7 +31,8 @@ TEST_CASE("with a number of workers the work stays in an arena of that size, nes
     std::atomic<int> elsewhere{0};
     executor->run_blocks(10, [&](Index) {
         executor->run_blocks(10, [&](Index) {
-            if (tbb::this_task_arena::max_concurrency() != 3 || tbb::this_task_arena::current_thread_index() >= 3) ++elsewhere;
+            if (tbb::this_task_arena::max_concurrency() != 3 || tbb::this_task_arena::current_thread_index() >= 3)
+                ++elsewhere;
         });
     });
     REQUIRE(elsewhere == 0);
@@ -58,8 +59,8 @@ TEST_CASE("a host that cancels its tasks does not make us leave out blocks or st
 }
 
 TEST_CASE("a worker that waits for blocks starts no other stage meanwhile", "[unit]") {
-    // Many independent stages, and blocks that last longer on a helper: the owner of a stage often has to wait for its last block while
-    // other stages are ready. Blocks sleep instead of work, so that this also happens with few cores.
+    // Many independent stages, and blocks that last longer on a helper: the owner of a stage often has to wait for its
+    // last block while other stages are ready. Blocks sleep instead of work, so that this also happens with few cores.
     const auto executor = make_executor(Backend::tbb, 4);
     const std::vector<Index> offset(17, 0), count(16, 0);
     std::atomic<int> interrupted{0};

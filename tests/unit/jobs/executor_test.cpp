@@ -36,7 +36,8 @@ TEST_CASE("a backend that was not built, or a negative number of workers, is ref
     }
 }
 
-TEST_CASE("blocks and stages calculate alike, whatever the host has set, and the host's thread is left as it was", "[unit]") {
+TEST_CASE("blocks and stages calculate alike, whatever the host has set, and the host's thread is left as it was",
+          "[unit]") {
 #if defined(__SSE2__)
     const auto odd = [] {  // a denormal number that is one, or a sum that is not rounded to nearest
         volatile Real smallest = std::numeric_limits<Real>::min(), one = 1, tiny = 0x1p-60;
@@ -77,7 +78,8 @@ TEST_CASE("what the blocks wrote is seen after run_blocks, run after run", "[uni
         CAPTURE(choice.text());
         const auto executor = choice.make();
         std::vector<int> rows(97, 0);  // plain: the thread sanitizer watches
-        for (int run = 0; run < 200; ++run) executor->run_blocks(97, [&](Index block) { ++rows[static_cast<std::size_t>(block)]; });
+        for (int run = 0; run < 200; ++run)
+            executor->run_blocks(97, [&](Index block) { ++rows[static_cast<std::size_t>(block)]; });
         REQUIRE(std::count(rows.begin(), rows.end(), 200) == 97);
     }
 }
@@ -88,8 +90,9 @@ TEST_CASE("blocks may run blocks, three deep", "[unit]") {
         const auto executor = choice.make();
         std::vector<int> rows(5 * 6 * 7, 0);
         executor->run_blocks(5, [&](Index i) {
-            executor->run_blocks(
-                6, [&](Index j) { executor->run_blocks(7, [&](Index k) { ++rows[static_cast<std::size_t>((i * 6 + j) * 7 + k)]; }); });
+            executor->run_blocks(6, [&](Index j) {
+                executor->run_blocks(7, [&](Index k) { ++rows[static_cast<std::size_t>((i * 6 + j) * 7 + k)]; });
+            });
         });
         REQUIRE(std::count(rows.begin(), rows.end(), 1) == 5 * 6 * 7);
     }
@@ -103,14 +106,16 @@ TEST_CASE("several threads may run blocks on one executor at once", "[unit]") {
         std::vector<std::thread> hosts;
         for (auto& mine : rows)
             hosts.emplace_back([&executor, &mine] {
-                for (int run = 0; run < 20; ++run) executor->run_blocks(50, [&](Index block) { ++mine[static_cast<std::size_t>(block)]; });
+                for (int run = 0; run < 20; ++run)
+                    executor->run_blocks(50, [&](Index block) { ++mine[static_cast<std::size_t>(block)]; });
             });
         for (std::thread& host : hosts) host.join();
         for (const auto& mine : rows) REQUIRE(std::count(mine.begin(), mine.end(), 20) == 50);
     }
 }
 
-TEST_CASE("the exception of the lowest block comes out, the other blocks run, and the executor is good for more", "[unit]") {
+TEST_CASE("the exception of the lowest block comes out, the other blocks run, and the executor is good for more",
+          "[unit]") {
     for (const ExecutorChoice& choice : executor_choices()) {
         CAPTURE(choice.text());
         const auto executor = choice.make();
@@ -149,7 +154,8 @@ TEST_CASE("every stage runs once, after all that it waits for", "[unit]") {
                 for (std::size_t from = 0; from < stages; ++from) {
                     REQUIRE(runs[from] == 1);
                     for (Index e = graph.successor_offset[from]; e < graph.successor_offset[from + 1]; ++e)
-                        REQUIRE(end[from] < begin[static_cast<std::size_t>(graph.successor[static_cast<std::size_t>(e)])]);
+                        REQUIRE(end[from] <
+                                begin[static_cast<std::size_t>(graph.successor[static_cast<std::size_t>(e)])]);
                 }
             }
         }
@@ -177,7 +183,8 @@ TEST_CASE("stages may run blocks, which may run blocks", "[unit]") {
             std::vector<int> rows(20 * 8 * 4, 0);
             executor->run_graph(graph.edges(), [&](Index stage) {
                 executor->run_blocks(8, [&](Index i) {
-                    executor->run_blocks(4, [&](Index j) { ++rows[static_cast<std::size_t>((stage * 8 + i) * 4 + j)]; });
+                    executor->run_blocks(4,
+                                         [&](Index j) { ++rows[static_cast<std::size_t>((stage * 8 + i) * 4 + j)]; });
                 });
             });
             REQUIRE(std::count(rows.begin(), rows.end(), 1) == 20 * 8 * 4);
@@ -216,12 +223,13 @@ TEST_CASE("of several stages that throw, the lowest is heard", "[unit]") {
         CAPTURE(choice.text());
         const auto executor = choice.make();
         std::atomic<int> started{0};
-        // Each waits a while for the other to have started: then both throw. A machine with a single core may miss that; stage 0, which
-        // is started first, is then the only one.
+        // Each waits a while for the other to have started: then both throw. A machine with a single core may miss
+        // that; stage 0, which is started first, is then the only one.
         REQUIRE_THROWS_WITH(executor->run_graph(graph.edges(),
                                                 [&](Index stage) {
                                                     ++started;
-                                                    const auto patience = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
+                                                    const auto patience = std::chrono::steady_clock::now() +
+                                                                          std::chrono::milliseconds(50);
                                                     while (started < 2 && std::chrono::steady_clock::now() < patience)
                                                         std::this_thread::yield();
                                                     throw std::runtime_error("stage " + std::to_string(stage));
@@ -238,7 +246,8 @@ TEST_CASE("independent stages run at the same time, and the caller is one of the
         const auto executor = choice.make();
         std::atomic<int> inside{0};
         std::atomic<bool> met{false};
-        // oneTBB's workers yield a hundred times before they leave the arena of an executor that is gone: seconds on a crowded machine.
+        // oneTBB's workers yield a hundred times before they leave the arena of an executor that is gone: seconds on a
+        // crowded machine.
         executor->run_graph(graph.edges(), [&](Index) {
             if (++inside == 2) met = true;
             const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(100);

@@ -17,7 +17,8 @@ TEST_CASE("block results are joined in block order, starting from the identity",
         // Not associative: any other order gives another number.
         const auto digits = [&](std::size_t count) {
             return reduce(
-                *executor, count, 2, partial, 7, [](std::size_t begin, std::size_t) { return static_cast<int>(begin / 2 + 1); },
+                *executor, count, 2, partial, 7,
+                [](std::size_t begin, std::size_t) { return static_cast<int>(begin / 2 + 1); },
                 [](int a, int b) { return 10 * a + b; });
         };
         REQUIRE(digits(0) == 7);
@@ -38,8 +39,8 @@ TEST_CASE("a sum covers every row once", "[unit]") {
         const int sum = reduce(
             *choice.make(), rows.size(), 64, partial, 0,
             [&](std::size_t begin, std::size_t end) {
-                return std::accumulate(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.begin() + static_cast<std::ptrdiff_t>(end),
-                                       0);
+                return std::accumulate(rows.begin() + static_cast<std::ptrdiff_t>(begin),
+                                       rows.begin() + static_cast<std::ptrdiff_t>(end), 0);
             },
             [](int a, int b) { return a + b; });
         REQUIRE(sum == 1001 * 500);

@@ -96,7 +96,8 @@ TEST_CASE("the edges order every conflicting pair and no edge can be left out, o
             for (Index to = from + 1; to < count; ++to)
                 for (std::size_t c = 0; c < columns.size(); ++c)
                     if (access[from][c] * access[to][c] >= 2) REQUIRE(reach[from][to]);
-        for (std::size_t e = 0; e < graph.edges().size(); ++e) REQUIRE_FALSE(reachable(e)[graph.edges()[e].from][graph.edges()[e].to]);
+        for (std::size_t e = 0; e < graph.edges().size(); ++e)
+            REQUIRE_FALSE(reachable(e)[graph.edges()[e].from][graph.edges()[e].to]);
     }
 }
 
@@ -149,36 +150,74 @@ TEST_CASE("spans are taken when the stage starts, after earlier stages made rows
     graph.stage(
         "grow", [](Column<Real>& rows) { rows.resize(1000, 3.0); }, make(column));
     graph.stage(
-        "look", [&seen](std::span<const Real> rows, Real h) { seen = rows.size() * static_cast<std::size_t>(h); }, read(column),
-        value(number));
+        "look", [&seen](std::span<const Real> rows, Real h) { seen = rows.size() * static_cast<std::size_t>(h); },
+        read(column), value(number));
     graph.compile();
     number = 2;  // value() passes what it is at run time
     graph.run_inline();
     REQUIRE(seen == 2000);
 }
 
-TEST_CASE("a bundle is made when the stage starts", "[unit]") {
+TEST_CASE("inputs are bound when the stage starts", "[unit]") {
     struct Inputs {
         std::span<const Real> rows;
         Real factor;
+
+        static Inputs bind(const Binder& binder, const Column<Real>& column, const Real& factor) {
+            return {binder.read(column), binder.value(factor)};
+        }
     };
-    Column<Real> column;
-    Real result = 0;
+    struct Outputs {
+        std::span<Real> rows;
+
+        static Outputs bind(const Binder& binder, Column<Real>& column) { return {binder.write(column)}; }
+    };
+    Column<Real> column, result;
+    Real factor = 0;
     TaskGraph graph;
     graph.stage(
-        "grow", [](Column<Real>& rows) { rows.resize(7); }, make(column));
+        "grow",
+        [](Column<Real>& rows, Column<Real>& results) {
+            rows.resize(7);
+            results.resize(1);
+        },
+        make(column), make(result));
     graph.stage(
-        "use", [](const Inputs& inputs, Real& out) { out = inputs.factor * static_cast<Real>(inputs.rows.size()); },
-        bundle(
-            [&] {
-                return Inputs{column, 2};
-            },
-            reads(column)),
-        make(result));
+        "use",
+        [](const Inputs& in, const Outputs& out) { out.rows[0] = in.factor * static_cast<Real>(in.rows.size()); },
+        inputs<Inputs>(column, factor), outputs<Outputs>(result));
     graph.compile();
     REQUIRE(edges_of(graph) == Edges{{0, 1}});
+    factor = 2;
     graph.run_inline();
-    REQUIRE(result == 14);
+    REQUIRE(result[0] == 14);
+}
+
+TEST_CASE("what a stage takes as a value no stage may write", "[unit]") {
+    Column<Real> a;
+    Real h = 1;
+    TaskGraph graph;
+    graph.stage("use", nothing, value(h), write(a));
+    graph.compile();
+    graph.stage("change", nothing, read(a), make(h));
+    REQUIRE_THROWS_WITH(graph.compile(), Catch::Contains("use takes as a value what change writes"));
+}
+
+TEST_CASE("the graph tells what its stages declare, and which have a guard", "[unit]") {
+    Column<Real> a, b;
+    const bool go = true;
+    TaskGraph graph;
+    graph.stage("folder/plain", nothing, read(a), write(b));
+    graph.stage("folder/guarded", nothing, write(a), only_if([](bool may) { return may; }, value(go)));
+    REQUIRE(graph.stages().size() == 2);
+    REQUIRE(graph.stages()[0].name == std::string("folder/plain"));
+    REQUIRE_FALSE(graph.stages()[0].guarded);
+    REQUIRE(graph.stages()[1].guarded);
+    AccessList expected;
+    const Binder binder(expected);
+    binder.read(a);
+    binder.write(b);
+    REQUIRE(graph.stages()[0].accesses == expected);
 }
 
 TEST_CASE("a leading executor is passed by the graph", "[unit]") {
@@ -228,10 +267,9 @@ TEST_CASE("a guard waits for what it reads and leaves its stage out when false",
     TaskGraph graph;
     graph.stage_with_result(
         "check", fault, [](std::span<const Real> rows) { return rows[0] < 0 ? 1 : 0; }, read(input));
-    int bundles = 0;
     graph.stage(
-        "commit", [](std::span<Real> rows, int) { rows[0] += 1; }, write(output), bundle([&bundles] { return ++bundles; }, reads(input)),
-        only_if([&fault] { return fault == 0; }, reads(fault)));
+        "commit", [](std::span<Real> rows) { rows[0] += 1; }, write(output),
+        only_if([](int found) { return found == 0; }, read(fault)));
     graph.compile();
     REQUIRE(edges_of(graph) == Edges{{0, 1}});
     for (const ExecutorChoice& choice : executor_choices()) {
@@ -239,14 +277,12 @@ TEST_CASE("a guard waits for what it reads and leaves its stage out when false",
         const auto executor = choice.make();
         graph.reset_stats();
         output[0] = 0;
-        bundles = 0;
         input[0] = 1;
         graph.run(*executor);
         REQUIRE(output[0] == 1);
         input[0] = -1;
         graph.run(*executor);
         REQUIRE(output[0] == 1);
-        REQUIRE(bundles == 1);
         REQUIRE(graph.stats()[1].runs == 1);
         REQUIRE(graph.stats()[1].skipped == 1);
     }

@@ -42,7 +42,8 @@ TEST_CASE("every block of a team runs once, after all blocks of earlier phases, 
                         std::size_t phase_begin = 0;
                         for (const Index begin : offset)
                             if (begin <= block) phase_begin = static_cast<std::size_t>(begin);
-                        for (std::size_t earlier = 0; earlier < phase_begin; ++earlier) seen[b] += runs[earlier] == run ? 1 : 1000;
+                        for (std::size_t earlier = 0; earlier < phase_begin; ++earlier)
+                            seen[b] += runs[earlier] == run ? 1 : 1000;
                     });
             });
             REQUIRE(led == 1);
@@ -67,7 +68,8 @@ TEST_CASE("a team works alone outside of a gathering, and on nothing", "[unit]")
     team.gather(*executor, [] {});
 }
 
-TEST_CASE("the exception of a team's lowest block comes out, the other blocks run, and the team is good for more", "[unit]") {
+TEST_CASE("the exception of a team's lowest block comes out, the other blocks run, and the team is good for more",
+          "[unit]") {
     Team team;
     for (const ExecutorChoice& choice : executor_choices({1, 2, 4})) {
         CAPTURE(choice.text());
@@ -125,7 +127,8 @@ TEST_CASE("a team may gather within a block and within a stage of its executor",
             teams[own].gather(*executor, [&] {
                 std::vector<int> rows(40, 0);
                 for (int run = 0; run < 10; ++run)
-                    teams[own].run_phases(offsets({20, 20}), [&](Index block) { ++rows[static_cast<std::size_t>(block)]; });
+                    teams[own].run_phases(offsets({20, 20}),
+                                          [&](Index block) { ++rows[static_cast<std::size_t>(block)]; });
                 sums[own] = std::accumulate(rows.begin(), rows.end(), 0);
             });
         });

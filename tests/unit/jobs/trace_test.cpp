@@ -138,7 +138,7 @@ TEST_CASE("a graph records one zone for each stage that ran", "[unit]") {
     graph.stage(
         "folder/second", [](std::span<Real>) {}, write(b));
     graph.stage(
-        "folder/never", [](std::span<Real>) {}, write(a), only_if([&go] { return go; }, reads(go)));
+        "folder/never", [](std::span<Real>) {}, write(a), only_if([](bool may) { return may; }, value(go)));
     graph.compile();
     for (const ExecutorChoice& choice : executor_choices()) {
         CAPTURE(choice.text());

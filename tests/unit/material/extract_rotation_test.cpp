@@ -130,7 +130,9 @@ TEST_CASE("a lane without volume keeps its frame and costs the others nothing", 
     const Mat3 R = random_rotation(random, 1e-3);
     Lanes8 x = all_lanes(R, identity);
     x.volume[3] = 0;
-    for (Real8* part : {&x.F.c0.x, &x.F.c0.y, &x.F.c0.z, &x.F.c1.x, &x.F.c1.y, &x.F.c1.z, &x.F.c2.x, &x.F.c2.y, &x.F.c2.z}) (*part)[3] = 0;
+    for (Real8* part :
+         {&x.F.c0.x, &x.F.c0.y, &x.F.c0.z, &x.F.c1.x, &x.F.c1.y, &x.F.c1.z, &x.F.c2.x, &x.F.c2.y, &x.F.c2.z})
+        (*part)[3] = 0;
     extract_rotation(x.F, x.volume, x.q);
     CHECK((lane_of(rotation_of(x.q), 3) - Mat3::Identity()).norm() == 0);
     CHECK((lane_of(rotation_of(x.q), 2) - R).norm() <= 1e-14);

@@ -17,14 +17,16 @@ TEST_CASE("large regions are solved without asking for memory, also when they ar
     settings.parallel_region_contacts = 300;
     settings.warm_start = WarmStart::off;
     for (const ExecutorChoice& choice : executor_choices({1, 2})) {
-        if (choice.backend == Backend::openmp) continue;  // libgomp allocates its tasks; what we allocate is the same code
+        // libgomp allocates its tasks; what we allocate is the same code
+        if (choice.backend == Backend::openmp) continue;
         CAPTURE(choice.text());
         const auto executor = choice.make();
         SolvedScene solved;
         UnionFind union_find;
         SolverMemory memory;
         std::vector<Index> region(scene.stencil.size());
-        separate_regions(scene.stencil, scene.inverse_mass, ContactRegions::separate, union_find, solved.regions, region);
+        separate_regions(scene.stencil, scene.inverse_mass, ContactRegions::separate, union_find, solved.regions,
+                         region);
         solved.impulse = scene.impulse;
         solved.push_out.assign(scene.velocity.size(), Vec3::Zero());
         solved.velocity = scene.velocity;

@@ -32,7 +32,8 @@ TEST_CASE("every method solves dense random blocks with cone and pyramid", "[uni
                     const Vec3 u = problem.velocity(i, memory.impulse);
                     const Vec3 r = memory.impulse[i].head<3>();
                     const Real size = 1 + u.norm();
-                    const Real load = friction == Friction::cone ? std::hypot(r[1], r[2]) : std::max(std::abs(r[1]), std::abs(r[2]));
+                    const Real load =
+                        friction == Friction::cone ? std::hypot(r[1], r[2]) : std::max(std::abs(r[1]), std::abs(r[2]));
                     CHECK(r[0] >= 0);
                     CHECK(load <= mu * r[0] * (1 + 1e-12));
                     if (stagnates) continue;

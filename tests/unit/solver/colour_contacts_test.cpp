@@ -68,10 +68,12 @@ TEST_CASE("the order of contacts that share nodes is proper, and no node is twic
         CHECK(order.hub_phase_count == 0);
         for (Index phase = 0; phase < order.colour_count; ++phase) {
             std::set<Index> seen;
-            const Index begin = order.block_offset[order.phase_offset[phase]], end = order.block_offset[order.phase_offset[phase + 1]];
+            const Index begin = order.block_offset[order.phase_offset[phase]],
+                        end = order.block_offset[order.phase_offset[phase + 1]];
             CHECK(end - begin >= smallest_colour);
             for (Index place = begin; place < end; ++place)
-                for (const Index node : contact[static_cast<std::size_t>(order.contact[place])]) REQUIRE(seen.insert(node).second);
+                for (const Index node : contact[static_cast<std::size_t>(order.contact[place])])
+                    REQUIRE(seen.insert(node).second);
         }
         if (seed == 5) {
             CHECK(order.colour_count >= 4);  // a node is in four contacts and more
@@ -97,7 +99,8 @@ TEST_CASE("a contact may name a node twice", "[unit][solver]") {
 
 TEST_CASE("a node with hundreds of contacts has one block for them, in their order", "[unit][solver]") {
     std::vector<ContactNodes> contact;
-    for (Index i = 0; i < 700; ++i) contact.push_back(nodes(i + 3, i % 3));  // three hubs, a point of its own for each contact
+    // three hubs, a point of its own for each contact
+    for (Index i = 0; i < 700; ++i) contact.push_back(nodes(i + 3, i % 3));
     for (Index i = 0; i < 700; ++i) contact.push_back(nodes(i + 3));
     const ColouredOrder order = coloured(contact, 703);
     check_proper(contact, order);
@@ -120,7 +123,8 @@ TEST_CASE("hubs that meet are not side by side", "[unit][solver]") {
 }
 
 TEST_CASE("what finds none of 64 colours goes to the tail", "[unit][solver]") {
-    // The 13 lines of the projective plane of order 3, each eight times: any two share one of the 13 points, and no point is in more than 32.
+    // The 13 lines of the projective plane of order 3, each eight times: any two share one of the 13 points, and no
+    // point is in more than 32.
     std::vector<ContactNodes> contact;
     constexpr Index planes = 70;
     for (Index plane = 0; plane < planes; ++plane)
@@ -134,7 +138,8 @@ TEST_CASE("what finds none of 64 colours goes to the tail", "[unit][solver]") {
     CHECK(order.colour_count == 64);
     CHECK(order.hub_phase_count == 0);
     CHECK(order.tail_size == planes * (8 * 13 - 64));
-    for (std::size_t place = contact.size() - static_cast<std::size_t>(order.tail_size) + 1; place < contact.size(); ++place)
+    for (std::size_t place = contact.size() - static_cast<std::size_t>(order.tail_size) + 1; place < contact.size();
+         ++place)
         REQUIRE(order.contact[place] > order.contact[place - 1]);
 }
 
@@ -146,7 +151,9 @@ TEST_CASE("the order depends on the contacts alone, not on what the memory was u
         colour_contacts(contact, 2 * length, memory, order);
         const ColouredOrder fresh = coloured(contact, 2 * length);
         CHECK(std::equal(order.contact.begin(), order.contact.end(), fresh.contact.begin(), fresh.contact.end()));
-        CHECK(std::equal(order.block_offset.begin(), order.block_offset.end(), fresh.block_offset.begin(), fresh.block_offset.end()));
-        CHECK(std::equal(order.phase_offset.begin(), order.phase_offset.end(), fresh.phase_offset.begin(), fresh.phase_offset.end()));
+        CHECK(std::equal(order.block_offset.begin(), order.block_offset.end(), fresh.block_offset.begin(),
+                         fresh.block_offset.end()));
+        CHECK(std::equal(order.phase_offset.begin(), order.phase_offset.end(), fresh.phase_offset.begin(),
+                         fresh.phase_offset.end()));
     }
 }

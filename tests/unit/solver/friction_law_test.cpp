@@ -1,4 +1,4 @@
-#include "systems/solver/operators/friction_law.h"
+#include "systems/solver/local/friction_law.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -18,7 +18,8 @@ struct Draw {
 
 }  // namespace
 
-TEST_CASE("the cone projection leaves a point of the cone and a remainder of its polar, at right angles", "[property][solver]") {
+TEST_CASE("the cone projection leaves a point of the cone and a remainder of its polar, at right angles",
+          "[property][solver]") {
     Draw draw;
     for (int trial = 0; trial < 2000; ++trial) {
         const Vec3 normal = draw.vector().normalized(), z = draw.vector();
@@ -41,7 +42,8 @@ TEST_CASE("no projection leaves a pull, along the normal and without friction to
         CHECK(project_friction(pull, normal, mu, friction) == Vec3::Zero());
 }
 
-TEST_CASE("Coulomb's projection keeps the normal part and cuts the tangential part along itself", "[property][solver]") {
+TEST_CASE("Coulomb's projection keeps the normal part and cuts the tangential part along itself",
+          "[property][solver]") {
     Draw draw;
     for (int trial = 0; trial < 2000; ++trial) {
         const Vec3 normal = draw.vector().normalized(), z = draw.vector();

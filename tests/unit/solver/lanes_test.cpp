@@ -9,7 +9,8 @@ using namespace skerry;
 
 namespace {
 
-/// Region `number` of many different small ones, with `contacts` contacts on up to four nodes each: chains that share nodes at random.
+/// Region `number` of many different small ones, with `contacts` contacts on up to four nodes each: chains that share
+/// nodes at random.
 struct SmallRegion {
     std::vector<LumpedContact> contact;
     std::vector<Vec4> free_velocity, impulse;
@@ -22,7 +23,9 @@ struct SmallRegion {
         node_count = contacts + 3;
         std::vector<Real> inverse_mass(node_count);
         for (Real& m : inverse_mass) m = std::exp(0.5 * noise(random));
-        const auto near_vertical = [&] { return padded(Vec3(0.2 * noise(random), 0.2 * noise(random), 1).normalized()); };
+        const auto near_vertical = [&] {
+            return padded(Vec3(0.2 * noise(random), 0.2 * noise(random), 1).normalized());
+        };
         for (std::size_t i = 0; i < contacts; ++i) {
             LumpedContact c;
             c.normal = near_vertical();
@@ -104,7 +107,8 @@ TEST_CASE("every lane has the bits of its region on its own", "[determinism][sol
     check_against_twin<12>();
 }
 
-TEST_CASE("a region comes out the same whatever shares its batch and however far it is padded", "[determinism][solver]") {
+TEST_CASE("a region comes out the same whatever shares its batch and however far it is padded",
+          "[determinism][solver]") {
     for (std::size_t contacts = 2; contacts <= 12; ++contacts) {
         const SmallRegion region(contacts, 7);
         std::vector<Vec4> alone = region.impulse, widest = region.impulse;
@@ -147,8 +151,10 @@ TEST_CASE("lanes and the ordinary path take the same sweeps to the same impulses
                 CHECK(lanes.regions.status[r] == ordinary.regions.status[r]);
             }
             CHECK(in_lanes > 100);
-            for (std::size_t i = 0; i < scene.stencil.size(); ++i) CHECK((lanes.impulse[i] - ordinary.impulse[i]).norm() < 1e-10);
-            for (std::size_t n = 0; n < scene.velocity.size(); ++n) CHECK((lanes.velocity[n] - ordinary.velocity[n]).norm() < 1e-10);
+            for (std::size_t i = 0; i < scene.stencil.size(); ++i)
+                CHECK((lanes.impulse[i] - ordinary.impulse[i]).norm() < 1e-10);
+            for (std::size_t n = 0; n < scene.velocity.size(); ++n)
+                CHECK((lanes.velocity[n] - ordinary.velocity[n]).norm() < 1e-10);
         }
     }
 }

@@ -1,7 +1,7 @@
 // Regions that are solved with all workers: against the solution in order, and against themselves on other workers.
 #include <catch2/catch.hpp>
 
-#include "systems/solver/coloured/solve_large_regions.h"
+#include "systems/solver/regions/solve_large_regions.h"
 #include "tests/support/contact_scene.h"
 #include "tests/unit/jobs/executors.h"
 
@@ -49,8 +49,10 @@ TEST_CASE("large regions have the same bits on any number of workers and any bac
             REQUIRE((one.impulse == other.impulse));
             REQUIRE((one.push_out == other.push_out));
             REQUIRE(std::equal(one.regions.error.begin(), one.regions.error.end(), other.regions.error.begin()));
-            REQUIRE(std::equal(one.regions.iterations.begin(), one.regions.iterations.end(), other.regions.iterations.begin()));
-            REQUIRE(std::equal(one.regions.dissipated.begin(), one.regions.dissipated.end(), other.regions.dissipated.begin()));
+            REQUIRE(std::equal(one.regions.iterations.begin(), one.regions.iterations.end(),
+                               other.regions.iterations.begin()));
+            REQUIRE(std::equal(one.regions.dissipated.begin(), one.regions.dissipated.end(),
+                               other.regions.dissipated.begin()));
         }
     }
 }
@@ -101,7 +103,8 @@ TEST_CASE("a warm start that solves a large region needs no sweep, and a wrong o
     const SolvedScene second = scene.solve(settings);
     CHECK(second.regions.status[0] == RegionStatus::certified);
     for (const Index i : second.regions.contacts[0])
-        REQUIRE((second.impulse[static_cast<std::size_t>(i)] - first.impulse[static_cast<std::size_t>(i)]).norm() < 1e-12);
+        REQUIRE((second.impulse[static_cast<std::size_t>(i)] - first.impulse[static_cast<std::size_t>(i)]).norm() <
+                1e-12);
     for (Vec3& r : scene.impulse) r = Vec3(1e6, 0, 1e6);
     CHECK(scene.solve(settings).regions.status[0] == RegionStatus::converged);
     for (Vec3& v : scene.velocity) v = Vec3::Zero();

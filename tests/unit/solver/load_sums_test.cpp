@@ -1,4 +1,4 @@
-#include "systems/solver/operators/load_sums.h"
+#include "systems/solver/local/load_sums.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -30,17 +30,20 @@ LoadSums sums_of(std::initializer_list<Vec4> velocities) {
 
 }  // namespace
 
-TEST_CASE("errors are measured against what contacts would have to stop, not against what moves along or apart", "[unit][solver]") {
+TEST_CASE("errors are measured against what contacts would have to stop, not against what moves along or apart",
+          "[unit][solver]") {
     const Real alone = error_scale(sums_of({{0, 0, -0.02, 0}}), gravity, h, tolerance);
     CHECK(alone == Approx(0.02));
-    CHECK(error_scale(sums_of({{3, 0, -0.02, 0}}), gravity, h, tolerance) == Approx(0.02 / std::sqrt(1.25)));  // onto the edge of the cone
+    // onto the edge of the cone
+    CHECK(error_scale(sums_of({{3, 0, -0.02, 0}}), gravity, h, tolerance) == Approx(0.02 / std::sqrt(1.25)));
     CHECK(error_scale(sums_of({{0, 0, -0.02, 0}, {0, 0, 50, 0}}), gravity, h, tolerance) == Approx(alone));
-    CHECK_FALSE(sums_of({{0, 0, -0.02, 0}, {0, 0, 50, 0}}).separate);
+    CHECK_FALSE(sums_of({{0, 0, -0.02, 0}, {0, 0, 50, 0}}).separating);
 }
 
-TEST_CASE("where next to nothing is to be stopped weight, motion and rounding are what errors are measured against", "[unit][solver]") {
+TEST_CASE("where next to nothing is to be stopped weight, motion and rounding are what errors are measured against",
+          "[unit][solver]") {
     const LoadSums slow = sums_of({{0, 0, -1e-9, 0}}), apart = sums_of({{2, 0, 1, 0}});
-    CHECK(apart.separate);
+    CHECK(apart.separating);
     CHECK(error_scale(slow, gravity, h, tolerance) == Approx(1e-3 * gravity * h));
     CHECK(error_scale(apart, 0, h, tolerance) == Approx(1e-6 * std::sqrt(5.0)));
     // a tolerance that numbers cannot hold is one that they can
@@ -50,16 +53,16 @@ TEST_CASE("where next to nothing is to be stopped weight, motion and rounding ar
 
 TEST_CASE("sums of parts are those of all, and contacts that nothing can move count for nothing", "[unit][solver]") {
     LoadSums sum = sums_of({{1, 0, -1, 0}});
-    sum.add(sums_of({{0, 2, 1, 0}}));
+    sum += sums_of({{0, 2, 1, 0}});
     const LoadSums all = sums_of({{1, 0, -1, 0}, {0, 2, 1, 0}});
     CHECK(sum.asked == all.asked);
     CHECK(sum.moving == all.moving);
     CHECK(sum.inverse_diagonals == 2);
-    CHECK_FALSE(sum.separate);
+    CHECK_FALSE(sum.separating);
     LumpedContact fixed = point_contact(0.5);
     fixed.node_count = 0;
     LoadSums none;
     none.add(fixed, Friction::cone, {0, 0, -1, 0});
-    CHECK(none.separate);
+    CHECK(none.separating);
     CHECK(none.moving == 0);
 }

@@ -92,11 +92,13 @@ TEST_CASE("proportioning comes to the solution of Gauss-Seidel on dense blocks w
             const DenseProblem problem(12, freedoms, 0, seed);
             std::vector<Vec4> swept, proportioned;
             CHECK(solve_dense(problem, SolverMethod::pgs, Friction::cone, {1e-13, 200000, false, 1}, swept).converged);
-            const SolveResult result = solve_dense(problem, SolverMethod::mprgp, Friction::cone, {1e-13, 2000, false, 1}, proportioned);
+            const SolveResult result =
+                solve_dense(problem, SolverMethod::mprgp, Friction::cone, {1e-13, 2000, false, 1}, proportioned);
             CHECK(result.converged);
             CHECK(result.iterations < 200);  // it is finite: a few faces of at most 12 unknowns
             for (std::size_t i = 0; i < problem.q.size(); ++i)
-                CHECK((problem.velocity(i, swept) - problem.velocity(i, proportioned)).norm() < 1e-10 * (1 + problem.q[i].norm()));
+                CHECK((problem.velocity(i, swept) - problem.velocity(i, proportioned)).norm() <
+                      1e-10 * (1 + problem.q[i].norm()));
         }
 }
 
@@ -105,8 +107,10 @@ TEST_CASE("gradients and sweeps agree on the associated law, and it is not Coulo
         INFO("seed " << seed);
         const DenseProblem problem(8, 40, 0.6, seed);
         std::vector<Vec4> swept, stepped, coulomb;
-        CHECK(solve_dense(problem, SolverMethod::pgs, Friction::cone_convex, {1e-12, 50000, false, 1}, swept).converged);
-        CHECK(solve_dense(problem, SolverMethod::apgd, Friction::cone_convex, {1e-12, 50000, false, 1}, stepped).converged);
+        CHECK(
+            solve_dense(problem, SolverMethod::pgs, Friction::cone_convex, {1e-12, 50000, false, 1}, swept).converged);
+        CHECK(solve_dense(problem, SolverMethod::apgd, Friction::cone_convex, {1e-12, 50000, false, 1}, stepped)
+                  .converged);
         CHECK(solve_dense(problem, SolverMethod::pgs, Friction::cone, {1e-12, 50000, false, 1}, coulomb).converged);
         Real difference = 0;
         for (std::size_t i = 0; i < problem.q.size(); ++i) {
@@ -140,15 +144,17 @@ TEST_CASE("what slides apart slowly still presses under the associated law", "[u
     }
 }
 
-TEST_CASE("no contacts, one contact, contacts that nothing can move, and contacts that separate are no trouble to any method",
-          "[unit][solver]") {
+TEST_CASE(
+    "no contacts, one contact, contacts that nothing can move, and contacts that separate are no trouble to any method",
+    "[unit][solver]") {
     for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
         INFO(name);
         const Real mu = needs_frictionless(method) ? 0 : 0.3;
         std::vector<Vec4> impulse;
         CHECK(solve_dense(DenseProblem(0, 0, mu, 1), method, Friction::cone, {1e-9, 100, false, 1}, impulse).converged);
         if (!stagnates(method))
-            CHECK(solve_dense(DenseProblem(1, 6, mu, 1), method, Friction::cone, {1e-9, 1000, false, 1}, impulse).converged);
+            CHECK(solve_dense(DenseProblem(1, 6, mu, 1), method, Friction::cone, {1e-9, 1000, false, 1}, impulse)
+                      .converged);
 
         // one global region: a node on a plate that does not move, a pinned node on the plate, and one that leaves it
         ContactScene scene;
@@ -185,7 +191,8 @@ TEST_CASE("every method says so when a number is not one", "[unit][solver]") {
         for (const Friction friction : {Friction::cone, Friction::pyramid, Friction::cone_convex})
             for (const bool fixed : {false, true})
                 for (int place = 0; place < 3; ++place) {
-                    if (friction == Friction::pyramid && place > 0 && needs_frictionless(method)) continue;  // has no tangents
+                    // has no tangents
+                    if (friction == Friction::pyramid && place > 0 && needs_frictionless(method)) continue;
                     INFO(name << " " << name_of(friction) << " fixed " << fixed << " place " << place);
                     DenseProblem problem(4, 20, needs_frictionless(method) ? 0 : 0.4, 2);
                     problem.q[2][place] = std::numeric_limits<Real>::quiet_NaN();
@@ -210,7 +217,8 @@ TEST_CASE("no method takes more iterations than allowed, and none is worse than 
                 settings.max_iterations = limit;
                 settings.fixed_iterations = false;
                 const SolvedScene solved = scene.solve(settings);
-                const bool exact = method == SolverMethod::newton && solved.regions.status[0] == RegionStatus::converged;
+                const bool exact =
+                    method == SolverMethod::newton && solved.regions.status[0] == RegionStatus::converged;
                 CHECK((exact || solved.regions.iterations[0] == limit));
                 CHECK((exact || solved.regions.status[0] == RegionStatus::iteration_limit));
                 CHECK(solved.regions.error[0] <= 1.2);         // the start from zero has about 1
@@ -238,7 +246,8 @@ TEST_CASE("the error that a method reports is that of the impulses it leaves", "
         }
 }
 
-TEST_CASE("nonlinear conjugate gradients and accelerated gradients need far fewer iterations than sweeps in a stack", "[unit][solver]") {
+TEST_CASE("nonlinear conjugate gradients and accelerated gradients need far fewer iterations than sweeps in a stack",
+          "[unit][solver]") {
     for (const Real mu : {0.0, 0.5}) {
         ContactScene scene;
         Index below = scene.add_node(1, Vec3(0.3, 0, -1));

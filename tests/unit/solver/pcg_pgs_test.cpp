@@ -21,7 +21,8 @@ TEST_CASE("the paper's combination comes to the solution of Gauss-Seidel alone",
             const SolvedScene combined = scene.solve(settings);
             REQUIRE(pgs.regions.status[0] == RegionStatus::converged);
             REQUIRE(combined.regions.status[0] == RegionStatus::converged);
-            for (std::size_t n = 0; n < pgs.velocity.size(); ++n) REQUIRE((pgs.velocity[n] - combined.velocity[n]).norm() < 1e-6);
+            for (std::size_t n = 0; n < pgs.velocity.size(); ++n)
+                REQUIRE((pgs.velocity[n] - combined.velocity[n]).norm() < 1e-6);
         }
 }
 
@@ -62,7 +63,7 @@ TEST_CASE("conjugate gradients are exact where nothing is projected", "[unit][so
         contact[k].bias = 0;
         contact[k].friction = {0, 0};
     }
-    LumpedOperator::Memory memory{contact, impulse, velocity, node, free, scratch, {}};
+    LumpedMemory memory{contact, impulse, velocity, node, free, scratch, {}};
     for (std::size_t slot = 0; slot < 4; ++slot) {
         space[slot].resize(height);
         memory.workspace[slot] = space[slot];
@@ -74,6 +75,7 @@ TEST_CASE("conjugate gradients are exact where nothing is projected", "[unit][so
         const SolveResult result = solve_pcg_pgs(op, {1e-10, 100, false, 1}, formula);
         CHECK(result.converged);
         CHECK(result.iterations <= height + 1);
-        for (int i = 0; i < height; ++i) CHECK(impulse[static_cast<std::size_t>(i)].z() == Approx(height - i).epsilon(1e-9));
+        for (int i = 0; i < height; ++i)
+            CHECK(impulse[static_cast<std::size_t>(i)].z() == Approx(height - i).epsilon(1e-9));
     }
 }

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "systems/solver/push_out_region.h"
+#include "systems/solver/local/push_contact.h"
 #include "tests/support/contact_scene.h"
 
 using namespace skerry;

@@ -7,7 +7,8 @@ using namespace skerry;
 
 namespace {
 
-/// Regions of many sizes, their contacts shuffled among each other; some pressed in, some apart, some bouncing, some warm.
+/// Regions of many sizes, their contacts shuffled among each other; some pressed in, some apart, some bouncing, some
+/// warm.
 ContactScene mixed_scene() {
     ContactScene parts;
     for (int k = 0; k < 12; ++k) add_sheets(parts, 3 + k % 5, k % 3 == 0 ? 0 : 0.5, static_cast<unsigned>(k));
@@ -45,7 +46,8 @@ void check_same(const SolvedScene& a, const SolvedScene& b) {
 
 }  // namespace
 
-TEST_CASE("with fixed sweeps separate regions and one global region are the same to the last bit", "[determinism][solver]") {
+TEST_CASE("with fixed sweeps separate regions and one global region are the same to the last bit",
+          "[determinism][solver]") {
     const ContactScene scene = mixed_scene();
     for (const Friction friction : {Friction::cone, Friction::pyramid})
         for (const Index sweeps : {1, 5, 30})
@@ -56,7 +58,8 @@ TEST_CASE("with fixed sweeps separate regions and one global region are the same
                 settings.fixed_iterations = true;
                 settings.max_iterations = sweeps;
                 settings.warm_start = warm;
-                const SolvedScene separate = scene.solve(settings), global = scene.solve(settings, ContactRegions::global);
+                const SolvedScene separate = scene.solve(settings),
+                                  global = scene.solve(settings, ContactRegions::global);
                 REQUIRE(separate.regions.size() > 300);
                 REQUIRE(global.regions.size() == 1);
                 check_same(separate, global);
@@ -79,7 +82,8 @@ TEST_CASE("separate and global agree to the tolerance otherwise", "[unit][solver
     settings.tolerance = 1e-9;
     settings.max_iterations = 100000;
     const SolvedScene separate = scene.solve(settings), global = scene.solve(settings, ContactRegions::global);
-    for (std::size_t n = 0; n < separate.velocity.size(); ++n) REQUIRE((separate.velocity[n] - global.velocity[n]).norm() < 1e-5);
+    for (std::size_t n = 0; n < separate.velocity.size(); ++n)
+        REQUIRE((separate.velocity[n] - global.velocity[n]).norm() < 1e-5);
 }
 
 TEST_CASE("the step has the same bits on any number of workers and any backend", "[determinism][solver]") {
@@ -94,8 +98,10 @@ TEST_CASE("the step has the same bits on any number of workers and any backend",
                 const SolvedScene other = scene.solve(settings, ContactRegions::separate, backend, workers);
                 check_same(one, other);
                 CHECK(std::equal(one.regions.error.begin(), one.regions.error.end(), other.regions.error.begin()));
-                CHECK(std::equal(one.regions.iterations.begin(), one.regions.iterations.end(), other.regions.iterations.begin()));
-                CHECK(std::equal(one.regions.dissipated.begin(), one.regions.dissipated.end(), other.regions.dissipated.begin()));
+                CHECK(std::equal(one.regions.iterations.begin(), one.regions.iterations.end(),
+                                 other.regions.iterations.begin()));
+                CHECK(std::equal(one.regions.dissipated.begin(), one.regions.dissipated.end(),
+                                 other.regions.dissipated.begin()));
             }
     }
 }
@@ -110,11 +116,13 @@ TEST_CASE("memory used before changes nothing", "[determinism][solver]") {
         SolvedScene result;
         UnionFind union_find;
         std::vector<Index> region(scene.stencil.size());
-        separate_regions(scene.stencil, scene.inverse_mass, ContactRegions::separate, union_find, result.regions, region);
+        separate_regions(scene.stencil, scene.inverse_mass, ContactRegions::separate, union_find, result.regions,
+                         region);
         result.impulse = scene.impulse;
         result.velocity = scene.velocity;
         result.push_out.assign(scene.velocity.size(), Vec3::Zero());
-        solve_regions(*executor, scene.inputs(), {}, scene.h, memory, result.regions, {result.impulse, result.velocity, result.push_out});
+        solve_regions(*executor, scene.inputs(), {}, scene.h, memory, result.regions,
+                      {result.impulse, result.velocity, result.push_out});
         return result;
     };
     check_same(run(small), small.solve());

@@ -31,9 +31,10 @@ std::vector<Index> order_of(const RegionTable& regions) {
 
 }  // namespace
 
-TEST_CASE("a region is known by its first contact, with the sweeps it took and how long it has kept its contacts", "[unit][solver]") {
+TEST_CASE("a region is known by its first contact, with the sweeps it took and how long it has kept its contacts",
+          "[unit][solver]") {
     SolverMemory memory;
-    SolverMemory::Data& data = memory.data();
+    RegionMemory& data = memory.data();
     RegionTable regions = regions_of({3, 20, 1});
     const std::vector<ContactKey> key = keys(24);
     for (const Index sweeps : {10, 20}) {
@@ -47,7 +48,8 @@ TEST_CASE("a region is known by its first contact, with the sweeps it took and h
     CHECK(data.history.sweeps[1] == Approx(0.7 * 10 + 0.3 * 20));
     CHECK(data.history.age[1] == 1);
 
-    RegionTable changed = regions_of({2, 1, 21});  // contact 3 now starts nothing; 2 is a region of its own; the rest starts at 3
+    // contact 3 now starts nothing; 2 is a region of its own; the rest starts at 3
+    RegionTable changed = regions_of({2, 1, 21});
     recall_regions(key, data, changed);
     CHECK(data.present.sweeps[0] == 1);
     CHECK(data.present.age[0] == 0);                          // lost a contact
@@ -105,7 +107,8 @@ TEST_CASE("what is remembered changes no bit of the result", "[determinism][solv
         again.impulse = scene.impulse;
         again.velocity = scene.velocity;
         again.push_out.assign(scene.velocity.size(), Vec3::Zero());
-        solve_regions(*executor, inputs, {}, scene.h, memory, again.regions, {again.impulse, again.velocity, again.push_out});
+        solve_regions(*executor, inputs, {}, scene.h, memory, again.regions,
+                      {again.impulse, again.velocity, again.push_out});
         CHECK(again.impulse == fresh.impulse);
         CHECK(again.velocity == fresh.velocity);
         CHECK(memory.data().history.age[0] == step);

@@ -21,7 +21,8 @@ std::size_t count(const SolvedScene& solved, RegionShortcut which) {
 
 Real largest_difference(const SolvedScene& a, const SolvedScene& b) {
     Real largest = 0;
-    for (std::size_t n = 0; n < a.velocity.size(); ++n) largest = std::max(largest, (a.velocity[n] - b.velocity[n]).norm());
+    for (std::size_t n = 0; n < a.velocity.size(); ++n)
+        largest = std::max(largest, (a.velocity[n] - b.velocity[n]).norm());
     return largest;
 }
 
@@ -81,7 +82,8 @@ TEST_CASE("one row a contact does the sweeps of three where there is no friction
     }
 }
 
-TEST_CASE("one row a contact keeps the best iterate when it does not converge, and not-a-number is reported", "[unit][solver]") {
+TEST_CASE("one row a contact keeps the best iterate when it does not converge, and not-a-number is reported",
+          "[unit][solver]") {
     ContactScene scene;
     add_sheets(scene, 10, 0, 3);
     SolverSettings settings;
@@ -145,6 +147,7 @@ TEST_CASE("all shortcuts off change nothing beyond the tolerance", "[unit][solve
     ContactScene scene;
     for (int k = 0; k < 12; ++k) add_sheets(scene, 3 + k % 5, k % 3 == 0 ? 0 : 0.5, static_cast<unsigned>(k));
     SolverSettings off = tight();
-    off.certify_warm_start = off.skip_separating = off.frictionless_rows = off.freeze_contacts = off.small_regions_in_lanes = false;
+    off.certify_warm_start = off.skip_separating = off.frictionless_rows = off.freeze_contacts =
+        off.small_regions_in_lanes = false;
     CHECK(largest_difference(scene.solve(tight()), scene.solve(off)) < allowed);
 }

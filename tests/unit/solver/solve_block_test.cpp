@@ -1,4 +1,4 @@
-#include "systems/solver/operators/solve_block.h"
+#include "systems/solver/local/solve_block.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

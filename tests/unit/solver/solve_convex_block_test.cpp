@@ -1,4 +1,4 @@
-#include "systems/solver/operators/solve_convex_block.h"
+#include "systems/solver/local/solve_convex_block.h"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
@@ -56,7 +56,8 @@ TEST_CASE("the convex local solution holds for ill-conditioned blocks and any fr
         const Real mu = std::exp(2 * draw());
         const Eigen::SelfAdjointEigenSolver<Mat3> eigen(w, Eigen::EigenvaluesOnly);
         const Real condition = eigen.eigenvalues()[2] / eigen.eigenvalues()[0] * std::max(Real(1), mu * mu);
-        REQUIRE(lack(w, b, mu, solve_once(w, b, mu)) < std::min(1e-4, 1e-12 + 1e-14 * condition));  // rounding times condition
+        // rounding times condition
+        REQUIRE(lack(w, b, mu, solve_once(w, b, mu)) < std::min(1e-4, 1e-12 + 1e-14 * condition));
     }
 }
 
@@ -65,8 +66,10 @@ TEST_CASE("an isotropic block gives the projection onto the cone", "[unit][solve
     const ConvexBlock block = prepare_convex_block(2 * Mat3::Identity(), 0.5);
     CHECK(solve_convex_block(block, Vec3(3, 3.6, 4.8), 0.5) == Vec3::Zero());  // u_n = mu |u_t|: on the dual cone
     CHECK((solve_convex_block(block, Vec3(-4, 0.6, 0.8), 0.5) - Vec3(2, -0.3, -0.4)).norm() < 1e-13);
-    CHECK((solve_convex_block(block, Vec3(-4, 6, 8), 0.5) - Vec3(3.6, -1.08, -1.44)).norm() < 2e-13);  // (2 + 0.5 * 5) / 1.25
-    CHECK((solve_convex_block(block, Vec3(0, 6, 8), 0.5) - Vec3(2, -0.6, -0.8)).norm() < 1e-13);       // slides, so it presses
+    // (2 + 0.5 * 5) / 1.25
+    CHECK((solve_convex_block(block, Vec3(-4, 6, 8), 0.5) - Vec3(3.6, -1.08, -1.44)).norm() < 2e-13);
+    // slides, so it presses
+    CHECK((solve_convex_block(block, Vec3(0, 6, 8), 0.5) - Vec3(2, -0.6, -0.8)).norm() < 1e-13);
     CHECK((solve_convex_block(block, Vec3(1, 6, 8), 0.5) - Vec3(1.6, -0.48, -0.64)).norm() < 1e-13);
 }
 
@@ -89,5 +92,6 @@ TEST_CASE("the convex local solution does not depend on the unit of the block", 
     const Mat3 w = draw.block(0.3);
     const Vec3 b(-1, 3, 2);
     const Vec3 r = solve_once(w, b, 0.4);
-    for (const Real unit : {1e-12, 1e12}) CHECK((unit * solve_once(Mat3(unit * w), b, 0.4) - r).norm() < 1e-12 * r.norm());
+    for (const Real unit : {1e-12, 1e12})
+        CHECK((unit * solve_once(Mat3(unit * w), b, 0.4) - r).norm() < 1e-12 * r.norm());
 }

@@ -44,7 +44,8 @@ TEST_CASE("a point mass sticks inside the cone and slides on it", "[unit][solver
     CHECK((sliding.velocity[0] - Vec3(2.4, 3.2, 0)).norm() < 1e-14);
     CHECK((sliding.impulse[0] - Vec3(-1.2, -1.6, 4)).norm() < 1e-14);
     CHECK(sliding.regions.status[0] == RegionStatus::converged);
-    CHECK(sliding.regions.dissipated[0] == Approx(0.5 * 2 * (29 - 16)).epsilon(1e-13));  // all kinetic energy that is gone
+    // all kinetic energy that is gone
+    CHECK(sliding.regions.dissipated[0] == Approx(0.5 * 2 * (29 - 16)).epsilon(1e-13));
 }
 
 TEST_CASE("static friction holds what dynamic friction would not", "[unit][solver]") {
@@ -144,7 +145,8 @@ TEST_CASE("a frictionless impact takes energy out and conserves momentum", "[pro
         CHECK(solved.regions.dissipated[0] ==
               Approx(scene.kinetic_energy(scene.velocity) - scene.kinetic_energy(solved.velocity)).epsilon(1e-10));
         Vec3 change = Vec3::Zero();
-        for (std::size_t n = 0; n < solved.velocity.size(); ++n) change += (solved.velocity[n] - scene.velocity[n]) / scene.inverse_mass[n];
+        for (std::size_t n = 0; n < solved.velocity.size(); ++n)
+            change += (solved.velocity[n] - scene.velocity[n]) / scene.inverse_mass[n];
         CHECK(change.norm() < 1e-12);
         for (std::size_t i = 0; i < scene.stencil.size(); ++i)
             CHECK(scene.relative_velocity(i, solved.velocity).dot(scene.normal[i]) > -1e-9);
@@ -182,8 +184,8 @@ TEST_CASE("without friction the sweep is scalar Gauss-Seidel", "[unit][solver]")
         for (std::size_t i = 0; i < r.size(); ++i) {
             Real diagonal = 0;
             for (std::size_t a = 0; a < 4; ++a)
-                diagonal +=
-                    std::pow(scene.stencil[i].weight[a], 2) * scene.inverse_mass[static_cast<std::size_t>(scene.stencil[i].node[a])];
+                diagonal += std::pow(scene.stencil[i].weight[a], 2) *
+                            scene.inverse_mass[static_cast<std::size_t>(scene.stencil[i].node[a])];
             const Real next = std::max(0.0, r[i] - scene.relative_velocity(i, v).dot(scene.normal[i]) / diagonal);
             for (std::size_t a = 0; a < 4; ++a) {
                 const auto node = static_cast<std::size_t>(scene.stencil[i].node[a]);
@@ -203,9 +205,10 @@ TEST_CASE("the pyramid brakes more along its diagonal, the cone the same everywh
         SolverSettings settings;
         const Vec3 cone = scene.solve(settings).impulse[0];
         CHECK((cone - Vec3(-0.5 * std::cos(angle), -0.5 * std::sin(angle), 1)).norm() < 1e-14);
-        settings.friction = Friction::pyramid;  // methods.md 8.28: mu N (sgn cos, sgn sin)
+        settings.friction = Friction::pyramid;  // docs/methods/accuracy.md 28: mu N (sgn cos, sgn sin)
         const Vec3 pyramid = scene.solve(settings).impulse[0];
-        CHECK((pyramid - Vec3(std::copysign(0.5, -std::cos(angle)), std::copysign(0.5, -std::sin(angle)), 1)).norm() < 1e-14);
+        CHECK((pyramid - Vec3(std::copysign(0.5, -std::cos(angle)), std::copysign(0.5, -std::sin(angle)), 1)).norm() <
+              1e-14);
         CHECK(pyramid.head<2>().norm() == Approx(std::numbers::sqrt2 * cone.head<2>().norm()));
     }
 }
@@ -229,7 +232,8 @@ TEST_CASE("more contacts than freedoms still give velocities that separate", "[u
     const Index node = scene.add_node(1, Vec3(0.2, -0.1, -1));
     for (int k = 0; k < 12; ++k) {
         const Real angle = 0.5 * k;
-        scene.touch({{node, node, node, node}, {1, 0, 0, 0}}, Vec3(0.5 * std::cos(angle), 0.5 * std::sin(angle), 1), 0.3);
+        scene.touch({{node, node, node, node}, {1, 0, 0, 0}}, Vec3(0.5 * std::cos(angle), 0.5 * std::sin(angle), 1),
+                    0.3);
     }
     const SolvedScene solved = scene.solve(exact());
     CHECK(solved.regions.status[0] == RegionStatus::converged);
@@ -249,7 +253,8 @@ TEST_CASE("a warm start that solves the region needs no sweep", "[unit][solver]"
     CHECK(second.regions.status[0] == RegionStatus::certified);
     CHECK(second.regions.iterations[0] == 0);
     CHECK(second.impulse == first.impulse);
-    for (std::size_t n = 0; n < first.velocity.size(); ++n) CHECK((second.velocity[n] - first.velocity[n]).norm() < 1e-12);
+    for (std::size_t n = 0; n < first.velocity.size(); ++n)
+        CHECK((second.velocity[n] - first.velocity[n]).norm() < 1e-12);
 
     settings.warm_start = WarmStart::off;
     const SolvedScene cold = scene.solve(settings);
@@ -269,7 +274,8 @@ TEST_CASE("a warm start of another world is not worse than none", "[unit][solver
     CHECK(misled.regions.status[0] == RegionStatus::converged);
 }
 
-TEST_CASE("a region in which nothing moves and nothing weighs has no impulse and no error, whatever it starts from", "[unit][solver]") {
+TEST_CASE("a region in which nothing moves and nothing weighs has no impulse and no error, whatever it starts from",
+          "[unit][solver]") {
     for (const bool fixed : {true, false})
         for (const bool skip : {true, false}) {
             ContactScene scene;
@@ -327,10 +333,10 @@ TEST_CASE("not-a-number stays in its region and is reported", "[unit][solver]") 
         CHECK(solved.regions.status[0] == RegionStatus::converged);
         CHECK(solved.regions.status[1] == RegionStatus::not_finite);
         CHECK(solved.regions.status[2] == RegionStatus::not_finite);
-        CHECK(
-            std::equal(good.velocity.begin(), good.velocity.begin() + static_cast<std::ptrdiff_t>(healthy_nodes), solved.velocity.begin()));
-        CHECK(
-            std::equal(good.impulse.begin(), good.impulse.begin() + static_cast<std::ptrdiff_t>(healthy_contacts), solved.impulse.begin()));
+        CHECK(std::equal(good.velocity.begin(), good.velocity.begin() + static_cast<std::ptrdiff_t>(healthy_nodes),
+                         solved.velocity.begin()));
+        CHECK(std::equal(good.impulse.begin(), good.impulse.begin() + static_cast<std::ptrdiff_t>(healthy_contacts),
+                         solved.impulse.begin()));
     }
     ContactScene broken = scene;
     broken.gap[healthy_contacts] = std::numeric_limits<Real>::quiet_NaN();

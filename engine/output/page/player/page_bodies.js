@@ -41,7 +41,8 @@ function make_body(scene, body, number, shape) {
   for (const name of ["position", "normal", "color"])
     geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * source.length), 3));
   const material = new THREE.MeshStandardMaterial({
-    vertexColors: THREE.VertexColors, roughness: 0.62, metalness: 0, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    vertexColors: THREE.VertexColors, roughness: 0.62, metalness: 0, polygonOffset: true, polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
   });
   const mesh = new THREE.Mesh(geometry, material);
   mesh.castShadow = mesh.receiveShadow = true;
@@ -50,17 +51,19 @@ function make_body(scene, body, number, shape) {
   const lines = new THREE.BufferGeometry();
   lines.setIndex(new THREE.BufferAttribute(edges_of(index, source, body.vertices), 1));
   lines.setAttribute("position", geometry.getAttribute("position"));
-  const edges = new THREE.LineSegments(lines, new THREE.LineBasicMaterial({ color: 0x05080b, transparent: true, opacity: 0.38 }));
+  const edges = new THREE.LineSegments(lines,
+    new THREE.LineBasicMaterial({ color: 0x05080b, transparent: true, opacity: 0.38 }));
   edges.frustumCulled = false;
 
   const group = new THREE.Group();
   group.add(mesh, edges);
   scene.add(group);
-  return { group, mesh, geometry, material, edges, source, own_color: colors.linear(colors.of_body(number)), painted: "" };
+  return { group, mesh, geometry, material, edges, source, own_color: colors.linear(colors.of_body(number)),
+    painted: "" };
 }
 
-// Vertices once for each smooth patch around them: where faces meet at more than 55 degrees (a box, not a coarse ball), shading breaks.
-// index: triangles of the split vertices; source: the vertex that each of them was.
+// Vertices once for each smooth patch around them: where faces meet at more than 55 degrees (a box, not a coarse ball),
+// shading breaks. index: triangles of the split vertices; source: the vertex that each of them was.
 function split_creases(index, shape) {
   const smooth = Math.cos(55 * Math.PI / 180);
   const at = (vertex) => new THREE.Vector3(...[0, 1, 2].map((k) => shape.position[3 * vertex + k] * shape.extent[k]));

@@ -18,7 +18,8 @@ function make_colliders(scene, list, box) {
       turn_from(object.quaternion, pose.rotation);
       if (object.userData.follow) {
         // The part of an infinite plane around what is shown.
-        object.userData.follow(box.center.clone().sub(object.position).applyQuaternion(object.quaternion.clone().inverse()));
+        const back = object.quaternion.clone().inverse();
+        object.userData.follow(box.center.clone().sub(object.position).applyQuaternion(back));
       }
     });
   }
@@ -51,7 +52,8 @@ function plane_object(radius, cell) {
   // Seen from above only: from below a plane would hide what lies on it.
   const surface = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size), grid);
   surface.renderOrder = -2;
-  const shadow = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size), new THREE.ShadowMaterial({ opacity: 0.42, depthWrite: false }));
+  const shadow = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size),
+    new THREE.ShadowMaterial({ opacity: 0.42, depthWrite: false }));
   shadow.receiveShadow = true;
   shadow.renderOrder = -1;
   const object = new THREE.Group();
@@ -79,7 +81,8 @@ function solid_object(collider) {
   const mesh = new THREE.Mesh(geometry, material);
   mesh.receiveShadow = !clear;
   mesh.castShadow = !clear;
-  const ink = new THREE.LineBasicMaterial({ color: clear ? 0xc3d2e2 : 0x9fb0c0, transparent: true, opacity: clear ? 0.55 : 0.35 });
+  const ink = new THREE.LineBasicMaterial({ color: clear ? 0xc3d2e2 : 0x9fb0c0, transparent: true,
+    opacity: clear ? 0.55 : 0.35 });
   const object = new THREE.Group();
   object.add(mesh, new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 30), ink));
   return object;

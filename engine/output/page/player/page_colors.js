@@ -38,7 +38,8 @@ const colors = (() => {
     speed: ["#4a4596", "#40649f", "#33829c", "#269d94", "#3dba7c", "#86d354", "#e4e52a"],
     stress: ["#40409f", "#7030a8", "#a83a9c", "#d25075", "#ee7d55", "#fbb038", "#f4f03a"],
   };
-  const body_colors = ["#6fa8dc", "#e6a15c", "#7fbf7b", "#d98cb3", "#b8a6e0", "#d8c25f", "#6cc5c1", "#e07f72", "#a9b665", "#8f9fb8"];
+  const body_colors = ["#6fa8dc", "#e6a15c", "#7fbf7b", "#d98cb3", "#b8a6e0", "#d8c25f", "#6cc5c1", "#e07f72",
+    "#a9b665", "#8f9fb8"];
   const motion = { open: "#8b97a6", stick: "#3fc8b4", slide: "#ff9d47" };
 
   const parse = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
@@ -68,5 +69,6 @@ const colors = (() => {
   }
   const of_body = (number) => (number < body_colors.length ? parse(body_colors[number]) : of_number(number));
 
-  return { at, css, linear, parse, table, of_number, of_body, tables: { speed: table("speed"), stress: table("stress") }, motion };
+  return { at, css, linear, parse, table, of_number, of_body,
+    tables: { speed: table("speed"), stress: table("stress") }, motion };
 })();

@@ -1,5 +1,6 @@
-// The contacts: a dot each, and an arrow that grows with the root of the force, because impacts are a hundred times stronger than what
-// lies at rest. Drawn twice: plainly where they are in sight, faintly where a body hides them, because contacts lie between bodies.
+// The contacts: a dot each, and an arrow that grows with the root of the force, because impacts are a hundred times
+// stronger than what lies at rest. Drawn twice: plainly where they are in sight, faintly where a body hides them,
+// because contacts lie between bodies.
 "use strict";
 
 // A force of `full_force` (N) gets an arrow about as long as half a body is thick; dots leave room between vertices.

@@ -43,7 +43,8 @@ const decode = (() => {
     out.contacts = {
       count: contact_count, unit: take(Float32Array, 1)[0],
       lower: take(Float32Array, 3), extent: take(Float32Array, 3), point: take(Uint16Array, 3 * contact_count),
-      force: take(Int16Array, 3 * contact_count), region: take(Uint16Array, contact_count), state: take(Uint8Array, contact_count),
+      force: take(Int16Array, 3 * contact_count), region: take(Uint16Array, contact_count),
+      state: take(Uint8Array, contact_count),
     };
     return out;
   }

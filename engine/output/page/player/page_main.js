@@ -14,10 +14,13 @@
     root.dataset.error = event.message;
     notice("This page failed: " + event.message);
   });
-  document.addEventListener("securitypolicyviolation", (event) => { root.dataset.error = "blocked " + event.blockedURI; });
+  document.addEventListener("securitypolicyviolation", (event) => {
+    root.dataset.error = "blocked " + event.blockedURI;
+  });
 
   const run = JSON.parse(find("run").textContent);
-  const frames = [...document.querySelectorAll("#frames > script")].map((element) => decode.frame(element.textContent, run.bodies));
+  const frames = [...document.querySelectorAll("#frames > script")]
+    .map((element) => decode.frame(element.textContent, run.bodies));
   find("frames").remove();
   const times = run.rows.time;
   const last = frames.length - 1;
@@ -25,7 +28,8 @@
   const units = { speed: "m/s", stress: "Pa" };
   const modes = { color: ["speed", "stress", "body"], contacts: ["off", "motion", "region"] };
   const state = {
-    frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false, xray: false, colliders: true,
+    frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false,
+    xray: false, colliders: true,
   };
   const many = (number, one, more) => text.count(number) + " " + (number === 1 ? one : more);
 
@@ -69,7 +73,8 @@
   function show_summary() {
     const r = run.report;
     find("title").textContent = run.title || "Run";
-    find("subtitle").textContent = many(r.bodies, "body", "bodies") + ", " + many(r.elements, "element", "elements") + ", "
+    find("subtitle").textContent = many(r.bodies, "body", "bodies") + ", " + many(r.elements, "element", "elements")
+      + ", "
       + text.si(r.time, "s") + " in " + many(r.steps, "step", "steps");
     const items = [
       ["Bodies", text.count(r.bodies)], ["Elements", text.count(r.elements)],
@@ -88,7 +93,8 @@
     add_item("State hash", code).className = "wide";
   }
   function add_item(name, value) {
-    const item = document.createElement("div"), term = document.createElement("dt"), about = document.createElement("dd");
+    const item = document.createElement("div"), term = document.createElement("dt"),
+      about = document.createElement("dd");
     term.textContent = name;
     about.append(value);
     item.append(term, about);
@@ -155,7 +161,8 @@
   function show() {
     if (frames.length > 0 && view) {
       const next = Math.min(state.frame + 1, last), width = times[next] - times[state.frame];
-      const blend = state.playing && width > 0 ? Math.min(Math.max((state.time - times[state.frame]) / width, 0), 0.999) : 0;
+      const share = (state.time - times[state.frame]) / width;
+      const blend = state.playing && width > 0 ? Math.min(Math.max(share, 0), 0.999) : 0;
       root.dataset.bodies = bodies.show(frames[state.frame], frames[next], blend, state.color);
       contacts.show(frames[state.frame].contacts, state.contacts);
       colliders.show(frames[state.frame], state.colliders);
@@ -187,7 +194,8 @@
       state.frame = 0;
       state.time = times[0];
     }
-    find("play").querySelector("path").setAttribute("d", state.playing ? "M6 5h4v14H6zM14 5h4v14h-4z" : "M8 5v14l11-7z");
+    find("play").querySelector("path").setAttribute("d",
+      state.playing ? "M6 5h4v14H6zM14 5h4v14h-4z" : "M8 5v14l11-7z");
   }
   function set_mode(name, value) {
     if (!modes[name].includes(value)) return;
@@ -215,7 +223,8 @@
   function read_hash() {
     const asked = new URLSearchParams(location.hash.slice(1));
     for (const name in modes) if (asked.has(name)) set_mode(name, asked.get(name));
-    for (const name of ["wire", "flat", "xray", "colliders"]) if (asked.has(name)) set_switch(name, asked.get(name) !== "0");
+    for (const name of ["wire", "flat", "xray", "colliders"])
+      if (asked.has(name)) set_switch(name, asked.get(name) !== "0");
     if (asked.has("rate")) set_rate(Number(asked.get("rate")));
     if (asked.has("view") && view) {
       const numbers = asked.get("view").split(",").map(Number);
@@ -244,7 +253,8 @@
       Home: () => go_to(0), End: () => go_to(last),
       1: () => set_mode("color", "speed"), 2: () => set_mode("color", "stress"), 3: () => set_mode("color", "body"),
       c: () => set_mode("contacts", modes.contacts[(modes.contacts.indexOf(state.contacts) + 1) % 3]),
-      x: () => set_switch("xray", !state.xray), w: () => set_switch("wire", !state.wire), f: () => set_switch("flat", !state.flat),
+      x: () => set_switch("xray", !state.xray), w: () => set_switch("wire", !state.wire),
+      f: () => set_switch("flat", !state.flat),
       o: () => set_switch("colliders", !state.colliders),
     };
     const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];

@@ -2,7 +2,8 @@
 "use strict";
 
 // center, radius (m): around nearly all of where bodies go. The few ends that stick out may be bodies that fell off.
-// corners: of what the camera shows at first, with colliders that are not much larger. spacing (m): of surface vertices, usually.
+// corners: of what the camera shows at first, with colliders that are not much larger. spacing (m): of surface
+// vertices, usually.
 function measure_scene(run, frames) {
   const lower = [[], [], []], upper = [[], [], []], spacing = [], sizes = [];
   for (const frame of frames)
@@ -39,7 +40,8 @@ function measure_scene(run, frames) {
 }
 
 function box_of(collider, pose) {
-  const points = decode.floats(collider.points), turn = new THREE.Quaternion(), box = new THREE.Box3(), point = new THREE.Vector3();
+  const points = decode.floats(collider.points), turn = new THREE.Quaternion(), box = new THREE.Box3(),
+    point = new THREE.Vector3();
   turn_from(turn, pose.rotation);
   for (let i = 0; i < points.length; i += 3) {
     point.fromArray(points, i).applyQuaternion(turn);

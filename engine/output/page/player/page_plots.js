@@ -1,12 +1,14 @@
 // Curves over time with a cursor, and the bars of the stages.
 "use strict";
 
-// series: [{name, color, values}], one value by time. format(value) is text. pick(frame) is called when somebody points at a time.
+// series: [{name, color, values}], one value by time. format(value) is text. pick(frame) is called when somebody points
+// at a time.
 function make_plot(host, times, series, format, pick) {
   const keys = document.createElement("div");
   keys.className = "keys";
   const labels = series.map(({ name, color }) => {
-    const key = document.createElement("span"), swatch = document.createElement("i"), value = document.createElement("b");
+    const key = document.createElement("span"), swatch = document.createElement("i"),
+      value = document.createElement("b");
     swatch.className = "swatch";
     swatch.style.background = color;
     key.append(swatch, name + " ", value);
@@ -82,7 +84,8 @@ function make_plot(host, times, series, format, pick) {
     for (let i = Math.ceil(first / step); i * step <= first + span * 1.000001; ++i) {
       const x = x_of(i * step);
       pen.textAlign = x > canvas.clientWidth - 24 ? "right" : "center";
-      pen.fillText(text.si(i * step, "s"), Math.min(x, canvas.clientWidth - 1), canvas.clientHeight - margin.bottom + 6);
+      pen.fillText(text.si(i * step, "s"), Math.min(x, canvas.clientWidth - 1),
+        canvas.clientHeight - margin.bottom + 6);
     }
   }
   function show(number) {
@@ -139,6 +142,7 @@ function show_stages(host, report) {
     host.append(row);
   }
   host.append(element("note", report.stages.length
-    ? "Mean of " + text.count(report.steps) + " steps, " + text.si(total / steps, "s") + " over all stages; stages may run side by side."
+    ? "Mean of " + text.count(report.steps) + " steps, " + text.si(total / steps, "s")
+      + " over all stages; stages may run side by side."
     : "No step was made."));
 }

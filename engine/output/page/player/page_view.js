@@ -23,7 +23,8 @@ function make_view(host, up, box) {
   if (Math.abs(up.x) > 0.9) east.set(0, 1, 0);
   east.addScaledVector(up, -east.dot(up)).normalize();
   const north = new THREE.Vector3().crossVectors(up, east);
-  const direction = (e, n, u) => new THREE.Vector3().addScaledVector(east, e).addScaledVector(north, n).addScaledVector(up, u);
+  const direction = (e, n, u) => new THREE.Vector3()
+    .addScaledVector(east, e).addScaledVector(north, n).addScaledVector(up, u);
 
   const sky = new THREE.HemisphereLight(0xffffff, 0x7b7672, 0.66);
   sky.position.copy(up);
@@ -34,7 +35,8 @@ function make_view(host, up, box) {
   key.shadow.mapSize.set(2048, 2048);
   key.shadow.radius = 3;
   const reach = 1.8 * box.radius;
-  Object.assign(key.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: box.radius, far: 8 * box.radius });
+  Object.assign(key.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: box.radius,
+    far: 8 * box.radius });
   key.shadow.bias = -0.0006;
   const fill = new THREE.DirectionalLight(0xcfe0ff, 0.2);
   fill.position.copy(direction(-1, 0.6, 0.3));
@@ -45,9 +47,11 @@ function make_view(host, up, box) {
   const orbit = { ...home, target: home.target.clone() };
   let dirty = true;
 
-  const outward = (turned, lifted) => direction(Math.cos(lifted) * Math.cos(turned), Math.cos(lifted) * Math.sin(turned), Math.sin(lifted));
+  const outward = (turned, lifted) => direction(Math.cos(lifted) * Math.cos(turned),
+    Math.cos(lifted) * Math.sin(turned), Math.sin(lifted));
 
-  // From where all corners are in sight, seen from home: a corner at depth z towards the camera and x aside needs |x| / tan(half) + z.
+  // From where all corners are in sight, seen from home: a corner at depth z towards the camera and x aside needs |x| /
+  // tan(half) + z.
   function fit_distance() {
     const out = outward(home.turn, home.lift), right = new THREE.Vector3().crossVectors(up, out).normalize();
     const above = new THREE.Vector3().crossVectors(out, right);
@@ -55,12 +59,14 @@ function make_view(host, up, box) {
     let distance = box.radius;
     for (const corner of box.corners) {
       const arm = corner.clone().sub(box.center);
-      distance = Math.max(distance, Math.max(Math.abs(arm.dot(right)) / wide, Math.abs(arm.dot(above)) / tall) + arm.dot(out));
+      distance = Math.max(distance, Math.max(Math.abs(arm.dot(right)) / wide, Math.abs(arm.dot(above)) / tall)
+        + arm.dot(out));
     }
     return 1.1 * distance;
   }
   function place_camera() {
-    camera.position.copy(orbit.target).addScaledVector(outward(orbit.turn, orbit.lift), orbit.distance * fit_distance());
+    camera.position.copy(orbit.target).addScaledVector(outward(orbit.turn, orbit.lift),
+      orbit.distance * fit_distance());
     camera.lookAt(orbit.target);
     camera.updateMatrixWorld();
     dirty = true;
@@ -71,7 +77,8 @@ function make_view(host, up, box) {
     place_camera();
   }
   function pan(dx, dy) {
-    const size = 2 * orbit.distance * fit_distance() * Math.tan(THREE.Math.degToRad(camera.fov / 2)) / host.clientHeight;
+    const half_view = THREE.Math.degToRad(camera.fov / 2);
+    const size = 2 * orbit.distance * fit_distance() * Math.tan(half_view) / host.clientHeight;
     const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
     const above = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
     orbit.target.addScaledVector(right, -dx * size).addScaledVector(above, dy * size);
@@ -107,7 +114,10 @@ function make_view(host, up, box) {
 
   return {
     scene, camera,
-    look: (turn_to, lift_to, distance) => { Object.assign(orbit, { turn: turn_to, lift: lift_to, distance }); place_camera(); },
+    look: (turn_to, lift_to, distance) => {
+      Object.assign(orbit, { turn: turn_to, lift: lift_to, distance });
+      place_camera();
+    },
     touch: () => { dirty = true; },
     render,
   };
@@ -139,7 +149,8 @@ function listen_to_pointers(canvas, { turn, pan, zoom, reset }) {
       turn(dx, dy);
     }
   });
-  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => down.delete(event.pointerId));
+  for (const name of ["pointerup", "pointercancel"])
+    canvas.addEventListener(name, (event) => down.delete(event.pointerId));
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("dblclick", reset);
   canvas.addEventListener("wheel", (event) => {

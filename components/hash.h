@@ -1,0 +1,35 @@
+// Hash: one number for any amount of data.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "components/column.h"
+
+namespace skerry {
+
+/// XXH3 with 64 bits (Y. Collet; docs/decisions/0010-xxhash.md): not cryptographic, but any change of a bit changes it.
+/// The same on every machine with the same bytes. What is added counts as one row of bytes, however it was cut.
+class Hash {
+public:
+    Hash();
+    void add(const void* data, std::size_t bytes);
+    void add(std::uint64_t word) { add(&word, sizeof word); }
+    /// The number of rows, then the rows. T must have no bytes between its fields: they may be anything.
+    template <class T>
+    void add(std::span<const T> rows) {
+        add(rows.size());
+        add(rows.data(), rows.size_bytes());
+    }
+    template <class T>
+    void add(const Column<T>& column) {
+        add(column.span());
+    }
+    std::uint64_t value() const;
+
+private:
+    alignas(64) std::byte state_[576];
+};
+
+}  // namespace skerry

@@ -1,0 +1,32 @@
+// SplitMix: random numbers that are the same on every machine.
+#pragma once
+
+#include <cstdint>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// splitmix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators). The distributions of the
+/// standard differ between libraries, these do not. Scenes that scatter bodies depend on the numbers: they stay as they
+/// are.
+class SplitMix {
+public:
+    explicit SplitMix(std::uint64_t seed) : state_(seed) {}
+
+    std::uint64_t next() {
+        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+        return z ^ (z >> 31);
+    }
+    /// In [0, 1).
+    Real fraction() { return static_cast<Real>(next() >> 11) * 0x1p-53; }
+    /// In [-1, 1).
+    Real symmetric() { return static_cast<Real>(next() >> 11) * 0x1p-52 - 1; }
+
+private:
+    std::uint64_t state_;
+};
+
+}  // namespace skerry

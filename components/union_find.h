@@ -1,0 +1,74 @@
+// UnionFind: disjoint sets of indices that are joined one pair at a time.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Disjoint sets of 0 .. count-1, by union-find with path halving (Tarjan, van Leeuwen 1984, Worst-case analysis of set
+/// union algorithms). The smaller root wins a join, so that the root of a set is its smallest index: it does not depend
+/// on the order of the joins. Memory is kept from one start to the next.
+struct UnionFind {
+    /// The fields are used together, at places all over the memory.
+    struct Node {
+        Index parent;
+        std::uint32_t stamp;  // parent and number are of the start that has this stamp
+        Index number;         // of the set, at its root; no_index before it was asked for
+    };
+
+    Column<Node> node;
+    std::uint32_t now = 0;
+    Index number_count = 0;
+
+    /// Makes each of `count` indices a set of its own. Nothing is cleared: a stamp of an earlier start is no stamp.
+    void start(std::size_t count) {
+        if (node.size() < count) node.resize(count);
+        if (now == std::numeric_limits<std::uint32_t>::max()) {
+            for (Node& each : node) each.stamp = 0;
+            now = 0;
+        }
+        ++now;
+        number_count = 0;
+    }
+
+    /// Brings `index` from the memory, for a root() that will be asked for soon.
+    void fetch(Index index) const { __builtin_prefetch(node.data() + index, 1); }
+
+    Index root(Index index) {
+        if (node[index].stamp != now) {
+            node[index] = {index, now, no_index};
+            return index;
+        }
+        while (node[index].parent != index) {
+            const Index next = node[node[index].parent].parent;
+            // most paths are short already, and need no write
+            if (next != node[index].parent) node[index].parent = next;
+            index = next;
+        }
+        return index;
+    }
+
+    /// Joins the sets of two roots. Returns the root of both.
+    Index join_roots(Index a, Index b) {
+        const Index winner = std::min(a, b);
+        node[std::max(a, b)].parent = winner;
+        return winner;
+    }
+
+    void join(Index a, Index b) { join_roots(root(a), root(b)); }
+
+    /// The number of the set of `index`: sets are numbered in the order in which they are first asked for, once nothing
+    /// is joined any more.
+    Index number(Index index) {
+        Node& top = node[root(index)];
+        if (top.number == no_index) top.number = number_count++;
+        return top.number;
+    }
+};
+
+}  // namespace skerry

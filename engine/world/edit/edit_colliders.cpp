@@ -1,0 +1,196 @@
+// Colliders and attachments come and go between steps.
+#include <cmath>
+#include <numbers>
+
+#include "engine/world/edit/edit_model.h"
+#include "systems/dynamics/motion/move_colliders.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+namespace {
+
+MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
+    MotionScript script{motion.velocity, motion.angular_velocity, static_cast<Index>(keyframe.size()), 0};
+    for (const MotionKey& key : motion.keys) keyframe.push_back({key.time, key.position, key.rotation});
+    script.key_end = static_cast<Index>(keyframe.size());
+    return script;
+}
+
+/// The pose at time 0 of what is at `pose` now and moves by constant velocities: scripts count from time 0.
+RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
+    return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
+            Vec3::Zero(), Vec3::Zero()};
+}
+
+/// Erases one row of a table with a ragged key list.
+void erase_scripted_row(auto& table, std::size_t row) {
+    const Index begin = table.script[row].key_begin, count = table.script[row].key_end - begin;
+    table.keyframe.erase(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+    table.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.erase(row, 1); });
+    for (MotionScript& script : table.script)
+        if (script.key_begin > begin) {
+            script.key_begin -= count;
+            script.key_end -= count;
+        }
+}
+
+struct GeometryOf {
+    ColliderGeometry operator()(const Plane&) const { return {ColliderShape::plane, Vec3::Zero()}; }
+    ColliderGeometry operator()(const Sphere& s) const { return {ColliderShape::sphere, Vec3(s.radius, 0, 0)}; }
+    ColliderGeometry operator()(const Box& s) const { return {ColliderShape::box, s.size / 2}; }
+    ColliderGeometry operator()(const Capsule& s) const {
+        return {ColliderShape::capsule, Vec3(s.radius, s.length / 2, 0)};
+    }
+    ColliderGeometry operator()(const Cylinder& s) const {
+        return {ColliderShape::cylinder, Vec3(s.radius, s.height / 2, 0)};
+    }
+    ColliderGeometry operator()(const Bucket& s) const {
+        return {ColliderShape::bucket, Vec3(s.radius, s.height, s.thickness)};
+    }
+    ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
+};
+
+/// What is not given is left to the body: below zero.
+SurfaceProperties surface_of(const ColliderSettings& settings) {
+    constexpr Real left_to_the_body = -1;
+    const Real friction = settings.friction.value_or(left_to_the_body);
+    const Real dynamic = settings.dynamic_friction.value_or(friction);
+    return {settings.static_friction.value_or(std::max(friction, dynamic)), dynamic,
+            settings.restitution.value_or(left_to_the_body)};
+}
+
+/// The smallest rotation that takes the z axis to a direction; half a turn about x takes it to its opposite.
+Mat3 turn_from_z(const Vec3& direction) {
+    const Vec3 axis(-direction.y(), direction.x(), 0);
+    const Real sine = axis.norm();
+    if (sine == 0) return direction.z() > 0 ? Mat3(Mat3::Identity()) : rotation_matrix(Vec3(std::numbers::pi, 0, 0));
+    return rotation_matrix(axis * (std::atan2(sine, direction.z()) / sine));
+}
+
+/// Where the shape's own frame is in the collider's. A plane is given by a point and a normal; in its own frame it is z
+/// = 0.
+RigidPose shape_frame(const Shape& shape) {
+    if (const auto* plane = std::get_if<Plane>(&shape)) return {plane->point, turn_from_z(plane->normal)};
+    return {Vec3::Zero(), Mat3::Identity()};
+}
+
+RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
+    return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
+}
+
+/// The same motion for the shape's own frame.
+Motion motion_of_shape(Motion motion, const RigidPose& frame) {
+    for (MotionKey& key : motion.keys) {
+        const RigidPose pose = compose({key.position, rotation_matrix(key.rotation)}, frame);
+        key.position = pose.position;
+        key.rotation = rotation_vector(pose.rotation);
+    }
+    return motion;
+}
+
+}  // namespace
+
+Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
+                        const RigidPose& pose, const Motion& motion, Real now) {
+    AttachmentTable& table = model.attachments;
+    const std::size_t row = table.slot.size();
+    table.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
+    table.slot[row] = slot;
+    table.body[row] = body;
+    table.initial[row] = initial_of(pose, motion, now);
+    table.script[row] = append_script(motion, table.keyframe);
+    const RigidPose present = pose_at(table.script[row], table.keyframe, table.initial[row], now);
+    table.motion[row] = {present.position, present.rotation, Vec3::Zero(), Vec3::Zero()};
+    table.nodes[row].begin = static_cast<Index>(table.node.size());
+    const auto b = static_cast<std::size_t>(body);
+    for (Index local : nodes) {
+        const auto n = static_cast<std::size_t>(model.bodies.nodes[b].begin + local);
+        table.node.push_back(static_cast<Index>(n));
+        table.anchor.push_back(present.rotation.transpose() * (model.nodes.position[n] - present.position));
+        if (model.nodes.inverse_mass[n] > 0) ++model.bodies.pinned_count[b];
+        model.nodes.inverse_mass[n] = 0;
+        model.nodes.velocity[n] = Vec3::Zero();
+    }
+    table.nodes[row].end = static_cast<Index>(table.node.size());
+    return static_cast<Index>(row);
+}
+
+void erase_attachment(Model& model, Index row) {
+    AttachmentTable& table = model.attachments;
+    const auto r = static_cast<std::size_t>(row);
+    const Range gone = table.nodes[r];
+    const auto body = static_cast<std::size_t>(table.body[r]);
+    for (Index i = gone.begin; i < gone.end; ++i) {
+        const Index node = table.node[static_cast<std::size_t>(i)];
+        bool held_elsewhere = false;
+        for (std::size_t other = 0; other < table.slot.size() && !held_elsewhere; ++other)
+            for (Index j = table.nodes[other].begin; other != r && j < table.nodes[other].end; ++j)
+                held_elsewhere |= table.node[static_cast<std::size_t>(j)] == node;
+        const auto n = static_cast<std::size_t>(node);
+        if (held_elsewhere || model.nodes.mass[n] <= 0) continue;
+        model.nodes.inverse_mass[n] = 1 / model.nodes.mass[n];
+        --model.bodies.pinned_count[body];
+    }
+    table.node.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+    table.anchor.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+    erase_scripted_row(table, r);
+    for (Range& range : table.nodes)
+        if (range.begin >= gone.end) {
+            range.begin -= gone.size();
+            range.end -= gone.size();
+        }
+}
+
+Index append_collider(Model& model, std::uint32_t slot, const Shape& shape, const ColliderSettings& settings,
+                      Real now) {
+    ColliderTable& table = model.colliders;
+    const std::size_t row = table.slot.size();
+    table.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
+    table.slot[row] = slot;
+    table.geometry[row] = std::visit(GeometryOf{}, shape);
+    const RigidPose frame = shape_frame(shape);
+    const RigidPose placed = compose({settings.position, rotation_matrix(settings.rotation)}, frame);
+    table.initial[row] = initial_of(placed, settings.motion, now);
+    table.script[row] = append_script(motion_of_shape(settings.motion, frame), table.keyframe);
+    const RigidPose present = pose_at(table.script[row], table.keyframe, table.initial[row], now);
+    table.motion[row] = {present.position, present.rotation, Vec3::Zero(), Vec3::Zero()};
+    table.surface[row] = surface_of(settings);
+    table.body[row] = no_index;
+    table.travel[row] = 0;
+    model.collider_records.push_back({settings.name, shape});
+
+    if (const auto* surface = std::get_if<SurfaceMesh>(&shape)) {
+        table.body[row] = append_body(model, {.slot = slot,
+                                              .kind = BodyKind::kinematic,
+                                              .self_contact = false,
+                                              .material = no_index,
+                                              .collider = static_cast<Index>(row),
+                                              .contact_distance = settings.contact_distance,
+                                              .nodes = surface->nodes,
+                                              .tetrahedra = {},
+                                              .triangles = surface->triangles,
+                                              .position = present.position,
+                                              .rotation = present.rotation,
+                                              .velocity = Vec3::Zero(),
+                                              .angular_velocity = Vec3::Zero()});
+        std::vector<Index> all(surface->nodes.size());
+        for (std::size_t n = 0; n < all.size(); ++n) all[n] = static_cast<Index>(n);
+        append_attachment(model, no_slot, table.body[row], all, placed, settings.motion, now);
+    }
+    return static_cast<Index>(row);
+}
+
+void erase_collider(Model& model, Index row) {
+    const auto c = static_cast<std::size_t>(row);
+    if (const Index body = model.colliders.body[c]; body != no_index) {
+        erase_body(model, body);
+        model.body_map.row_erased(body);  // no handle names it, as World::remove(BodyHandle) would erase
+    }
+    erase_scripted_row(model.colliders, c);
+    model.collider_records.erase(model.collider_records.begin() + row);
+    for (Index& collider : model.bodies.collider)
+        if (collider != no_index && collider > row) --collider;
+}
+
+}  // namespace skerry

@@ -1,0 +1,26 @@
+// What is remembered of contacts from step to step: impulses to start from, close pairs and their candidates.
+#pragma once
+
+#include "components/contact_table.h"
+#include "components/pair_table.h"
+#include "engine/world/state/model.h"
+
+namespace skerry {
+
+struct ContactCache {
+    WarmStartTable warm_start;
+    PairTable pairs;
+    SearchState search;
+    CrossingTable crossings;
+
+    /// Forgets what the search believes of distances.
+    void search_afresh(Model& model);
+    /// Forgets candidates and how far anything has come since they were found: everything is searched in the next step,
+    /// from where things are now. What is known of a pair's sides stays. A world that is copied or saved does so, and
+    /// its copy: then both search in the same steps.
+    void forget_distances(Model& model);
+    /// Rows have moved: pairs are found again. Impulses stay, since their keys name bodies by slot.
+    void drop_pairs(Model& model);
+};
+
+}  // namespace skerry

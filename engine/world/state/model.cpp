@@ -1,0 +1,135 @@
+#include "engine/world/state/model.h"
+
+#include <algorithm>
+
+#include "systems/collision/build_surface.h"
+#include "systems/collision/tree/bvh.h"
+#include "systems/dynamics/elements/build_elements.h"
+
+namespace skerry {
+
+namespace {
+
+[[noreturn]] void refuse_stale(const char* call, const char* kind) {
+    Complaint{.file = {},
+              .object = call,
+              .field = kind,
+              .found = "a handle to nothing",
+              .expected = "one that lives in this world",
+              .hint = "it was removed, or never made here"}
+        .raise();
+}
+
+template <class Map, class HandleType>
+Index live_row(const Map& map, HandleType handle, const char* call, const char* kind) {
+    const Index row = map.row(handle);
+    if (row == no_index) refuse_stale(call, kind);
+    return row;
+}
+
+/// Triangles name the elements that they belong to as these stand in the table.
+void renumber_elements(std::span<const Index> order, std::span<BoundaryTriangle> triangles) {
+    if (order.empty()) return;
+    std::vector<Index> place(order.size());
+    for (std::size_t e = 0; e < order.size(); ++e) place[static_cast<std::size_t>(order[e])] = static_cast<Index>(e);
+    for (BoundaryTriangle& triangle : triangles) triangle.element = place[static_cast<std::size_t>(triangle.element)];
+}
+
+}  // namespace
+
+Index Model::row(BodyHandle body, const char* call) const {
+    return live_row(body_map, body, call, "body");
+}
+Index Model::row(ColliderHandle collider, const char* call) const {
+    return live_row(collider_map, collider, call, "collider");
+}
+Index Model::row(MaterialHandle material, const char* call) const {
+    return live_row(material_map, material, call, "material");
+}
+Index Model::row(AttachmentHandle attachment, const char* call) const {
+    return live_row(attachment_map, attachment, call, "attachment");
+}
+
+ElementInputs Model::all_elements() const {
+    return ElementInputs::bind({}, elements, materials, bodies);
+}
+
+ElementInputs Model::elements_active(const ActiveLevels& active) const {
+    return ElementInputs::bind({}, elements, materials, bodies, active, any_asleep);
+}
+
+Index Model::user_element(std::size_t body, Index element) const {
+    const Index place = element - static_cast<Index>(element_lanes) * bodies.blocks[body].begin;
+    const std::vector<Index>& order = body_records[body].element_order;
+    return order.empty() ? place : order[static_cast<std::size_t>(place)];
+}
+
+void Model::wake(std::size_t body) {
+    bodies.asleep[body] = 0;
+    bodies.still_time[body] = 0;
+}
+
+void Model::wake_all() {
+    for (std::size_t b = 0; b < bodies.asleep.size(); ++b) wake(b);
+}
+
+Real Model::note_rest() {
+    any_asleep = false;
+    Real awake_mass = 0;
+    for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
+        any_asleep |= bodies.asleep[b] != 0;
+        if (!bodies.asleep[b]) awake_mass += body_mass[b];
+    }
+    return awake_mass;
+}
+
+void Model::note_loads() {
+    loaded = std::ranges::any_of(nodes.load, [](const Vec3& load) { return load != Vec3::Zero(); });
+}
+
+void Model::rebuild_derived() {
+    build_corners(elements.node, elements.volume, nodes.position.size(), corners);
+    for (LevelMask& levels : nodes.levels) levels = 0;
+    for (std::size_t b = 0; b < elements.node.size(); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (elements.volume[b][l] > 0)
+                for (std::size_t a = 0; a < 4; ++a)
+                    nodes.levels[static_cast<std::size_t>(elements.node[b][a][l])] |=
+                        static_cast<LevelMask>(1u << elements.level[b]);
+    body_mass.assign(bodies.slot.size(), 0);
+    for (std::size_t n = 0; n < nodes.mass.size(); ++n)
+        body_mass[static_cast<std::size_t>(nodes.body[n])] += nodes.mass[n];
+    note_loads();
+    // What a step leaves where it has nothing to do: nodes at rest, and nodes that no contact pushes.
+    std::ranges::fill(nodes.velocity_next, Vec3::Zero());
+    std::ranges::fill(nodes.push_out, Vec3::Zero());
+}
+
+void Model::append_outline(std::size_t body) {
+    const BodyRecord& record = body_records[body];
+    const bool has_elements = !record.tetrahedra.empty();
+    std::vector<BoundaryTriangle> triangles;
+    if (has_elements) {
+        triangles = boundary_triangles(record.tetrahedra);
+        renumber_elements(record.element_order, triangles);
+    } else {
+        for (const auto& triangle : record.surface) triangles.push_back({triangle, no_index});
+    }
+    const Index first_element = has_elements ? bodies.blocks[body].begin * element_lanes : no_index;
+    const SurfaceRanges ranges = append_surface(triangles, bodies.nodes[body].begin, first_element, surface);
+    bodies.triangles[body] = ranges.triangles;
+    bodies.edges[body] = ranges.edges;
+    bodies.vertices[body] = ranges.vertices;
+    const BvhRanges tree = append_bvh(ranges.triangles, surface.triangles.node, nodes.rest_position, bvh, bvh_leaves);
+    bodies.bvh_nodes[body] = tree.nodes;
+    bodies.bvh_leaves[body] = tree.leaves;
+}
+
+void Model::rebuild_outlines() {
+    surface = {};
+    bvh = {};
+    bvh_leaves = {};
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b) append_outline(b);
+}
+
+}  // namespace skerry

@@ -1,0 +1,108 @@
+// What is simulated: bodies, colliders, attachments, materials and gravity, as they are now.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "components/attachment_table.h"
+#include "components/body_table.h"
+#include "components/bvh_table.h"
+#include "components/collider_table.h"
+#include "components/element_table.h"
+#include "components/handle.h"
+#include "components/material_table.h"
+#include "components/node_block_table.h"
+#include "components/node_table.h"
+#include "components/ragged.h"
+#include "components/surface_table.h"
+#include "skerry/mesh.h"
+#include "skerry/settings.h"
+#include "skerry/world.h"
+#include "systems/dynamics/elements/compute_element_forces.h"
+
+namespace skerry {
+
+/// Slot of an attachment that belongs to a mesh collider: no user has a handle to it.
+inline constexpr std::uint32_t no_slot = 0xffffffffu;
+
+/// What only a person or a file reads of a body.
+struct BodyRecord {
+    std::string name;
+    std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
+    std::vector<std::array<Index, 3>> surface;     // local nodes
+    std::vector<Index> element_order;              // which tetrahedron element e of the body is; empty: number e
+};
+
+struct ColliderRecord {
+    std::string name;
+    Shape shape;
+};
+
+struct Model {
+    Settings settings;
+
+    NodeTable nodes;
+    NodeBlockTable node_blocks;
+    ElementBlockTable elements;
+    Ragged<Index> corners;  // by node: 4 element + corner; derived: rebuild_derived
+    SurfaceTables surface;
+    BvhTable bvh;
+    BvhLeafTable bvh_leaves;
+    BodyTable bodies;
+    MaterialTable materials;
+    ColliderTable colliders;
+    AttachmentTable attachments;
+    HandleMap<MaterialHandle> material_map;
+    HandleMap<BodyHandle> body_map;
+    HandleMap<ColliderHandle> collider_map;
+    HandleMap<AttachmentHandle> attachment_map;
+    std::vector<BodyRecord> body_records;          // by row
+    std::vector<ColliderRecord> collider_records;  // by row
+
+    Column<Real> body_mass;   // kg, of all nodes of a body, held ones, too; derived: rebuild_derived
+    bool loaded = false;      // some node has a load; derived: note_loads
+    bool any_asleep = false;  // some body rests; derived: note_rest. While none does, no stage asks
+
+    Index row(BodyHandle body, const char* call) const;
+    Index row(ColliderHandle collider, const char* call) const;
+    Index row(MaterialHandle material, const char* call) const;
+    Index row(AttachmentHandle attachment, const char* call) const;
+
+    /// For what looks at all elements, whether they are active in the present step or not.
+    ElementInputs all_elements() const;
+    ElementInputs elements_active(const ActiveLevels& active) const;
+    /// An element, by row of the table, by its number in the mesh that the user gave.
+    Index user_element(std::size_t body, Index element) const;
+
+    /// Ends the rest of one body, or of all.
+    void wake(std::size_t body);
+    void wake_all();
+    /// Before a step: whether any body is out of it. Returns the mass of those that are in it, kg.
+    Real note_rest();
+    /// After loads were set.
+    void note_loads();
+    /// After bodies or colliders came or went: what is derived from all of them.
+    void rebuild_derived();
+
+    /// Surface and tree of one body, from its record and its shape at rest; the body must be the last that has rows in
+    /// these tables.
+    void append_outline(std::size_t body);
+    /// The same for all bodies, in place of what there is.
+    void rebuild_outlines();
+
+    void for_each_table(auto&& visit) {
+        visit("nodes", nodes);
+        visit("node_blocks", node_blocks);
+        visit("elements", elements);
+        visit("surface", surface);
+        visit("bvh", bvh);
+        visit("bvh_leaves", bvh_leaves);
+        visit("bodies", bodies);
+        visit("materials", materials);
+        visit("colliders", colliders);
+        visit("attachments", attachments);
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,87 @@
+// What the stages of one step hand to each other, and the memory they work in. Nothing here outlives the step, but for
+// contacts and regions, which can be looked at until the next one, and what a guess of the solver's cost is based on.
+#pragma once
+
+#include "components/contact_table.h"
+#include "components/region_table.h"
+#include "components/step_levels.h"
+#include "skerry/settings.h"
+#include "systems/collision/inputs/collision_inputs.h"
+#include "systems/contact/measure_contacts.h"
+#include "systems/contact/separate_regions.h"
+#include "systems/dynamics/checks/check_state.h"
+#include "systems/dynamics/checks/find_inversions.h"
+#include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/motion/update_sleep.h"
+#include "systems/solver/solve_regions.h"
+
+namespace skerry {
+
+/// What a step is asked to be. Written before its stages start; none of them writes it.
+struct StepParameters {
+    Real h = 0;    // s
+    Real lag = 0;  // s, by which velocities are behind positions at the kick
+    ActiveLevels active;
+    Vec3 gravity = Vec3::Zero();  // m/s^2
+    Integrator integrator = Integrator::leapfrog;
+    ContactRegions contact_regions = ContactRegions::separate;
+    CollisionSettings collision;
+    SolverSettings solver;
+    Real max_strain_step = 0;
+    SleepSettings sleep;
+    bool let_invert = false;      // the last of the tries to avoid it
+    bool problem_wanted = false;  // somebody wants to see the contact problem of this step
+};
+
+/// What the stages find.
+struct StepFindings {
+    StepVerdict verdict;
+    Inversions inversions;
+    Index crossings = 0;  // features that would go through each other: not zero, and the step is tried again
+    ContactMeasures measures;
+    ExternalWork external;
+    TakenByRest rest;
+    Real damped = 0;  // J, taken out by damping in this step
+};
+
+inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
+    return inversions.first && !parameters.let_invert;
+}
+/// Whether a step can be committed.
+inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inversions& inversions,
+                         const StepParameters& parameters) {
+    return verdict.fault == StepFault::none && crossings == 0 && !inverts(inversions, parameters);
+}
+
+/// Node velocities that a step overwrites and its contact problem is made of.
+struct KeptVelocities {
+    Column<Vec3> velocity;       // m/s, at the start of the step
+    Column<Vec3> velocity_next;  // m/s, predicted
+};
+
+/// What the settings ask of every step.
+StepParameters step_parameters(const Settings& settings);
+
+struct StepScratch {
+    StepParameters parameters;
+    StepFindings findings;
+    ContactTable contacts;
+    RegionTable regions;
+    Real awake_mass = 0;      // kg, at the start of the step
+    bool ran_inline = false;  // on the calling thread alone
+
+    UnionFind union_find;
+    SolverMemory solver_memory;
+    SleepMemory sleep_memory;
+    KeptVelocities kept_velocities;
+    Column<Real> stiffness_sum;             // of stable_step, by node
+    Column<std::uint8_t> pressed;           // by body at rest, in this step
+    WarmStartTable warm_start_next;         // of store_warm_start
+    Column<ExternalWork> work_parts;        // of measure_work
+    Column<InversionPart> inversion_parts;  // of find_inversions
+
+    bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
+    bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }
+};
+
+}  // namespace skerry

@@ -1,0 +1,177 @@
+#include "engine/world/state_hash.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "components/hash.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::uint32_t nothing = 0xffffffffu;
+
+// Rows of tables have no bytes between their fields, but for two.
+template <class T>
+void add_rows(Hash& hash, std::span<const T> rows) {
+    hash.add(rows.data(), rows.size_bytes());
+}
+template <class T>
+void add_row(Hash& hash, const T& row) {
+    hash.add(&row, sizeof row);
+}
+void add_row(Hash& hash, const MaterialConstants& row) {
+    hash.add(static_cast<std::uint64_t>(row.model));
+    for (Real number : {row.shear_modulus, row.lame_lambda, row.density}) add_row(hash, number);
+}
+void add_rows(Hash& hash, std::span<const MaterialConstants> rows) {
+    for (const MaterialConstants& row : rows) add_row(hash, row);
+}
+void add_row(Hash& hash, const ColliderGeometry& row) {
+    hash.add(static_cast<std::uint64_t>(row.shape));
+    add_row(hash, row.size);
+}
+
+/// Rows begin .. end - 1 of every column that is plain state.
+void add_state(Hash& hash, auto& table, Range rows) {
+    table.for_each_column([&](const char*, const auto& column, ColumnRole role) {
+        if (role != ColumnRole::state) return;
+        add_rows(hash,
+                 column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size())));
+    });
+}
+
+Range single(std::size_t row) {
+    return {static_cast<Index>(row), static_cast<Index>(row) + 1};
+}
+
+std::uint32_t slot_of(std::span<const std::uint32_t> slot, Index row) {
+    return row == no_index ? nothing : slot[static_cast<std::size_t>(row)];
+}
+
+/// Rows of a table in the order of their slots; of equal slots, in that of the rows.
+std::vector<std::size_t> in_slot_order(std::span<const std::uint32_t> slot) {
+    std::vector<std::size_t> order(slot.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t row) { return slot[row]; });
+    return order;
+}
+
+void add_nodes(Hash& hash, Model& model, std::size_t body) {
+    const Range nodes = model.bodies.nodes[body], blocks = model.bodies.node_blocks[body];
+    const Index row = static_cast<Index>(body);
+    add_state(hash, model.nodes, nodes);
+    for (Index n = nodes.begin; n < nodes.end; ++n) add_row(hash, model.nodes.body[n] - row);
+    for (Index k = blocks.begin; k < blocks.end; ++k) {
+        add_row(hash, model.node_blocks.begin[k] - nodes.begin);
+        add_row(hash, model.node_blocks.end[k] - nodes.begin);
+        add_row(hash, model.node_blocks.body[k] - row);
+    }
+}
+
+void add_elements(Hash& hash, Model& model, std::size_t body) {
+    const Range blocks = model.bodies.blocks[body];
+    const Index first_node = model.bodies.nodes[body].begin, row = static_cast<Index>(body);
+    add_state(hash, model.elements, blocks);
+    for (Index e = blocks.begin; e < blocks.end; ++e) {
+        for (const auto& corner : model.elements.node[e])
+            for (Index node : corner.lane) add_row(hash, node - first_node);
+        add_row(hash, model.elements.body[e] - row);
+        hash.add(slot_of(model.materials.slot, model.elements.material[e]));
+    }
+}
+
+void add_script(Hash& hash, const MotionScript& script, std::span<const Keyframe> keyframe) {
+    add_row(hash, script.velocity);
+    add_row(hash, script.angular_velocity);
+    for (Index k = script.key_begin; k < script.key_end; ++k) add_row(hash, keyframe[static_cast<std::size_t>(k)]);
+    add_row(hash, script.key_end - script.key_begin);
+}
+
+/// Columns with one row per collider or attachment, but for links.
+void add_row_state(Hash& hash, auto& table, std::size_t row) {
+    table.for_each_row_column([&](const char*, const auto& column, ColumnRole role) {
+        if (role == ColumnRole::state) add_row(hash, column[row]);
+    });
+}
+
+void add_attachment(Hash& hash, Model& model, std::size_t a) {
+    AttachmentTable& table = model.attachments;
+    const auto body = static_cast<std::size_t>(table.body[a]);
+    add_row_state(hash, table, a);
+    hash.add(static_cast<std::uint64_t>(model.bodies.kind[body]));
+    hash.add(model.bodies.slot[body]);
+    for (Index i = table.nodes[a].begin; i < table.nodes[a].end; ++i) {
+        add_row(hash, table.node[i] - model.bodies.nodes[body].begin);
+        add_row(hash, table.anchor[i]);
+    }
+    add_row(hash, table.nodes[a].size());
+    add_script(hash, table.script[a], table.keyframe);
+}
+
+void add_collider(Hash& hash, Model& model, std::size_t c) {
+    ColliderTable& table = model.colliders;
+    add_row_state(hash, table, c);
+    add_script(hash, table.script[c], table.keyframe);
+    if (table.body[c] != no_index) hash.add(body_hash(model, static_cast<std::size_t>(table.body[c])));
+}
+
+/// In the order of their keys, which name bodies and colliders by slot. Of pairs that are apart nothing is kept: a
+/// search finds them so again, and which of them are listed only tells when it last looked.
+void add_pairs(Hash& hash, const Model& model, const PairTable& pairs) {
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        if (pairs.state[p] != PairState::overlapping) continue;
+        add_row(hash, pairs.key[p]);
+        add_row(hash, pairs.kind[p]);
+        hash.add(slot_of(model.bodies.slot, pairs.first[p]));
+        hash.add(
+            slot_of(pairs.kind[p] == PairKind::collider ? model.colliders.slot : model.bodies.slot, pairs.second[p]));
+    }
+}
+
+/// A cycle that has not begun is planned anew, with the levels of the bodies in it, before anything reads it.
+void add_clock(Hash& hash, const Model& model, const Clock& clock) {
+    add_row(hash, clock.time);
+    add_row(hash, clock.offset);
+    add_row(hash, clock.steps_since_watch);
+    add_row(hash, clock.cycle.index);
+    add_row(hash, clock.cycle.lead);
+    if (clock.cycle.index == 0) return;
+    add_row(hash, clock.cycle.levels);
+    add_row(hash, clock.cycle.h);
+    add_row(hash, clock.cycle.elements);
+    for (std::size_t b : in_slot_order(model.bodies.slot)) add_row(hash, model.bodies.level[b]);
+}
+
+}  // namespace
+
+std::uint64_t body_hash(Model& model, std::size_t body) {
+    Hash hash;
+    BodyTable& bodies = model.bodies;
+    add_state(hash, bodies, single(body));
+    hash.add(slot_of(model.materials.slot, bodies.material[body]));
+    hash.add(slot_of(model.colliders.slot, bodies.collider[body]));
+    for (Range range : {bodies.nodes[body], bodies.node_blocks[body], bodies.blocks[body]}) add_row(hash, range.size());
+    add_nodes(hash, model, body);
+    add_elements(hash, model, body);
+    return hash.value();
+}
+
+std::uint64_t state_hash(WorldState& world) {
+    Model& model = world.model;
+    Hash hash;
+    add_clock(hash, model, world.clock);
+    add_row(hash, model.settings.gravity);
+    for (std::size_t m : in_slot_order(model.materials.slot)) add_state(hash, model.materials, single(m));
+    for (std::size_t b : in_slot_order(model.bodies.slot))
+        if (model.bodies.kind[b] == BodyKind::deformable) hash.add(body_hash(model, b));
+    for (std::size_t c : in_slot_order(model.colliders.slot)) add_collider(hash, model, c);
+    for (std::size_t a : in_slot_order(model.attachments.slot)) add_attachment(hash, model, a);
+    WarmStartTable& warm_start = world.cache.warm_start;
+    warm_start.for_each_column([&](const char*, const auto& column, ColumnRole) { add_rows(hash, column.span()); });
+    add_pairs(hash, model, world.cache.pairs);
+    return hash.value();
+}
+
+}  // namespace skerry

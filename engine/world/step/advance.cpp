@@ -1,0 +1,185 @@
+// The loop that fills a span of time with steps, and what it does when one cannot be taken.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "engine/world/step/step.h"
+#include "jobs/arithmetic_scope.h"
+
+namespace skerry {
+
+namespace {
+
+/// Steps between two looks at the stable step: it changes with deformation, over many steps.
+/// In cycles of fine steps it is the coarse ones that count: all elements deform at the pace of the whole.
+constexpr std::uint64_t steps_per_watch = 256;
+
+StepStatus status_of(StepFault fault) {
+    switch (fault) {
+        case StepFault::not_finite:
+            return StepStatus::not_finite;
+        case StepFault::too_fast:
+            return StepStatus::too_fast;
+        case StepFault::too_far:
+            return StepStatus::too_far;
+        case StepFault::too_stiff:
+            return StepStatus::too_stiff;
+        case StepFault::none:
+            break;
+    }
+    return StepStatus::ok;
+}
+
+void blame(const WorldState& world, StepReport& report) {
+    const StepVerdict& verdict = world.scratch.findings.verdict;
+    report.status = status_of(verdict.fault);
+    report.value = verdict.value;
+    if (verdict.body == no_index) return;
+    const auto b = static_cast<std::size_t>(verdict.body);
+    if (world.model.bodies.kind[b] == BodyKind::deformable)
+        report.body = world.model.body_map.handle_of_slot(world.model.bodies.slot[b]);
+    report.body_name = world.model.body_records[b].name;
+    if (verdict.node != no_index) report.node = verdict.node - world.model.bodies.nodes[b].begin;
+    if (verdict.element != no_index) report.element = world.model.user_element(b, verdict.element);
+}
+
+void add_to_report(const WorldState& world, StepReport& report) {
+    const RegionTable& regions = world.scratch.regions;
+    report.contacts = static_cast<Index>(world.scratch.contacts.size());
+    report.regions = static_cast<Index>(regions.size());
+    report.largest_region = 0;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        report.largest_region =
+            std::max(report.largest_region, regions.contacts.offset[r + 1] - regions.contacts.offset[r]);
+        report.unconverged += regions.status[r] == RegionStatus::iteration_limit;
+        if (!(regions.error[r] > report.worst_error)) continue;
+        report.worst_error = regions.error[r];
+        report.worst_region = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
+    }
+    report.max_penetration = std::max(report.max_penetration, world.scratch.findings.measures.max_penetration);
+    report.max_gap_violation = std::max(report.max_gap_violation, world.scratch.findings.measures.max_gap_violation);
+    ++report.steps;
+}
+
+void note_outcome(StepOutcome outcome, RunCounters& counters, StepReport& report) {
+    report.retried += outcome == StepOutcome::again_with_crossings;
+    counters.retried += outcome == StepOutcome::again_with_crossings;
+    report.shortened += outcome == StepOutcome::again_shorter;
+    counters.shortened += outcome == StepOutcome::again_shorter;
+}
+
+void note_inversions(WorldState& world, StepReport& report) {
+    const Inversions& inversions = world.scratch.findings.inversions;
+    if (inversions.count == 0) return;
+    const auto b = static_cast<std::size_t>(inversions.body);
+    if (report.inverted == 0) {
+        report.inverted_body = world.model.body_map.handle_of_slot(world.model.bodies.slot[b]);
+        report.inverted_name = world.model.body_records[b].name;
+        report.inverted_element = world.model.user_element(b, inversions.element);
+    }
+    report.inverted += inversions.count;
+    world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
+}
+
+/// Says that the step asked for was too long for a body.
+void note_limit(WorldState& world, StepReport& report) {
+    Index body = no_index;
+    const Real trusted = trusted_step(world.model, &body);
+    if (!world.model.settings.step_size || body == no_index || *world.model.settings.step_size <= trusted) return;
+    ++report.limited;
+    ++world.record.counters.limited;
+    report.limited_step = trusted;
+    report.limited_by = world.model.body_records[static_cast<std::size_t>(body)].name;
+}
+
+/// Steps are counted with an int; a step so small that time does not move on by it would go on for ever.
+void require_countable(Real dt, Real step) {
+    constexpr Real most = std::numeric_limits<int>::max();
+    if (!(dt > most * step)) return;
+    char found[64];
+    std::snprintf(found, sizeof found, "%g s in steps of %g s", dt, step);
+    Complaint{.file = {},
+              .object = "advance",
+              .field = "dt",
+              .found = found,
+              .expected = "at most 2147483647 steps",
+              .hint = {}}
+        .raise();
+}
+
+}  // namespace
+
+StepReport World::advance(Real dt) {
+    if (!(dt >= 0) || !std::isfinite(dt))
+        Complaint{.file = {},
+                  .object = "advance",
+                  .field = "dt",
+                  .found = std::to_string(dt),
+                  .expected = "a time >= 0 (s)",
+                  .hint = {}}
+            .raise();
+    const ArithmeticScope arithmetic;  // what is done between the stages depends on the host no more than they do
+    WorldState& world = *state_;
+    Model& model = world.model;
+    Clock& clock = world.clock;
+    SearchMemory& search = world.cache.search.memory;
+    const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
+    require_countable(
+        dt, model.settings.step_size.value_or(skerry::stable_step(model.bodies) * model.settings.step_safety));
+    StepReport report;
+    const Real end = clock.time + dt;
+    Real left = dt;
+    Tries tries;
+    world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
+    if (world.record.counters.steps == 0 && left > 0) check_balance(model, world.record.balance);
+    bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
+    world.transaction.begin_call(model, clock);
+    while (left > 0) {
+        Index stiffest = no_index;
+        const Real trusted = trusted_step(model, &stiffest);
+        if (!(std::min(trusted, tries.longest) > std::numeric_limits<Real>::epsilon() * end)) {
+            world.scratch.findings.verdict = {StepFault::too_stiff, stiffest, no_index, trusted};
+            blame(world, report);
+            break;
+        }
+        const StepPlan plan = plan_step(model, clock.cycle, left, tries.longest);
+        if (leapfrog) drift_to(*world.executor, plan.h / 2, model, clock, search);
+        const Real start = clock.time;
+        const std::uint64_t let_through = world.cache.crossings.let_through;
+        const StepOutcome outcome = try_step(world, plan, tries);
+        note_outcome(outcome, world.record.counters, report);
+        if (outcome == StepOutcome::refused) {
+            blame(world, report);
+            break;
+        }
+        if (outcome != StepOutcome::committed) continue;
+        report.crossed += static_cast<Index>(world.cache.crossings.let_through - let_through);
+        report.step_size = plan.h;
+        add_to_report(world, report);
+        note_inversions(world, report);
+        note_limit(world, report);
+        left = plan.steps > 1 ? left - plan.h : 0;
+        // Between cycles: within one, levels must stay.
+        if (++clock.steps_since_watch >= steps_per_watch << clock.cycle.levels && clock.cycle.index == 0) {
+            clock.steps_since_watch = 0;
+            watch_stable_steps(model, world.scratch.stiffness_sum);
+            if (clock.offset == 0)
+                check_balance(model, world.record.balance);
+            else
+                look_at_end = true;
+        }
+        show_contact_problem(model, world.scratch, start, world.record);
+    }
+    if (report.steps == 0) {
+        world.transaction.roll_back_call(model, clock);
+        if (leapfrog) measure_displacement_again(*world.executor, model, search);
+    } else {
+        drift_to(*world.executor, 0, model, clock, search);
+    }
+    if (left == 0) clock.time = end;
+    if (look_at_end) check_balance(model, world.record.balance);
+    return report;
+}
+
+}  // namespace skerry

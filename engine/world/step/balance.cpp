@@ -1,0 +1,90 @@
+#include "engine/world/step/balance.h"
+
+#include <algorithm>
+
+#include "engine/world/state/model.h"
+#include "engine/world/state/step_scratch.h"
+#include "systems/dynamics/elements/element_energy.h"
+
+namespace skerry {
+
+namespace {
+
+struct Present {
+    Real kinetic = 0, elastic = 0, potential = 0;  // J
+    Vec3 momentum = Vec3::Zero();                  // kg m/s
+    Real momentum_size = 0;                        // kg m/s, sum of m |v|
+};
+
+Present measure(const Model& model) {
+    Present now;
+    const NodeTable& nodes = model.nodes;
+    for (std::size_t n = 0; n < nodes.position.size(); ++n) {
+        now.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
+        if (!(nodes.inverse_mass[n] > 0)) continue;
+        const Vec3 momentum = nodes.mass[n] * nodes.velocity[n];
+        now.kinetic += momentum.dot(nodes.velocity[n]) / 2;
+        now.momentum += momentum;
+        now.momentum_size += momentum.norm();
+    }
+    now.elastic =
+        elastic_energy(model.all_elements(), {0, static_cast<Index>(model.elements.node.size())}, nodes.position);
+    return now;
+}
+
+bool damps_held_body(const Model& model) {
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
+        if (model.bodies.pinned_count[b] > 0 && model.bodies.material[b] != no_index &&
+            model.materials.damping[static_cast<std::size_t>(model.bodies.material[b])] > 0)
+            return true;
+    return false;
+}
+
+}  // namespace
+
+void add_step(const StepScratch& step, Balance& balance) {
+    if (!balance.open) return;
+    const ContactMeasures& contacts = step.findings.measures;
+    const ExternalWork& external = step.findings.external;
+    const Vec3 impulse = step.parameters.h * step.awake_mass * step.parameters.gravity + external.impulse +
+                         contacts.outer_impulse - step.findings.rest.momentum;
+    const Real work =
+        external.work + contacts.outer_work - contacts.dissipated - step.findings.damped - step.findings.rest.energy;
+    ++balance.steps;
+    balance.impulse += impulse;
+    balance.momentum_flow += impulse.norm();
+    balance.work += work;
+    balance.energy_flow += std::abs(work);
+}
+
+void check_balance(const Model& model, Balance& balance) {
+    const Present now = measure(model);
+    const Real energy = now.kinetic + now.elastic + now.potential;
+    const bool was_open = balance.open;
+    if (!was_open) {
+        balance.open = true;
+        balance.momentum_known = !damps_held_body(model);
+        balance.energy = energy;
+        balance.potential = now.potential;
+        balance.momentum = now.momentum;
+        balance.impulse.setZero();
+        balance.steps = 0;
+        balance.work = balance.energy_flow = balance.momentum_flow = 0;
+    }
+    // the height of a weight means nothing: what it fell does
+    const Real exchanged =
+        now.kinetic + now.elastic + std::abs(now.potential - balance.potential) + balance.energy_flow;
+    balance.energy_scale = std::max(balance.energy_scale, exchanged);
+    balance.momentum_scale = std::max(balance.momentum_scale, now.momentum_size + balance.momentum_flow);
+    balance.energy_error = std::max(balance.energy_error, std::abs(energy - balance.energy - balance.work));
+    if (balance.momentum_known)
+        balance.momentum_error =
+            std::max(balance.momentum_error, (now.momentum - balance.momentum - balance.impulse).norm());
+}
+
+Balance checked_balance(const Model& model, Balance balance) {
+    if (balance.open) check_balance(model, balance);
+    return balance;
+}
+
+}  // namespace skerry

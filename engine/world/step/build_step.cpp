@@ -1,0 +1,156 @@
+// The step: one list of stages. Each is named folder/function; the graph takes the order from what they read and write,
+// so the force and the contact branch run side by side (docs/step_graph.dot shows the result). What a struct of inputs
+// takes of the tables is said by its bind(), where it is defined.
+#include "engine/world/step/step.h"
+#include "systems/collision/find_candidates.h"
+#include "systems/collision/find_contacts.h"
+#include "systems/collision/find_crossings.h"
+#include "systems/contact/match_warm_start.h"
+#include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/motion/advance_positions.h"
+#include "systems/dynamics/motion/damp_velocity.h"
+#include "systems/dynamics/motion/measure_displacement.h"
+#include "systems/dynamics/motion/move_colliders.h"
+#include "systems/dynamics/motion/predict_velocity.h"
+#include "systems/dynamics/motion/update_sleep.h"
+
+namespace skerry {
+
+namespace {
+
+/// Scripts give colliders and held nodes their motion during this step.
+void list_scripted_motion(WorldState& w, TaskGraph& g) {
+    ColliderTable& c = w.model.colliders;
+    AttachmentTable& a = w.model.attachments;
+    NodeTable& n = w.model.nodes;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage("dynamics/move_colliders", move_colliders, inputs<ColliderMotionInputs>(c), value(w.clock.time), value(p.h),
+            write(c.motion));
+    g.stage("dynamics/move_attachments", move_colliders, inputs<ColliderMotionInputs>(a), value(w.clock.time),
+            value(p.h), write(a.motion));
+    g.stage("dynamics/drive_nodes", drive_nodes, inputs<NodeMotionInputs>(a), value(p.h), read(n.position),
+            write(n.velocity));
+}
+
+void list_force_branch(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    NodeTable& n = m.nodes;
+    ElementBlockTable& e = m.elements;
+    BodyTable& b = m.bodies;
+    NodeBlockTable& k = m.node_blocks;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage("dynamics/compute_element_forces", compute_element_forces,
+            inputs<ElementInputs>(e, m.materials, b, p.active, m.any_asleep), read(n.position), read(n.velocity),
+            read(e.rotation), write(e.rotation_next), write(e.force));
+    g.stage("dynamics/predict_velocity", predict_velocity,
+            inputs<KickInputs>(k, m.corners, e, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
+            write(n.force), write(n.velocity_next));
+    g.stage("dynamics/damp_velocity", damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
+            read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
+}
+
+auto collision_inputs(const Model& m) {
+    return inputs<CollisionInputs>(m.bodies, m.colliders, m.surface, m.materials, m.bvh, m.bvh_leaves, m.nodes);
+}
+
+void list_contact_branch(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    ContactTable& c = w.scratch.contacts;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage("collision/find_candidates", find_candidates, collision_inputs(m), value(p.collision), value(p.h),
+            write(m.bvh.box), write(m.bvh_leaves.box), make(w.cache.search), make(w.cache.pairs));
+    g.stage("collision/find_contacts", find_contacts, collision_inputs(m), value(p.collision), value(p.h),
+            make(w.cache.pairs), make(w.cache.crossings), make(c));
+    const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));
+    g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.cache.warm_start),
+            value(p.h), write(c.impulse), if_warm);
+    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(m.any_asleep));
+    g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
+            make(w.scratch.pressed), if_any_asleep);
+    g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
+            value(p.contact_regions), make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
+}
+
+void list_solve(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.model.nodes;
+    ContactTable& c = w.scratch.contacts;
+    const StepParameters& p = w.scratch.parameters;
+    const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.problem_wanted));
+    g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next),
+            make(w.scratch.kept_velocities), if_wanted);
+    g.stage("solver/solve_regions", solve_regions, inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity),
+            value(p.solver), value(p.h), make(w.scratch.solver_memory), make(w.scratch.regions),
+            outputs<RegionOutputs>(c, n));
+    g.stage_with_result("contact/measure_contacts", w.scratch.findings.measures, measure_contacts, read(c),
+                        read(n.inverse_mass), read(n.velocity), read(n.velocity_next), write(c.slip), write(c.state),
+                        value(p.solver.friction));
+}
+
+/// Looks at the step.
+void list_checks(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    NodeTable& n = m.nodes;
+    BodyTable& b = m.bodies;
+    ElementBlockTable& e = m.elements;
+    NodeBlockTable& k = m.node_blocks;
+    const bool& pushed = w.scratch.regions.pushed;
+    StepFindings& found = w.scratch.findings;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage_with_result("dynamics/check_state", found.verdict, check_state, inputs<CheckInputs>(k, b, n, e, pushed),
+                        value(p.h), value(p.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
+    const auto if_possible =
+        only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; }, read(found.verdict));
+    g.stage_with_result("dynamics/find_inversions", found.inversions, find_inversions,
+                        inputs<InversionInputs>(e, b, n, pushed), value(p.h), make(w.scratch.inversion_parts),
+                        outputs<InversionBudgets>(e, b), if_possible);
+    const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
+                                value(m.loaded), read(m.attachments.node));
+    g.stage_with_result("dynamics/measure_work", found.external, measure_work,
+                        inputs<WorkInputs>(n, m.attachments, b, m.loaded, m.any_asleep), value(p.h),
+                        make(w.scratch.work_parts), if_any);
+    g.stage_with_result("collision/find_crossings", found.crossings, find_crossings, collision_inputs(m),
+                        value(p.collision), value(p.h), read(n.velocity_next), read(n.push_out), make(w.cache.pairs),
+                        make(w.cache.crossings), if_possible);
+}
+
+/// Commits the step when it can be trusted.
+void list_commit(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.model.nodes;
+    ContactTable& c = w.scratch.contacts;
+    BodyTable& b = w.model.bodies;
+    NodeBlockTable& k = w.model.node_blocks;
+    AttachmentTable& a = w.model.attachments;
+    StepFindings& found = w.scratch.findings;
+    const StepParameters& p = w.scratch.parameters;
+    const auto if_taken =
+        only_if(can_be_taken, read(found.verdict), read(found.crossings), read(found.inversions), value(p));
+    const auto if_sleepy = only_if([](const SleepSettings& sleep) { return sleep.speed > 0; }, value(p.sleep));
+    g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(c), read(w.scratch.pressed), read(a.body),
+            read(a.motion), write(b.asleep), write(b.still_time), if_taken, if_sleepy);
+    g.stage("dynamics/advance_positions", advance_positions,
+            inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h), value(p.integrator),
+            outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
+    g.stage("dynamics/measure_displacement", measure_displacement, inputs<DisplacementInputs>(k, b, n),
+            outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
+    g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
+                        inputs<RestInputs>(b, n), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
+                        write(b.asleep), write(b.still_time), write(n.velocity), write(n.velocity_next), if_taken,
+                        if_sleepy);
+    g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse),
+            inputs<IdlePairs>(w.cache.pairs), value(p.h), make(w.cache.warm_start), make(w.scratch.warm_start_next),
+            if_taken);
+}
+
+}  // namespace
+
+void build_step(WorldState& world) {
+    list_scripted_motion(world, world.graph);
+    list_force_branch(world, world.graph);
+    list_contact_branch(world, world.graph);
+    list_solve(world, world.graph);
+    list_checks(world, world.graph);
+    list_commit(world, world.graph);
+    world.graph.compile();
+}
+
+}  // namespace skerry

@@ -1,0 +1,64 @@
+// What leapfrog does before its first and after its last kick: positions drift by half a step, so that between them
+// kicks come in the middle of their steps while the state at both ends belongs to one time. Each step is symmetric in
+// time, whatever its length.
+#include "engine/world/step/step.h"
+#include "systems/dynamics/motion/advance_positions.h"
+#include "systems/dynamics/motion/measure_displacement.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+void measure_displacement_of(Executor& executor, Model& model, SearchMemory& search) {
+    NodeTable& n = model.nodes;
+    NodeBlockTable& k = model.node_blocks;
+    BodyTable& b = model.bodies;
+    measure_displacement(executor, DisplacementInputs::bind({}, k, b, n),
+                         DisplacementOutputs::bind({}, n, search.rebase, b));
+}
+
+}  // namespace
+
+void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search) {
+    const Real seconds = offset - clock.offset;
+    if (seconds == 0) return;
+    NodeTable& n = model.nodes;
+    NodeBlockTable& k = model.node_blocks;
+    AttachmentTable& a = model.attachments;
+    ColliderTable& c = model.colliders;
+    move_colliders(ColliderMotionInputs::bind({}, c), clock.time, seconds, c.motion);
+    move_colliders(ColliderMotionInputs::bind({}, a), clock.time, seconds, a.motion);
+    drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
+    const bool pushed = false;  // by contacts, which are not of this part of the step
+    advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
+                      Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
+    measure_displacement_of(executor, model, search);
+    add_collider_travel(std::abs(seconds), search.collider_extent, c);
+    clock.time += seconds;
+    clock.offset = offset;
+}
+
+void measure_displacement_again(Executor& executor, Model& model, SearchMemory& search) {
+    const NodeTable& n = model.nodes;
+    NodeBlockTable& k = model.node_blocks;
+    for (std::size_t b = 0; b < k.begin.size(); ++b) {
+        const auto first = static_cast<std::size_t>(k.begin[b]), count = static_cast<std::size_t>(k.end[b]) - first;
+        k.displacement_squared[b] = block_displacement_squared(n.position.span().subspan(first, count),
+                                                               n.displacement_origin.span().subspan(first, count));
+    }
+    measure_displacement_of(executor, model, search);
+}
+
+void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders) {
+    for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
+        const RigidMotion& motion = colliders.motion[c];
+        // A turning shape moves its far points fastest; what is near a body is within the extent that the search has
+        // noted.
+        const Real turning = motion.angular_velocity.norm();
+        const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
+        colliders.travel[c] += seconds * (motion.velocity.norm() + rim_speed);
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,52 @@
+// The parts of a step, by file. World::advance (advance.cpp) is made of them.
+#pragma once
+
+#include "engine/world/world_state.h"
+
+namespace skerry {
+
+// build_step.cpp
+/// Lists the stages of the step; the graph takes its edges from what they read and write.
+void build_step(WorldState& world);
+
+// count_step.cpp
+/// What a committed step adds to the sums of the run.
+void count_step(const StepScratch& scratch, RunCounters& counters);
+
+// stable_steps.cpp
+/// The largest step that the stiffest body stands, as last watched, and which body (row) that is.
+Real stable_step(const BodyTable& bodies, Index* body = nullptr);
+/// The longest step that is taken: that of the settings, or the stable step where that is shorter.
+Real trusted_step(const Model& model, Index* body = nullptr);
+/// Looks at the stable step of every body again.
+void watch_stable_steps(Model& model, Column<Real>& stiffness_sum);
+
+// plan_step.cpp
+struct StepPlan {
+    Real h = 0;       // s
+    Real steps = 1;   // of this length to the end of what was asked for
+    Real stable = 0;  // s, the longest step that stability or the settings allow
+};
+/// The next step of a call that has `left` seconds to go, where no step may be longer than `fast_limit`. Begins a cycle
+/// between two.
+StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit);
+/// Which levels are due in the step of length parameters.h, and which levels of each body that means.
+void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameters& parameters);
+/// After a committed step: what its impulses covered.
+void count_impulses(const StepParameters& parameters, StepCycle& cycle, RunCounters& counters);
+
+// drift_state.cpp
+/// Lets positions, colliders and attachments drift until they are `offset` seconds ahead of the velocities.
+void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search);
+/// After positions were put back: how far the nodes are from their displacement origins.
+void measure_displacement_again(Executor& executor, Model& model, SearchMemory& search);
+/// Colliders have moved for so long at their present motion. Bodies have their travel from measure_displacement.
+void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders);
+
+// watch_problems.cpp
+/// Copies what the contact problem of this step is made of.
+void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, KeptVelocities& kept);
+/// Hands over the contact problem of the step just taken, if somebody wants it.
+void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record);
+
+}  // namespace skerry

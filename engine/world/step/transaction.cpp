@@ -1,0 +1,170 @@
+#include "engine/world/step/transaction.h"
+
+#include <algorithm>
+
+#include "engine/world/step/step.h"
+#include "systems/dynamics/elements/keep_frames.h"
+
+namespace skerry {
+
+namespace {
+
+/// Below this many elements and contacts together a step takes less time than waking the workers costs (profiling/step
+/// measures it).
+constexpr std::size_t inline_work = 1024;
+
+/// Tries of one length with the crossings of the last ones as contacts, before the step is shortened.
+constexpr int tries_at_one_length = 4;
+
+/// A step that a body is too fast for, or in which something crosses, is tried again at half its length, down to this
+/// fraction of the stable step; then steps grow back. The bound is on the length: halvings counted step by step add up
+/// until time stands still.
+constexpr Real most_shortening = 64;
+
+/// The same for a step that turns elements inside out: where they are pressed over, and not thrown, shorter steps are
+/// in vain.
+constexpr Real most_shortening_against_inversion = 4;
+
+constexpr Real step_growth = 1.1;
+
+void copy(std::span<const Real> from, Column<Real>& to) {
+    to.resize(from.size());
+    std::ranges::copy(from, to.begin());
+}
+
+/// A contact may have given bodies at rest a velocity that is not committed.
+void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
+    for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
+        const Range nodes = bodies.nodes[b];
+        if (bodies.asleep[b])
+            std::fill(velocity_next.begin() + nodes.begin, velocity_next.begin() + nodes.end, Vec3::Zero());
+    }
+}
+
+/// Runs the stages, which leave what they find in world.scratch. Returns false when it could tell without them that the
+/// step is not to be taken.
+bool run_stages(WorldState& world) {
+    StepScratch& scratch = world.scratch;
+    Model& model = world.model;
+    scratch.findings = {};
+    scratch.findings.verdict = check_distance(model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
+    if (scratch.findings.verdict.fault != StepFault::none) return false;
+    scratch.awake_mass = model.note_rest();
+    scratch.pressed.clear();
+    find_active_levels(world.clock.cycle, model.bodies, scratch.parameters);
+    world.transaction.begin_try(model);
+    Trace* const trace = world.record.tracing ? &world.record.trace : nullptr;
+    const bool small = model.elements.node.size() * element_lanes + scratch.contacts.size() < inline_work;
+    if (small)
+        world.graph.run_inline(trace);
+    else
+        world.graph.run(*world.executor, trace);
+    scratch.ran_inline = small;
+    world.record.contact_view_is_current = false;
+    return true;
+}
+
+void commit(WorldState& world) {
+    StepScratch& scratch = world.scratch;
+    ElementBlockTable& elements = world.model.elements;
+    const StepParameters& parameters = scratch.parameters;
+    world.cache.crossings.row.clear();
+    if (parameters.active.all() && !world.model.any_asleep)
+        elements.rotation.swap(elements.rotation_next);
+    else {
+        ElementInputs active = world.model.elements_active(parameters.active);
+        // A body that this step wakes has no frames of this step.
+        if (world.model.any_asleep) active.schedule.body_asleep = world.transaction.rested(world.model.bodies);
+        keep_frames(*world.executor, active, elements.rotation_next, elements.rotation);
+    }
+    add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
+    count_step(scratch, world.record.counters);
+    add_step(scratch, world.record.balance);
+    count_impulses(parameters, world.clock.cycle, world.record.counters);
+    world.clock.time += parameters.h;
+}
+
+/// The table of StepOutcome.
+StepOutcome judge(const StepScratch& scratch, const StepPlan& plan, Tries& tries) {
+    const StepFindings& found = scratch.findings;
+    const bool crosses = found.crossings > 0;
+    if (scratch.taken()) return StepOutcome::committed;
+    if (crosses && ++tries.with_crossings < tries_at_one_length) return StepOutcome::again_with_crossings;
+    if (crosses || found.verdict.fault == StepFault::too_fast) {
+        if (plan.h > plan.stable / most_shortening) return StepOutcome::again_shorter;
+        return crosses ? StepOutcome::again_letting_through : StepOutcome::refused;
+    }
+    return found.verdict.fault == StepFault::none ? StepOutcome::again_shorter : StepOutcome::refused;
+}
+
+}  // namespace
+
+StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
+    StepScratch& scratch = world.scratch;
+    scratch.parameters.h = plan.h;
+    scratch.parameters.lag = scratch.parameters.integrator == Integrator::forward_euler ? 0 : plan.h / 2;
+    scratch.parameters.let_invert =
+        tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
+    scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
+    world.cache.crossings.last_try = tries.letting_through;
+    const bool ran = run_stages(world);
+    const StepOutcome outcome = judge(scratch, plan, tries);
+    switch (outcome) {
+        case StepOutcome::committed:
+            commit(world);
+            tries = {.longest = tries.longest * step_growth};
+            return outcome;
+        case StepOutcome::again_with_crossings:
+            break;
+        case StepOutcome::again_shorter:
+            // an inversion says nothing of what crossed in the tries before
+            if (!scratch.inverts()) world.cache.crossings.row.clear();
+            tries = {.longest = plan.h / 2};
+            break;
+        case StepOutcome::again_letting_through:
+            tries.letting_through = true;
+            break;
+        case StepOutcome::refused:
+            break;
+    }
+    if (ran) world.transaction.roll_back_try(world.model);
+    return outcome;
+}
+
+void StepTransaction::begin_try(const Model& model) {
+    asleep_.resize(model.bodies.asleep.size());
+    std::ranges::copy(model.bodies.asleep, asleep_.begin());
+    copy(model.bodies.max_speed, max_speed_);
+    driven_velocity_.resize(model.attachments.node.size());
+    for (std::size_t i = 0; i < driven_velocity_.size(); ++i)
+        driven_velocity_[i] = model.nodes.velocity[static_cast<std::size_t>(model.attachments.node[i])];
+}
+
+void StepTransaction::roll_back_try(Model& model) const {
+    std::ranges::copy(max_speed_, model.bodies.max_speed.begin());
+    for (std::size_t i = 0; i < driven_velocity_.size(); ++i)
+        model.nodes.velocity[static_cast<std::size_t>(model.attachments.node[i])] = driven_velocity_[i];
+    if (model.any_asleep) keep_at_rest(model.bodies, model.nodes.velocity_next);
+}
+
+std::span<const std::uint8_t> StepTransaction::rested(const BodyTable& bodies) {
+    for (std::size_t b = 0; b < asleep_.size(); ++b) asleep_[b] |= bodies.asleep[b];
+    return asleep_;
+}
+
+void StepTransaction::begin_call(const Model& model, const Clock& clock) {
+    if (model.settings.integrator != Integrator::leapfrog) return;
+    time_ = clock.time;
+    position_ = model.nodes.position;
+    velocity_ = model.nodes.velocity;
+}
+
+void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
+    if (model.settings.integrator != Integrator::leapfrog) return;
+    model.nodes.position = position_;
+    model.nodes.velocity = velocity_;
+    clock.time = time_;
+    clock.offset = 0;
+}
+
+}  // namespace skerry

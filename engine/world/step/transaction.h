@@ -1,0 +1,76 @@
+// All or nothing: how a step is tried, what becomes of a try, and how what it overwrote is put back.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "components/column.h"
+#include "components/types.h"
+#include "engine/world/state/clock.h"
+#include "engine/world/state/model.h"
+
+namespace skerry {
+
+struct StepPlan;
+struct WorldState;
+
+/// What becomes of one try of a step. After all but `committed` the world is as it was before the try.
+///
+///     try -- good ---------------------------------------------------------------> committed
+///      |---- features cross, fewer than 4 tries of this length ------------------> again_with_crossings --> try
+///      |---- features cross, or a body is too fast; h > stable step / 64 --------> again_shorter ---------> try
+///      |---- an element turns inside out; h > stable step / 4 -------------------> again_shorter ---------> try
+///      |---- features cross at the shortest length ------------------------------> again_letting_through -> try
+///      '---- not finite, too far, too fast at the shortest length ---------------> refused
+enum class StepOutcome {
+    committed,
+    again_with_crossings,   // what crossed is a contact of the next try, which is as long
+    again_shorter,          // the next try is half as long
+    again_letting_through,  // the next try takes what crosses, and reports it
+    refused,                // world.scratch.findings say who is to blame
+};
+
+/// What is left of the tries of the present step, and of those before it, for the next one.
+struct Tries {
+    Real longest = std::numeric_limits<Real>::infinity();  // s; grows again step by step
+    int with_crossings = 0;                                // tries of this step at its present length
+    bool letting_through = false;                          // the next is the last
+};
+
+/// Takes the step that is planned as far as the tries allow, and says what became of it.
+StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
+
+/// What a try, or a call of advance, overwrites before it is known to be good. Listed here, once:
+///
+///     what                                      written by             undone by
+///     nodes.velocity of held and led nodes      drive_nodes            a copy, of the start of the try
+///     bodies.max_speed                          check_state            a copy, of the start of the try
+///     nodes.velocity_next of bodies at rest     solve_regions          zero, which it is as long as they rest
+///     nodes.position, nodes.velocity, time      drift_to (leapfrog)    a copy, of the start of the call
+///     clock.cycle, bodies.level between cycles  plan_step              nothing: written again before it is read
+///     pairs, their search                       find_candidates        nothing: what a search found of the positions
+///                                                                      at the start of the step stays true of them
+///
+/// All other state is written only by stages that run in a step that is good, and by commit.
+/// tests/scene/transaction_test.cpp compares this list with what the stages declare.
+class StepTransaction {
+public:
+    void begin_try(const Model& model);
+    void roll_back_try(Model& model) const;
+    /// Which bodies took no part in the try, or not in its end: at rest when it began, or now.
+    std::span<const std::uint8_t> rested(const BodyTable& bodies);
+
+    /// Only leapfrog drifts before its first kick.
+    void begin_call(const Model& model, const Clock& clock);
+    void roll_back_call(Model& model, Clock& clock) const;
+
+private:
+    Column<std::uint8_t> asleep_;       // bodies.asleep
+    Column<Real> max_speed_;            // m/s, bodies.max_speed
+    Column<Vec3> driven_velocity_;      // m/s, of attachments.node
+    Real time_ = 0;                     // s
+    Column<Vec3> position_, velocity_;  // m, m/s, of all nodes
+};
+
+}  // namespace skerry

@@ -1,0 +1,55 @@
+// Contact problems for whoever wants to look at them: other solvers, mostly.
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "engine/problem/step_problem.h"
+#include "engine/world/step/step.h"
+
+namespace skerry {
+
+namespace {
+
+void copy(std::span<const Vec3> from, Column<Vec3>& to) {
+    to.resize(from.size());
+    std::copy(from.begin(), from.end(), to.begin());
+}
+
+}  // namespace
+
+void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, KeptVelocities& kept) {
+    copy(velocity, kept.velocity);
+    copy(velocity_next, kept.velocity_next);
+}
+
+void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record) {
+    if (!record.problem_watch.wants(record.counters.steps) || scratch.contacts.size() == 0) return;
+    const ContactTable& c = scratch.contacts;
+    const KeptVelocities& kept = scratch.kept_velocities;
+    const RegionInputs inputs =
+        RegionInputs::bind({}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity);
+    StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region}, scratch.parameters.solver,
+                                       scratch.parameters.h);
+    if (problem.problem.q.empty()) return;
+    problem.step = record.counters.steps;
+    problem.time = time;
+    problem.step_size = scratch.parameters.h;
+    problem.problem.name = "step " + std::to_string(problem.step);
+    const std::function<void(const StepProblem&)> take = record.problem_watch.take;  // a copy: it may stop the watch
+    take(problem);
+}
+
+void World::watch_contact_problems(std::function<void(const StepProblem&)> take, std::uint64_t every) {
+    if (every == 0)
+        Complaint{.file = {},
+                  .object = "watch_contact_problems",
+                  .field = "every",
+                  .found = "0",
+                  .expected = "a number of steps",
+                  .hint = {}}
+            .raise();
+    state_->record.problem_watch = {std::move(take), every};
+}
+
+}  // namespace skerry

@@ -1,0 +1,18 @@
+// What may be asked of a world. Every complaint names the object, the field, what was found and what was expected.
+#pragma once
+
+#include <string>
+
+#include "skerry/settings.h"
+#include "skerry/world.h"
+
+namespace skerry {
+
+void validate(const Settings& settings);
+void validate(const MaterialSettings& material, const Settings& settings);
+void validate(const Mesh& mesh, const BodySettings& body);
+void validate(const Shape& shape, const ColliderSettings& collider);
+void validate(const Motion& motion, const std::string& object);
+void validate(const Motion& motion, const Vec3& pivot);
+
+}  // namespace skerry

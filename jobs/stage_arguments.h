@@ -1,0 +1,128 @@
+// The arguments of a stage: read(...), write(...), make(...), value(...), inputs<X>(...), outputs<X>(...),
+// only_if(...).
+#pragma once
+
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "jobs/access.h"
+
+namespace skerry {
+
+namespace access_detail {
+
+struct Read {
+    decltype(auto) operator()(const Binder& binder, const auto& object) const { return binder.read(object); }
+};
+struct Write {
+    auto operator()(const Binder& binder, auto& column) const { return binder.write(column); }
+};
+struct Make {
+    auto& operator()(const Binder& binder, auto& object) const { return binder.make(object); }
+};
+struct Value {
+    const auto& operator()(const Binder& binder, const auto& object) const { return binder.value(object); }
+};
+template <class X>
+struct Bind {
+    X operator()(const Binder& binder, auto&... objects) const { return X::bind(binder, objects...); }
+};
+
+// What `Take` makes of objects: declared when the stage is listed, made anew whenever it starts.
+template <class Take, class... Objects>
+struct Argument {
+    using Passed = std::invoke_result_t<Take, const Binder&, Objects&...>;
+    static constexpr bool guards = false;
+
+    std::tuple<Objects*...> objects;
+
+    bool allows() const { return true; }
+    std::tuple<Passed> pass() const { return std::tuple<Passed>(take(Binder())); }
+    void declare(AccessList& list) const { take(Binder(list)); }
+
+private:
+    Passed take(const Binder& binder) const {
+        return std::apply([&](Objects*... object) -> Passed { return Take()(binder, *object...); }, objects);
+    }
+};
+
+template <class Predicate, class... Args>
+struct Guard {
+    static constexpr bool guards = true;
+
+    Predicate predicate;
+    std::tuple<Args...> arguments;
+
+    bool allows() const {
+        return std::apply([&](const Args&... args) { return std::apply(predicate, std::tuple_cat(args.pass()...)); },
+                          arguments);
+    }
+    std::tuple<> pass() const { return {}; }
+    void declare(AccessList& list) const {
+        std::apply([&](const Args&... args) { (args.declare(list), ...); }, arguments);
+    }
+};
+
+template <class F>
+inline constexpr bool is_stateless = std::is_empty_v<F> || std::is_function_v<std::remove_pointer_t<F>>;
+
+AccessList joined(const auto&... args) {
+    AccessList list;
+    (args.declare(list), ...);
+    return list;
+}
+
+}  // namespace access_detail
+
+/// Passes span<const T> of a column, RaggedView<T> of a ragged, const T& of anything else.
+template <Resource T>
+auto read(const T& object) {
+    return access_detail::Argument<access_detail::Read, const T>{{&object}};
+}
+template <Resource T>
+void read(const T&&) = delete;  // nothing to come back to when the stage runs
+
+/// Passes span<T> of a column.
+template <class T>
+auto write(Column<T>& column) {
+    return access_detail::Argument<access_detail::Write, Column<T>>{{&column}};
+}
+
+/// Passes T&: for stages that make rows, or write an object as a whole.
+template <Resource T>
+requires(!std::is_const_v<T>) auto make(T& object) {
+    return access_detail::Argument<access_detail::Make, T>{{&object}};
+}
+
+/// Passes const T&: for what no stage writes, else the graph does not compile().
+template <Resource T>
+auto value(const T& object) {
+    return access_detail::Argument<access_detail::Value, const T>{{&object}};
+}
+template <Resource T>
+void value(const T&&) = delete;
+
+/// Passes X::bind(binder, objects...), which declares what of the objects, tables mostly, X takes.
+template <class X, Resource... T>
+auto inputs(T&... objects) {
+    return access_detail::Argument<access_detail::Bind<X>, const T...>{{&objects...}};
+}
+
+/// The same for an X that is written to.
+template <class X, Resource... T>
+auto outputs(T&... objects) {
+    return access_detail::Argument<access_detail::Bind<X>, T...>{{&objects...}};
+}
+
+/// The stage is skipped if predicate(what args pass) is false when its turn comes. It knows nothing else: a predicate
+/// with a memory of its own could look at what the stage has not declared.
+template <class Predicate, class... Args>
+auto only_if(Predicate predicate, Args... args) {
+    static_assert(access_detail::is_stateless<Predicate>,
+                  "only_if: declare what the guard looks at, do not capture it");
+    static_assert(sizeof...(Args) > 0, "only_if: declare what the guard looks at, else it may look too early");
+    return access_detail::Guard<Predicate, Args...>{predicate, {args...}};
+}
+
+}  // namespace skerry

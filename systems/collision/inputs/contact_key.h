@@ -1,0 +1,55 @@
+// The numbers that name pairs and features across steps; see ContactKey.
+#pragma once
+
+#include <cstdint>
+
+#include "components/contact_table.h"
+
+namespace skerry {
+
+inline constexpr std::uint64_t edge_edge_bit = std::uint64_t{1} << 63;
+inline constexpr std::uint64_t second_side_bit = std::uint64_t{1} << 62;
+inline constexpr int local_bits = 31;
+inline constexpr std::uint64_t local_mask = (std::uint64_t{1} << local_bits) - 1;
+
+/// Two bodies; the one of the lower slot comes first. A body and itself: twice the same slot.
+inline std::uint64_t body_pair_key(std::uint32_t first_slot, std::uint32_t second_slot) {
+    return std::uint64_t{first_slot} << local_bits | second_slot;
+}
+
+/// A body and a collider, be it analytic or a mesh.
+inline std::uint64_t collider_pair_key(std::uint32_t body_slot, std::uint32_t collider_slot) {
+    return std::uint64_t{1} << 62 | std::uint64_t{body_slot} << local_bits | collider_slot;
+}
+
+/// Numbers are local to their body. `point_of_second`: the point belongs to the second body of the pair.
+inline std::uint64_t point_triangle_feature(bool point_of_second, Index point, Index triangle) {
+    return (point_of_second ? second_side_bit : 0) | static_cast<std::uint64_t>(point) << local_bits |
+           static_cast<std::uint64_t>(triangle);
+}
+
+inline std::uint64_t edge_edge_feature(Index first, Index second) {
+    return edge_edge_bit | static_cast<std::uint64_t>(first) << local_bits | static_cast<std::uint64_t>(second);
+}
+
+/// `part` of the collider, see collider_part_count.
+inline std::uint64_t point_collider_feature(Index point, Index part) {
+    return static_cast<std::uint64_t>(point) << local_bits | static_cast<std::uint64_t>(part);
+}
+
+inline bool is_edge_edge(std::uint64_t feature) {
+    return (feature & edge_edge_bit) != 0;
+}
+inline bool is_point_of_second(std::uint64_t feature) {
+    return (feature & second_side_bit) != 0;
+}
+inline Index second_local(std::uint64_t feature) {
+    return static_cast<Index>(feature & local_mask);
+}
+
+/// All triangles near one point share this.
+inline std::uint64_t point_of_feature(std::uint64_t feature) {
+    return feature >> local_bits;
+}
+
+}  // namespace skerry

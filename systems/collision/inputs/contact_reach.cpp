@@ -1,0 +1,42 @@
+#include "systems/collision/inputs/contact_reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skerry {
+
+PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
+    const BodyTable& body = inputs.body;
+    PairScale scale;
+    const Real own_distance = body.contact_distance[first];
+    const Real own_edge = body.mean_edge[first];
+    if (kind == PairKind::collider) {
+        // The distance to a shape is signed at any depth, so nothing behind its surface needs a zone.
+        const Real half = own_distance / 2;
+        return {half, own_edge, 0, 0, half};
+    }
+    scale.contact_distance = (own_distance + body.contact_distance[second]) / 2;
+    scale.edge = std::min(own_edge, body.mean_edge[second]);
+    scale.face_depth = face_depth_fraction * scale.edge;
+    scale.edge_depth = std::max(scale.contact_distance, edge_depth_fraction * scale.edge);
+    scale.zone = std::max(scale.contact_distance, scale.face_depth);
+    return scale;
+}
+
+SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
+    const SurfaceProperties own = inputs.material_surface[inputs.body.material[first]];
+    SurfaceProperties other = own;
+    if (kind == PairKind::collider || inputs.body.kind[second] == BodyKind::kinematic) {
+        const Index collider = kind == PairKind::collider ? second : inputs.body.collider[second];
+        const SurfaceProperties given = inputs.collider.surface[collider];
+        if (given.static_friction >= 0) other.static_friction = given.static_friction;
+        if (given.dynamic_friction >= 0) other.dynamic_friction = given.dynamic_friction;
+        if (given.restitution >= 0) other.restitution = given.restitution;
+    } else {
+        other = inputs.material_surface[inputs.body.material[second]];
+    }
+    return {std::sqrt(own.static_friction * other.static_friction),
+            std::sqrt(own.dynamic_friction * other.dynamic_friction), std::max(own.restitution, other.restitution)};
+}
+
+}  // namespace skerry

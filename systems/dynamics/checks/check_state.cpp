@@ -1,0 +1,181 @@
+#include "systems/dynamics/checks/check_state.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "components/check.h"
+#include "jobs/parallel_for.h"
+#include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/stability/largest_length.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t node_blocks_per_job = 8;
+constexpr std::size_t element_blocks_per_job = 256;
+
+Vec3 motion(const CheckInputs& state, std::size_t node) {
+    return state.push_out.empty() ? state.velocity_next[node] : Vec3(state.velocity_next[node] + state.push_out[node]);
+}
+
+/// Not a number when any node's velocity is not finite, or so large that its square is not.
+Real max_speed_squared_of_block(const CheckInputs& state, std::size_t block) {
+    const auto begin = static_cast<std::size_t>(state.block_begin[block]);
+    const std::size_t count = static_cast<std::size_t>(state.block_end[block]) - begin;
+    if (count == 0) return 0;
+    const Real* v = state.velocity_next[begin].data();
+    const Real* p = state.push_out.empty() ? nullptr : state.push_out[begin].data();
+    const Real highest = p == nullptr ? largest_squared_length(count, [&](std::size_t i) { return v[i]; })
+                                      : largest_squared_length(count, [&](std::size_t i) { return v[i] + p[i]; });
+    return highest <= std::numeric_limits<Real>::max() ? highest : std::numeric_limits<Real>::quiet_NaN();
+}
+
+Index first_not_finite(const CheckInputs& state, Range blocks) {
+    for (Index b = blocks.begin; b < blocks.end; ++b)
+        for (Index n = state.block_begin[static_cast<std::size_t>(b)]; n < state.block_end[static_cast<std::size_t>(b)];
+             ++n)
+            if (!(motion(state, static_cast<std::size_t>(n)).squaredNorm() <= std::numeric_limits<Real>::max()))
+                return n;
+    return no_index;
+}
+
+/// Whether any row of `count` has a value above a limit. The answer does not depend on the order in which the blocks
+/// run.
+template <class Exceeds>
+bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job, Exceeds&& exceeds) {
+    std::atomic<bool> found{false};
+    parallel_for(executor, count, rows_per_job, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end && !found.load(std::memory_order_relaxed); ++row)
+            if (exceeds(row)) found.store(true, std::memory_order_relaxed);
+    });
+    return found.load();
+}
+
+struct Fastest {
+    Real speed_squared = 0;  // m^2/s^2
+    Index node = no_index;
+    Index element = no_index;  // row: lane of a block
+
+    void look_at(const Fastest& other) {
+        if (other.speed_squared > speed_squared) *this = other;
+    }
+};
+
+/// Largest speed of a corner relative to corner 0 of its element, over one block of elements.
+Fastest fastest_corner(const CheckInputs& state, std::size_t block) {
+    Fastest fastest;
+    for (std::size_t l = 0; l < element_lanes; ++l) {
+        const Vec3 base = motion(state, static_cast<std::size_t>(state.element_node[block][0][l]));
+        for (std::size_t a = 1; a < 4; ++a) {
+            const Index node = state.element_node[block][a][l];
+            fastest.look_at({(motion(state, static_cast<std::size_t>(node)) - base).squaredNorm(), node,
+                             static_cast<Index>(block * element_lanes + l)});
+        }
+    }
+    return fastest;
+}
+
+/// Whether any corner of a block of elements is faster than that: all elements side by side, and nothing is said of
+/// which.
+bool any_corner_faster(const CheckInputs& state, std::size_t block, Real limit_squared) {
+    LaneMat3<Real8> parting = edges(state.element_node[block], state.velocity_next);
+    if (!state.push_out.empty()) parting = parting + edges(state.element_node[block], state.push_out);
+    const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
+                third = dot(parting.c2, parting.c2);
+    return !all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared));
+}
+
+/// Relative to the mean velocity of the body: a coarser measure, for a body whose elements are not given.
+Fastest fastest_from_mean(const CheckInputs& state, Range blocks) {
+    Vec3 sum = Vec3::Zero();
+    const std::size_t begin = static_cast<std::size_t>(state.block_begin[static_cast<std::size_t>(blocks.begin)]);
+    const std::size_t end = static_cast<std::size_t>(state.block_end[static_cast<std::size_t>(blocks.end - 1)]);
+    for (std::size_t n = begin; n < end; ++n) sum += motion(state, n);
+    const Vec3 mean = sum / static_cast<Real>(end - begin);
+    Fastest fastest;
+    for (std::size_t n = begin; n < end; ++n)
+        fastest.look_at({(motion(state, n) - mean).squaredNorm(), static_cast<Index>(n), no_index});
+    return fastest;
+}
+
+/// The fastest node of a body in the measure that counts, when it exceeds `limit` (m/s); else none. Each test is a
+/// superset of the next.
+Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t body, Real max_speed, Real limit) {
+    const Real limit_squared = limit * limit;
+    if (!(4 * max_speed * max_speed > limit_squared)) return {};  // two nodes part at most at twice the highest speed
+    const Range blocks = state.body_node_blocks[body];
+    const Vec3 first =
+        motion(state, static_cast<std::size_t>(state.block_begin[static_cast<std::size_t>(blocks.begin)]));
+    const bool parting =
+        any_exceeds(executor, static_cast<std::size_t>(blocks.size()), node_blocks_per_job, [&](std::size_t row) {
+            const std::size_t b = static_cast<std::size_t>(blocks.begin) + row;
+            for (std::size_t n = static_cast<std::size_t>(state.block_begin[b]);
+                 n < static_cast<std::size_t>(state.block_end[b]); ++n)
+                if (4 * (motion(state, n) - first).squaredNorm() > limit_squared) return true;
+            return false;
+        });
+    if (!parting) return {};
+    Fastest fastest;
+    if (state.body_blocks.empty()) {
+        fastest = fastest_from_mean(state, blocks);
+    } else {
+        const Range elements = state.body_blocks[body];
+        const std::size_t begin = static_cast<std::size_t>(elements.begin),
+                          count = static_cast<std::size_t>(elements.size());
+        if (!any_exceeds(executor, count, element_blocks_per_job,
+                         [&](std::size_t row) { return any_corner_faster(state, begin + row, limit_squared); }))
+            return {};
+        for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_corner(state, begin + row));
+    }
+    return fastest.speed_squared > limit_squared ? fastest : Fastest{};
+}
+
+}  // namespace
+
+StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
+                        std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed) {
+    const std::size_t body_count = state.body_node_blocks.size();
+    SKERRY_CHECK(block_max_speed_squared.size() == state.block_begin.size() && body_max_speed.size() == body_count);
+    parallel_for(executor, state.block_begin.size(), node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) block_max_speed_squared[b] = max_speed_squared_of_block(state, b);
+    });
+    StepVerdict verdict;
+    for (std::size_t body = 0; body < body_count; ++body) {
+        const Range blocks = state.body_node_blocks[body];
+        Real highest = 0;
+        bool finite = true;
+        for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+            finite &= block_max_speed_squared[b] >= 0;
+            if (block_max_speed_squared[b] > highest) highest = block_max_speed_squared[b];
+        }
+        body_max_speed[body] = finite ? std::sqrt(highest) : std::numeric_limits<Real>::quiet_NaN();
+        if (verdict.fault != StepFault::none) continue;  // the first fault counts, but every speed is written
+        const Real altitude = state.body_min_altitude[body];
+        if (!finite) {
+            verdict = {StepFault::not_finite, static_cast<Index>(body), first_not_finite(state, blocks), 0};
+        } else if (altitude > 0 && blocks.size() > 0) {
+            const Fastest fastest =
+                too_fast_node(executor, state, body, body_max_speed[body], max_strain_step * altitude / h);
+            if (fastest.node != no_index)
+                verdict = {StepFault::too_fast, static_cast<Index>(body), fastest.node,
+                           std::sqrt(fastest.speed_squared) * h / altitude, fastest.element};
+        }
+    }
+    return verdict;
+}
+
+StepVerdict check_distance(std::span<const Vec3> position, std::span<const Range> body_nodes,
+                           std::span<const Real> body_mean_edge) {
+    for (std::size_t body = 0; body < body_nodes.size(); ++body) {
+        if (body_nodes[body].size() == 0 || !(body_mean_edge[body] > 0)) continue;
+        const Real distance = position[static_cast<std::size_t>(body_nodes[body].begin)].cwiseAbs().maxCoeff();
+        const Real spacing = std::numeric_limits<Real>::epsilon() * distance;
+        if (spacing > coarsest_place * body_mean_edge[body])
+            return {StepFault::too_far, static_cast<Index>(body), no_index, spacing / body_mean_edge[body]};
+    }
+    return {};
+}
+
+}  // namespace skerry

@@ -1,0 +1,70 @@
+// Looks at the step before it is committed (docs/methods/time_stepping.md 4).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/element_table.h"
+#include "components/node_block_table.h"
+#include "components/node_table.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+enum class StepFault { none, not_finite, too_fast, too_far, too_stiff };
+
+/// Why a step must not be committed.
+struct StepVerdict {
+    StepFault fault = StepFault::none;
+    Index body = no_index;     // row of BodyTable
+    Index node = no_index;     // row of NodeTable, when one node is to blame
+    Real value = 0;            // not_finite: -; too_fast: displacement of this step over the smallest element altitude;
+                               // too_far: distance between neighbouring numbers there, over the mean edge
+    Index element = no_index;  // row: lane of a block, when one element is to blame
+};
+
+struct CheckInputs {
+    std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
+    std::span<const Range> body_node_blocks;
+    std::span<const Real> body_min_altitude;  // m; 0 for a kinematic body: not judged by speed
+    std::span<const Vec3> velocity;           // m/s, at the start of the step
+    std::span<const Vec3> velocity_next;
+    std::span<const Vec3> push_out;                   // m/s; empty: no contact pushes
+    std::span<const ElementNodes> element_node = {};  // ElementBlockTable
+    std::span<const Range> body_blocks = {};          // BodyTable; empty: bodies are judged as one element each
+
+    /// `pushed`: some contact pushes.
+    static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
+                            const NodeTable& node, const ElementBlockTable& element, const bool& pushed) {
+        return {.block_begin = binder.read(block.begin),
+                .block_end = binder.read(block.end),
+                .block_body = binder.read(block.body),
+                .body_node_blocks = binder.read(body.node_blocks),
+                .body_min_altitude = binder.read(body.min_altitude),
+                .velocity = binder.read(node.velocity),
+                .velocity_next = binder.read(node.velocity_next),
+                .push_out = binder.read_if(binder.read(pushed), node.push_out),
+                .element_node = binder.read(element.node),
+                .body_blocks = binder.read(body.blocks)};
+    }
+};
+
+/// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is
+/// not finite, or two corners of one element that move apart by more than `max_strain_step` (fraction of the smallest
+/// altitude of the body) in this step. Common motion and slow turns of a large body do no harm and are not counted.
+/// Without `body_blocks` a node is compared with the mean velocity of its body instead, which refuses a quick turn of a
+/// large body, too. Parallel over node blocks.
+StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
+                        std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
+
+/// Coordinates of a body that are further apart than this fraction of its mean edge are no ground for a step: motion
+/// below a millionth of the speed of sound would be lost to rounding.
+inline constexpr Real coarsest_place = 1e-6;
+
+/// Finds the first body that is too far from the origin for its size. Looks at one node a body: against such distances
+/// a body is small.
+StepVerdict check_distance(std::span<const Vec3> position, std::span<const Range> body_nodes,
+                           std::span<const Real> body_mean_edge);
+
+}  // namespace skerry

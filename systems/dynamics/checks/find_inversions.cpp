@@ -1,0 +1,139 @@
+#include "systems/dynamics/checks/find_inversions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "components/check.h"
+#include "jobs/parallel_for.h"
+#include "systems/dynamics/elements/element_block.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Index blocks_per_part = 256;
+
+// Blocks whose budgets are tested together, without a branch for each.
+constexpr std::size_t blocks_at_once = 32;
+
+Real8 determinant(const LaneMat3<Real8>& edges) {
+    return dot(edges.c0, cross(edges.c1, edges.c2));
+}
+
+Real8 squared(const LaneVec3<Real8>& v) {
+    return dot(v, v);
+}
+
+Real8 larger(const Real8& a, const Real8& b) {
+    return a > b ? a : b;
+}
+
+/// Four faces and three pairs of opposite edges: the planes that can be nearest are parallel to one of these.
+Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
+    const LaneVec3<Real8> e01 = e.c1 - e.c0, e02 = e.c2 - e.c0, e12 = e.c2 - e.c1;
+    const Real8 faces = larger(larger(squared(cross(e.c0, e.c1)), squared(cross(e.c1, e.c2))),
+                               larger(squared(cross(e.c2, e.c0)), squared(cross(e01, e02))));
+    const Real8 pairs = larger(larger(squared(cross(e.c0, e12)), squared(cross(e.c1, e02))), squared(cross(e.c2, e01)));
+    return larger(faces, pairs);
+}
+
+/// m, of the narrowest element of a block; of inverted ones, too: they may turn back, and over again.
+Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
+    const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
+    Real least = std::numeric_limits<Real>::infinity();  // m^2
+    for (std::size_t l = 0; l < element_lanes; ++l)
+        if (rest_volume[l] > 0) least = std::min(least, span[l] > 0 ? volume[l] * volume[l] / span[l] : 0);
+    return std::sqrt(least);
+}
+
+/// One body in this step.
+struct Body {
+    const InversionInputs& inputs;
+    Real h;
+    Real reach;         // m, that a node can move in this step
+    Real travel_bound;  // m, travel with it
+    Real travel_base;   // m: a budget begins here (measure_displacement.h)
+
+    InversionPart look(std::size_t begin, std::size_t end, std::span<Real> uninverted_until) const {
+        InversionPart part{std::numeric_limits<Real>::infinity()};
+        for (std::size_t b = begin; b < end; b += blocks_at_once) {
+            const std::size_t stop = std::min(b + blocks_at_once, end);
+            if (!(travel_bound < least(uninverted_until, b, stop)))
+                for (std::size_t i = b; i < stop; ++i)
+                    if (!(travel_bound < uninverted_until[i])) look_at_block(i, uninverted_until[i], part);
+            part.uninverted_until = std::min(part.uninverted_until, least(uninverted_until, b, stop));
+        }
+        return part;
+    }
+
+    bool has_inverted(Range blocks) const {
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+            const Real8 volume = determinant(edges(inputs.element_node[b], inputs.position));
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                if (inputs.element_volume[b][l] > 0 && !(volume[l] > 0)) return true;
+        }
+        return false;
+    }
+
+private:
+    static Real least(std::span<const Real> of, std::size_t begin, std::size_t end) {
+        Real least = std::numeric_limits<Real>::infinity();
+        const Real* const value = of.data();
+#pragma omp simd reduction(min : least)
+        for (std::size_t i = begin; i < end; ++i) least = value[i] < least ? value[i] : least;
+        return least;
+    }
+
+    void look_at_block(std::size_t b, Real& uninverted_until, InversionPart& part) const {
+        const LaneMat3<Real8> now = edges(inputs.element_node[b], inputs.position);
+        const Real safe = width(now, inputs.element_volume[b]) / 2;
+        uninverted_until = travel_base + safe;
+        if (!(reach < safe)) find_turned(b, now, part);
+    }
+
+    void find_turned(std::size_t b, const LaneMat3<Real8>& now, InversionPart& part) const {
+        LaneMat3<Real8> motion = edges(inputs.element_node[b], inputs.velocity_next);
+        if (!inputs.push_out.empty()) motion = motion + edges(inputs.element_node[b], inputs.push_out);
+        const Real8 before = determinant(now), after = determinant(now + h * motion);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            if (!(inputs.element_volume[b][l] > 0) || !(before[l] > 0) || after[l] > 0) continue;
+            if (part.count++ == 0) part.element = static_cast<Index>(b * element_lanes + l);
+        }
+    }
+};
+
+}  // namespace
+
+Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
+                           const InversionBudgets& budgets) {
+    SKERRY_CHECK(budgets.body_uninverted_until.size() == inputs.body_blocks.size());
+    SKERRY_CHECK(budgets.block_uninverted_until.size() == inputs.element_node.size());
+    Inversions found;
+    for (std::size_t b = 0; b < inputs.body_blocks.size(); ++b) {
+        const Range blocks = inputs.body_blocks[b];
+        const Real reach = h * inputs.body_max_speed[b], travel = inputs.body_travel[b];
+        if (blocks.size() == 0 || travel + reach < budgets.body_uninverted_until[b]) continue;
+        const Body body{inputs, h, reach, travel + reach, travel - 2 * inputs.body_displacement[b]};
+        parts.resize(static_cast<std::size_t>((blocks.size() + blocks_per_part - 1) / blocks_per_part));
+        parallel_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const std::size_t first = static_cast<std::size_t>(blocks.begin) + p * blocks_per_part;
+                parts[p] = body.look(first, std::min(first + blocks_per_part, static_cast<std::size_t>(blocks.end)),
+                                     budgets.block_uninverted_until);
+            }
+        });
+        const Index before = found.count;
+        budgets.body_uninverted_until[b] = std::numeric_limits<Real>::infinity();
+        for (const InversionPart& part : parts) {
+            budgets.body_uninverted_until[b] = std::min(budgets.body_uninverted_until[b], part.uninverted_until);
+            if (part.count == 0) continue;
+            if (found.count == 0) found = {0, static_cast<Index>(b), part.element, false};
+            found.count += part.count;
+        }
+        if (found.count > before) found.first |= !body.has_inverted(blocks);
+    }
+    return found;
+}
+
+}  // namespace skerry

@@ -1,0 +1,102 @@
+#include "systems/dynamics/elements/element_energy.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "components/check.h"
+#include "systems/dynamics/elements/element_block.h"
+#include "systems/material/extract_rotation.h"
+#include "systems/material/with_law.h"
+
+namespace skerry {
+
+namespace {
+
+/// Calls visit(block, material, volume, F, frame) for every block. The frame of an element starts from the same lane
+/// of the block before it: neighbours turn together. Laws without a frame do not look at it.
+template <class Visit>
+void for_each_block(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Visit&& visit) {
+    const Real8 one = Real8{} + 1.0;
+    LaneQuaternion<Real8> q{one, {}, {}, {}};
+    for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];
+        const Real8 volume = load(elements.volume[b]);
+        const LaneMat3<Real8> F = deformation_gradient(edges(elements.node[b], position), elements.inverse_rest[b]);
+        if (has_frame(material.model)) extract_rotation(F, volume, q);
+        visit(b, material, volume, F, rotation_of(q));
+    }
+}
+
+LaneMat3<Real8> stress_of(const MaterialConstants& material, const LaneMat3<Real8>& F, const LaneMat3<Real8>& R) {
+    return with_law(material.model, [&](auto law) {
+        if constexpr (law.has_frame)
+            return law.stress(material, F, R);
+        else
+            return law.stress(material, F);
+    });
+}
+
+Real8 energy_of(const MaterialConstants& material, const LaneMat3<Real8>& F, const LaneMat3<Real8>& R) {
+    return with_law(material.model, [&](auto law) {
+        if constexpr (law.has_frame)
+            return law.energy_density(material, F, R);
+        else
+            return law.energy_density(material, F);
+    });
+}
+
+}  // namespace
+
+Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const Vec3> position) {
+    Real energy = 0;
+    for_each_block(elements, blocks, position,
+                   [&](std::size_t, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
+                       const LaneMat3<Real8>& R) {
+                       const Real8 of_lanes = volume * energy_of(material, F, R);
+                       for (std::size_t l = 0; l < element_lanes; ++l) energy += of_lanes[l];
+                   });
+    return energy;
+}
+
+void von_mises_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                      std::span<Real> von_mises) {
+    SKERRY_CHECK(von_mises.size() >= static_cast<std::size_t>(blocks.size()) * element_lanes);
+    constexpr Real least_volume_ratio = 1e-6;  // below it the Cauchy stress has no meaning; the cap keeps it finite
+    for_each_block(elements, blocks, position,
+                   [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
+                       const LaneMat3<Real8>& R) {
+                       const LaneMat3<Real8> P = stress_of(material, F, R);
+                       for (std::size_t l = 0; l < element_lanes; ++l) {
+                           const Mat3 f = lane_of(F, static_cast<int>(l));
+                           const Real ratio =
+                               std::max(std::abs(f.col(0).dot(f.col(1).cross(f.col(2)))), least_volume_ratio);
+                           const Mat3 cauchy = lane_of(P, static_cast<int>(l)) * f.transpose() / ratio;
+                           const Mat3 deviator = cauchy - (cauchy.trace() / 3) * Mat3::Identity();
+                           von_mises[(b - static_cast<std::size_t>(blocks.begin)) * element_lanes + l] =
+                               volume[l] > 0 ? std::sqrt(1.5 * deviator.squaredNorm()) : 0;
+                       }
+                   });
+}
+
+VolumeRatios measure_volume_ratios(const ElementInputs& elements, Range blocks, std::span<const Vec3> position) {
+    VolumeRatios worst{std::numeric_limits<Real>::infinity(), no_index};
+    for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        const LaneMat3<Real8> F = deformation_gradient(edges(elements.node[b], position), elements.inverse_rest[b]);
+        const Real8 ratio = dot(F.c0, cross(F.c1, F.c2));
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            if (!(elements.volume[b][l] > 0)) continue;
+            const Index here = static_cast<Index>(b * element_lanes + l);
+            worst.near_inversion += ratio[l] < near_inversion;
+            worst.inverted += ratio[l] < 0;
+            // The first NaN stays: it is the smallest, and nothing compares below it.
+            if (std::isnan(worst.smallest) || ratio[l] >= worst.smallest) continue;
+            worst.smallest = ratio[l];
+            worst.element = here;
+        }
+    }
+    return worst;
+}
+
+}  // namespace skerry

@@ -1,0 +1,59 @@
+#include "systems/dynamics/motion/advance_positions.h"
+
+#include <algorithm>
+
+#include "components/check.h"
+#include "jobs/parallel_for.h"
+#include "systems/dynamics/motion/measure_displacement.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t node_blocks_per_job = 8;
+
+/// Most steps: no node is pushed, and rows are flat lists of reals.
+void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
+    const Real* v = velocity.data()->data();
+    Real* x = position.data()->data();
+    const std::size_t count = 3 * position.size();
+#pragma omp simd
+    for (std::size_t i = 0; i < count; ++i) x[i] += h * v[i];
+}
+
+void drift_pushed(std::span<const Vec3> velocity, Real h, std::span<Vec3> push_out, std::span<Vec3> position) {
+    for (std::size_t n = 0; n < position.size(); ++n) {
+        position[n] += h * (velocity[n] + push_out[n]);
+        if (!push_out[n].isZero(0)) push_out[n].setZero();  // most are: writing them all costs a third of the stage
+    }
+}
+
+}  // namespace
+
+void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, Integrator integrator,
+                       const AdvanceOutputs& out) {
+    SKERRY_CHECK(nodes.velocity_next.size() == out.position.size() && out.velocity.size() == out.position.size());
+    SKERRY_CHECK(out.push_out.empty() || out.push_out.size() == out.position.size());
+    const bool forward = integrator == Integrator::forward_euler;
+    parallel_for(executor, nodes.block_begin.size(), node_blocks_per_job, [&](std::size_t first, std::size_t last) {
+        for (std::size_t b = first; b < last; ++b) {
+            const auto begin = static_cast<std::size_t>(nodes.block_begin[b]);
+            const std::size_t count = static_cast<std::size_t>(nodes.block_end[b]) - begin;
+            const std::span<Vec3> position = out.position.subspan(begin, count),
+                                  velocity = out.velocity.subspan(begin, count);
+            const std::span<const Vec3> velocity_next = nodes.velocity_next.subspan(begin, count);
+            if (nodes.body_asleep.empty() || !nodes.body_asleep[static_cast<std::size_t>(nodes.block_body[b])]) {
+                const std::span<const Vec3> with = forward ? std::span<const Vec3>(velocity) : velocity_next;
+                if (out.push_out.empty())
+                    drift(with, h, position);
+                else
+                    drift_pushed(with, h, out.push_out.subspan(begin, count), position);
+                std::copy(velocity_next.begin(), velocity_next.end(), velocity.begin());
+            }
+            out.block_displacement_squared[b] =
+                block_displacement_squared(position, nodes.displacement_origin.subspan(begin, count));
+        }
+    });
+}
+
+}  // namespace skerry

@@ -1,0 +1,57 @@
+// The drift; commits the step.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/node_block_table.h"
+#include "components/node_table.h"
+#include "components/options.h"
+#include "components/types.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+struct AdvanceInputs {
+    std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
+    std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty: none
+    std::span<const Vec3> velocity_next;                        // m/s
+    std::span<const Vec3> displacement_origin;                  // m
+
+    /// `velocity`: with which the nodes go on. `any_asleep`: some body rests.
+    static AdvanceInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
+                              const NodeTable& node, const Column<Vec3>& velocity, const bool& any_asleep) {
+        return {.block_begin = binder.read(block.begin),
+                .block_end = binder.read(block.end),
+                .block_body = binder.read(block.body),
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
+                .velocity_next = binder.read(velocity),
+                .displacement_origin = binder.read(node.displacement_origin)};
+    }
+};
+
+struct AdvanceOutputs {
+    std::span<Vec3> push_out;  // m/s; empty: no contact pushes
+    std::span<Vec3> position;
+    std::span<Vec3> velocity;
+    std::span<Real> block_displacement_squared;  // m^2
+
+    /// `pushed`: some contact pushes.
+    static AdvanceOutputs bind(const Binder& binder, NodeTable& node, NodeBlockTable& block, const bool& pushed) {
+        return {.push_out = binder.write_if(binder.read(pushed), node.push_out),
+                .position = binder.write(node.position),
+                .velocity = binder.write(node.velocity),
+                .block_displacement_squared = binder.write(block.displacement_squared)};
+    }
+};
+
+/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Forward Euler drifts
+/// with the velocity before the step instead. Nodes at rest are passed over. In the same pass, while positions are at
+/// hand: how far the nodes of each block are from their displacement origins, for measure_displacement. Parallel over
+/// node blocks.
+void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, Integrator integrator,
+                       const AdvanceOutputs& out);
+
+}  // namespace skerry

@@ -1,0 +1,156 @@
+#include "systems/dynamics/motion/damp_velocity.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "components/check.h"
+#include "jobs/parallel_for.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t node_blocks_per_job = 8;
+
+Real damping_of(const DampingInputs& bodies, std::size_t body) {
+    const Index material = bodies.body_material[body];
+    return material == no_index ? 0 : bodies.material_damping[static_cast<std::size_t>(material)];
+}
+
+bool is_damped(const DampingInputs& bodies, std::size_t body) {
+    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0;
+}
+
+/// A body without pinned nodes keeps its rigid motion.
+bool keeps_rigid_motion(const DampingInputs& bodies, std::size_t body) {
+    return bodies.body_pinned_count[body] == 0;
+}
+
+/// The node that a body's sums refer to: far from the world's origin they would cancel.
+std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
+    return static_cast<std::size_t>(bodies.block_begin[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)]);
+}
+
+/// Where a node was, relative to the body's first node, when it had its velocity.
+Vec3 earlier(const Vec3& x, const Vec3& velocity, Real lag) {
+    return x - lag * velocity;
+}
+
+/// Sums over a block; positions and velocities relative to those of the body's first node.
+NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::span<const Vec3> velocity) {
+    const std::size_t origin = first_node(bodies, static_cast<std::size_t>(bodies.block_body[block]));
+    NodeBlockSums sums{0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Zero(), 0};
+    for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]);
+         n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
+        if (!(bodies.inverse_mass[n] > 0)) continue;
+        const Real m = bodies.mass[n];
+        const Vec3 x = bodies.position[n] - bodies.position[origin];
+        const Vec3 v = velocity[n] - velocity[origin];
+        const Vec3 p = m * v;
+        sums.mass += m;
+        sums.momentum += p;
+        sums.first_moment += m * x;
+        sums.angular_momentum += x.cross(p);
+        sums.second_moment += (m * earlier(x, v, bodies.lag)) * x.transpose();
+    }
+    return sums;
+}
+
+/// Leaves in the entry of the body's first block the sums of the whole body: momentum in the world frame, the moments
+/// of second order and the angular momentum about the centre of mass.
+void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const Vec3> velocity,
+                 std::span<NodeBlockSums> sums) {
+    const Range blocks = bodies.body_node_blocks[body];
+    NodeBlockSums& total = sums[static_cast<std::size_t>(blocks.begin)];
+    for (std::size_t b = static_cast<std::size_t>(blocks.begin) + 1; b < static_cast<std::size_t>(blocks.end); ++b) {
+        total.mass += sums[b].mass;
+        total.momentum += sums[b].momentum;
+        total.first_moment += sums[b].first_moment;
+        total.angular_momentum += sums[b].angular_momentum;
+        total.second_moment += sums[b].second_moment;
+    }
+    if (!(total.mass > 0)) return;
+    total.angular_momentum -= total.first_moment.cross(total.momentum) / total.mass;
+    total.second_moment -=
+        earlier(total.first_moment, total.momentum, bodies.lag) * total.first_moment.transpose() / total.mass;
+    total.momentum += total.mass * velocity[first_node(bodies, body)];
+}
+
+/// Angular velocity omega for which the velocities omega x y, y the earlier places, have the angular momentum of the
+/// body about the places of now: (tr(S) I - S) omega with S = sum m y x^T. Nodes on a line or in a point cannot turn
+/// about it: no rotation there.
+Vec3 angular_velocity_of(const NodeBlockSums& total) {
+    const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
+    const Real mean = inertia.trace() / 3;
+    constexpr Real well_shaped =
+        1e-6;  // of the cube of the mean moment: then the inverse loses at most ten digits, and most bodies lose none
+    if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
+    const Eigen::JacobiSVD<Mat3> parts(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Real least = 1e-12 * parts.singularValues()[0];  // below it the moment is rounding
+    Vec3 omega = Vec3::Zero();
+    for (int i = 0; i < 3; ++i)
+        if (parts.singularValues()[i] > least)
+            omega += parts.matrixV().col(i) *
+                     (parts.matrixU().col(i).dot(total.angular_momentum) / parts.singularValues()[i]);
+    return omega;
+}
+
+/// Adds to velocity_next what takes the velocities of a block towards the rigid motion of the body's sums by
+/// `fraction`; returns the kinetic energy that this takes out, J.
+Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total,
+                std::span<const Vec3> velocity, std::span<Vec3> velocity_next) {
+    const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);
+    const bool rigid = keeps_rigid_motion(bodies, body);
+    if (rigid && !(total.mass > 0)) return 0;
+    const Vec3 linear = rigid ? Vec3(total.momentum / total.mass) : Vec3::Zero();
+    const Vec3 angular = rigid ? angular_velocity_of(total) : Vec3::Zero();
+    const std::size_t origin = first_node(bodies, body);
+    const Vec3 centre = rigid ? Vec3(total.first_moment / total.mass) : Vec3::Zero();
+    Real taken = 0;  // J
+    for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]);
+         n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
+        if (!(bodies.inverse_mass[n] > 0)) continue;
+        const Vec3 v = velocity[n] - linear;
+        const Vec3 excess =
+            v - angular.cross(earlier(bodies.position[n] - bodies.position[origin] - centre, v, bodies.lag));
+        velocity_next[n] -= fraction * excess;
+        // Half of v^2 before less after. Where places move the excess is not quite at right angles to the rigid motion.
+        taken += bodies.mass[n] * fraction * excess.dot(v - fraction / 2 * excess);
+    }
+    return taken;
+}
+
+}  // namespace
+
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real h,
+                   std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated) {
+    const std::size_t body_count = bodies.body_node_blocks.size(), block_count = bodies.block_begin.size();
+    SKERRY_CHECK(sums.size() == block_count);
+    dissipated = 0;
+    bool any = false;
+    for (std::size_t body = 0; body < body_count && !any; ++body) any = is_damped(bodies, body);
+    if (!any) return false;
+
+    parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
+            if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) sums[b] = sum_block(bodies, b, velocity);
+        }
+    });
+    for (std::size_t body = 0; body < body_count; ++body)
+        if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) add_up_body(bodies, body, velocity, sums);
+    parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            sums[b].dissipated = 0;
+            const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
+            if (!is_damped(bodies, body)) continue;
+            const NodeBlockSums& total = sums[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)];
+            sums[b].dissipated =
+                damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * h), total, velocity, velocity_next);
+        }
+    });
+    for (const NodeBlockSums& block : sums) dissipated += block.dissipated;
+    return true;
+}
+
+}  // namespace skerry

@@ -1,0 +1,51 @@
+// Damping that keeps momentum and angular momentum (docs/methods/time_stepping.md 3.1).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/material_table.h"
+#include "components/node_block_table.h"
+#include "components/node_table.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+struct DampingInputs {
+    std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
+    std::span<const Range> body_node_blocks;                    // BodyTable
+    std::span<const Index> body_material;                       // BodyTable
+    std::span<const Index> body_pinned_count;                   // BodyTable
+    std::span<const Real> material_damping;                     // 1/s
+    std::span<const Vec3> position;
+    std::span<const Real> mass, inverse_mass;
+    Real lag = 0;  // s, by which velocities are earlier than positions
+
+    static DampingInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
+                              const MaterialTable& material, const NodeTable& node, const Real& lag) {
+        return {.block_begin = binder.read(block.begin),
+                .block_end = binder.read(block.end),
+                .block_body = binder.read(block.body),
+                .body_node_blocks = binder.read(body.node_blocks),
+                .body_material = binder.read(body.material),
+                .body_pinned_count = binder.read(body.pinned_count),
+                .material_damping = binder.read(material.damping),
+                .position = binder.read(node.position),
+                .mass = binder.read(node.mass),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .lag = binder.value(lag)};
+    }
+};
+
+/// Takes (1 - exp(-damping h)) of the deformation velocity v - v_rigid out of velocity_next, for every body with
+/// damping > 0. `velocity` is that at the start of the step, not the predicted one: a body at rest under load must not
+/// feel its damping. v_rigid is the rigid motion, of the places that the nodes had `lag` ago, with the momentum and the
+/// angular momentum of the body; a body with pinned nodes is damped towards rest. With places and velocities of one
+/// time a body that turns at its centrifugal stretch has no deformation velocity, and by taking moments about the
+/// places of now what is taken out has no angular momentum there. `dissipated` (J) is the kinetic energy taken. Returns
+/// false when no body has damping (skipped). Parallel over node blocks; sums in block order.
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real h,
+                   std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated);
+
+}  // namespace skerry

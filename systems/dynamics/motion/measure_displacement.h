@@ -1,0 +1,56 @@
+// How far each body has come, for the budgets of the collision stages.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/node_block_table.h"
+#include "components/node_table.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+struct DisplacementInputs {
+    std::span<const Real> block_displacement_squared;  // m^2, NodeBlockTable; of the positions now
+    std::span<const Range> body_node_blocks;           // BodyTable
+    std::span<const Range> body_nodes;
+    std::span<const Real> body_mean_edge;  // m
+    std::span<const Vec3> position;        // m, now
+
+    static DisplacementInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
+                                   const NodeTable& node) {
+        return {.block_displacement_squared = binder.read(block.displacement_squared),
+                .body_node_blocks = binder.read(body.node_blocks),
+                .body_nodes = binder.read(body.nodes),
+                .body_mean_edge = binder.read(body.mean_edge),
+                .position = binder.read(node.position)};
+    }
+};
+
+struct DisplacementOutputs {
+    std::span<Vec3> origin;                // m, by node: where it was when its body's displacement was last zero
+    std::span<std::uint8_t> rebase;        // by body, or empty: 1 asks for a displacement of zero; cleared
+    std::span<Real> displacement, travel;  // BodyTable
+
+    /// `rebase`: by body.
+    static DisplacementOutputs bind(const Binder& binder, NodeTable& node, Column<std::uint8_t>& rebase,
+                                    BodyTable& body) {
+        return {.origin = binder.write(node.displacement_origin),
+                .rebase = binder.write(rebase),
+                .displacement = binder.write(body.displacement),
+                .travel = binder.write(body.travel)};
+    }
+};
+
+/// Greatest squared distance of the nodes of a block from their origins, m^2. advance_positions writes it by block.
+Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin);
+
+/// displacement = greatest distance of a node from its origin; travel grows by the change of displacement, so that a
+/// body that only trembles does not travel. When the displacement exceeds a small part of the mean edge, or on request,
+/// the origins move to where the nodes are: displacement is zero again, travel stays. No node is ever further from
+/// where it was at an earlier time than travel - (travel then) + 2 (displacement then). Parallel over bodies.
+void measure_displacement(Executor& executor, const DisplacementInputs& bodies, const DisplacementOutputs& out);
+
+}  // namespace skerry

@@ -1,0 +1,119 @@
+#include "systems/dynamics/motion/predict_velocity.h"
+
+#include <algorithm>
+#include <array>
+
+#include "components/check.h"
+#include "jobs/parallel_for.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t node_blocks_per_job = 4;
+constexpr int corners_per_block = 4 * element_lanes;
+
+struct Kick {
+    const KickInputs& nodes;
+    const Vec3* corner_force;  // a flat list: 4 corners an element
+    std::span<const Vec3> velocity;
+    Real h;
+    std::span<Vec3> force, velocity_next;
+
+    void block(std::size_t b) const {
+        const auto begin = static_cast<std::size_t>(nodes.block_begin[b]),
+                   end = static_cast<std::size_t>(nodes.block_end[b]);
+        const auto body = static_cast<std::size_t>(nodes.block_body[b]);
+        if (!nodes.body_asleep.empty() && nodes.body_asleep[body]) return;
+        const unsigned counts = nodes.active.body_active.empty() ? ~0u : nodes.active.body_active[body];
+        unsigned around = 0;
+        for (const LevelMask levels :
+             nodes.active.node_levels.subspan(nodes.active.node_levels.empty() ? 0 : begin, levels_in(begin, end)))
+            around |= levels;
+        if ((around & ~counts) == 0) {
+            all(begin, end);
+            return;
+        }
+        // Few nodes have a corner that counts: what all get first, without a branch on it, then those few in full.
+        const bool free = !nodes.body_pinned_count.empty() && nodes.body_pinned_count[body] == 0;
+        if (free && nodes.load.empty() && nodes.gravity == Vec3::Zero())
+            std::copy(velocity.begin() + begin, velocity.begin() + end, velocity_next.begin() + begin);
+        else
+            for (std::size_t n = begin; n < end; ++n) add(n, Vec3::Zero());
+        kick_due(begin, end, counts);
+    }
+
+private:
+    /// Corner order, the element order of the mesh: the same bits whatever the worker count.
+    /// Prefetching corners 8 nodes ahead was tried: 20 % faster from memory (1M tetrahedra), 30 % slower in cache
+    /// (10k).
+    void all(std::size_t begin, std::size_t end) const {
+        const Index* corner = nodes.corners.item.data() + nodes.corners.offset[begin];
+        for (std::size_t n = begin; n < end; ++n) {
+            Vec3 sum = Vec3::Zero();
+            for (const Index* last = nodes.corners.item.data() + nodes.corners.offset[n + 1]; corner != last; ++corner)
+                sum += corner_force[*corner];
+            add(n, sum);
+        }
+    }
+    std::size_t levels_in(std::size_t begin, std::size_t end) const {
+        return nodes.active.node_levels.empty() ? 0 : end - begin;
+    }
+
+    void kick_due(std::size_t begin, std::size_t end, unsigned counts) const {
+        std::array<Index, nodes_per_block> due;
+        std::size_t due_count = 0;
+        SKERRY_CHECK(end - begin <= due.size());
+        // A list without a branch: which nodes are due is hard to foretell.
+        for (std::size_t n = begin; n < end; ++n) {
+            due[due_count] = static_cast<Index>(n);
+            due_count += (nodes.active.node_levels[n] & counts) != 0;
+        }
+        for (std::size_t k = 0; k < due_count; ++k) {
+            const auto n = static_cast<std::size_t>(due[k]);
+            if ((nodes.active.node_levels[n] & ~counts) == 0)
+                all(n, n + 1);
+            else
+                add(n, sum_of_due(n, counts));
+        }
+    }
+
+    Vec3 sum_of_due(std::size_t n, unsigned counts) const {
+        Vec3 sum = Vec3::Zero();
+        for (const Index corner : nodes.corners[n]) {
+            const unsigned level = nodes.active.level[static_cast<std::size_t>(corner / corners_per_block)];
+            if (counts >> level == 0) break;  // elements are sorted by level: nothing that counts comes after
+            if ((counts >> level & 1) != 0) sum += corner_force[corner];
+        }
+        return sum;
+    }
+    [[gnu::always_inline]] void add(std::size_t n, const Vec3& sum) const {
+        Vec3 total = sum + nodes.mass[n] * nodes.gravity;
+        if (!nodes.load.empty()) total += nodes.load[n];
+        // Not a product with zero: a pinned node stays put even when the force on it is not finite.
+        if (nodes.inverse_mass[n] > 0) {
+            velocity_next[n] = velocity[n] + (h * nodes.inverse_mass[n]) * total;
+        } else {
+            velocity_next[n] = velocity[n];
+            force[n] = total;
+        }
+    }
+};
+
+}  // namespace
+
+void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real h,
+                      std::span<Vec3> force, std::span<Vec3> velocity_next) {
+    [[maybe_unused]] const std::size_t count = velocity_next.size();
+    SKERRY_CHECK(nodes.corners.size() == count && nodes.mass.size() == count && nodes.inverse_mass.size() == count);
+    SKERRY_CHECK(velocity.size() == count && force.size() == count &&
+                 (nodes.load.empty() || nodes.load.size() == count));
+    const Kick kick{nodes,    nodes.element_force.empty() ? nullptr : &nodes.element_force[0][0][0],
+                    velocity, h,
+                    force,    velocity_next};
+    parallel_for(executor, nodes.block_begin.size(), node_blocks_per_job, [&](std::size_t first, std::size_t last) {
+        for (std::size_t b = first; b < last; ++b) kick.block(b);
+    });
+}
+
+}  // namespace skerry

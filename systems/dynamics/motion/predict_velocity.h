@@ -1,0 +1,63 @@
+// The kick of symplectic Euler: sums forces at the nodes and adds what they do to velocities.
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/element_table.h"
+#include "components/node_block_table.h"
+#include "components/node_table.h"
+#include "components/ragged.h"
+#include "components/step_levels.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+/// Which element forces count in this step. With empty spans all do.
+struct ActiveCorners {
+    std::span<const LevelMask> body_active = {};  // BodyTable
+    std::span<const LevelMask> node_levels = {};  // NodeTable
+    std::span<const std::uint8_t> level = {};     // ElementBlockTable
+};
+
+struct KickInputs {
+    std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
+    RaggedView<Index> corners;                                  // by node: 4 * element + corner
+    std::span<const ElementForces> element_force;
+    ActiveCorners active;
+    std::span<const Real> mass, inverse_mass;
+    Vec3 gravity = Vec3::Zero();
+    std::span<const Vec3> load = {};                 // N; empty: none
+    std::span<const Index> body_pinned_count = {};   // BodyTable; empty: any node may be without freedom
+    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are passed over; empty: none
+
+    /// `corners`: by node. `loaded`: some node has a load. `any_asleep`: some body rests.
+    static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const Ragged<Index>& corners,
+                           const ElementBlockTable& element, const NodeTable& node, const BodyTable& body,
+                           const Vec3& gravity, const bool& loaded, const bool& any_asleep) {
+        return {.block_begin = binder.read(block.begin),
+                .block_end = binder.read(block.end),
+                .block_body = binder.read(block.body),
+                .corners = binder.read(corners),
+                .element_force = binder.read(element.force),
+                .active = {.body_active = binder.read(body.active),
+                           .node_levels = binder.read(node.levels),
+                           .level = binder.read(element.level)},
+                .mass = binder.read(node.mass),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .gravity = binder.value(gravity),
+                .load = binder.read_if(binder.value(loaded), node.load),
+                .body_pinned_count = binder.read(body.pinned_count),
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)};
+    }
+};
+
+/// velocity_next = velocity + h F inverse_mass, with F = sum of the element forces of the corners around the node that
+/// are due, in a fixed order, + mass gravity + load. Nodes without freedom (inverse mass 0) keep their velocity; of
+/// them alone F is written to `force`: what holds them is its opposite. One pass, since F of all nodes, kept and read
+/// again, took as long as the kick itself. Parallel over node blocks.
+void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real h,
+                      std::span<Vec3> force, std::span<Vec3> velocity_next);
+
+}  // namespace skerry

@@ -1,0 +1,101 @@
+// Bodies that have been slow for a while are put to rest, all that touch each other at once; what touches them wakes
+// them (docs/methods/skipping.md 3).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/collider_table.h"
+#include "components/column.h"
+#include "components/contact_table.h"
+#include "components/node_table.h"
+#include "components/options.h"
+#include "components/union_find.h"
+#include "jobs/access.h"
+
+namespace skerry {
+
+struct SleepSettings {
+    Real speed = 0;   // m/s: a body is still while no node of it is as fast; 0: none ever is
+    Real time = 0.5;  // s: so long a body has to be still, and all that it touches
+};
+
+/// The contacts of this step, after the solve.
+struct TouchInputs {
+    std::span<const Index> first_body, second_body;
+    std::span<const ContactState> state;
+    std::span<const Real> gap;               // m
+    std::span<const Vec3> surface_velocity;  // m/s
+
+    static TouchInputs bind(const Binder& binder, const ContactTable& contact) {
+        return {.first_body = binder.read(contact.first_body),
+                .second_body = binder.read(contact.second_body),
+                .state = binder.read(contact.state),
+                .gap = binder.read(contact.gap),
+                .surface_velocity = binder.read(contact.surface_velocity)};
+    }
+};
+
+/// The contacts of this step, before the solve.
+struct PressInputs {
+    std::span<const Index> first_body, second_body;
+    std::span<const Vec3> warm_impulse;    // N s; empty: none is kept
+    std::span<const std::uint8_t> asleep;  // by body
+
+    static PressInputs bind(const Binder& binder, const ContactTable& contact, const BodyTable& body,
+                            const WarmStart& warm_start) {
+        return {.first_body = binder.read(contact.first_body),
+                .second_body = binder.read(contact.second_body),
+                .warm_impulse = binder.read_if(binder.value(warm_start) == WarmStart::on, contact.impulse),
+                .asleep = binder.read(body.asleep)};
+    }
+};
+
+/// Marks bodies at rest that a contact has pressed on: by the impulse that it had when they were put to rest, since
+/// without their weight they may not press now. Where no impulse is kept every contact counts.
+void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
+
+/// Wakes every body that is marked, that a contact of this step presses on, by an impulse or by overlap, or that an
+/// attachment leads. Contacts between bodies at rest are not looked for, so what presses moves. Returns false when none
+/// was woken.
+bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
+                 std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
+                 std::span<std::uint8_t> asleep, std::span<Real> still_time);
+
+struct RestInputs {
+    std::span<const BodyKind> kind;
+    std::span<const Range> nodes;
+    std::span<const Real> max_speed;     // m/s, of this step
+    std::span<const Real> mass;          // kg, by node
+    std::span<const Real> inverse_mass;  // 1/kg, by node
+
+    static RestInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
+        return {.kind = binder.read(body.kind),
+                .nodes = binder.read(body.nodes),
+                .max_speed = binder.read(body.max_speed),
+                .mass = binder.read(node.mass),
+                .inverse_mass = binder.read(node.inverse_mass)};
+    }
+};
+
+/// What rest took from the bodies that were put to it in this step.
+struct TakenByRest {
+    Real energy = 0;               // J, kinetic
+    Vec3 momentum = Vec3::Zero();  // kg m/s
+    Index bodies = 0;
+};
+
+struct SleepMemory {
+    UnionFind touching;             // bodies
+    Column<std::uint8_t> restless;  // by body
+};
+
+/// Counts for how long each body has been still, and puts those to rest that are still with all that they touch,
+/// directly or through others: their velocities become zero. What touches a collider that moves stays awake.
+/// Sequential, over bodies and, when a body is ready, contacts.
+TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, const SleepSettings& settings, Real h,
+                        SleepMemory& memory, std::span<std::uint8_t> asleep, std::span<Real> still_time,
+                        std::span<Vec3> velocity, std::span<Vec3> velocity_next);
+
+}  // namespace skerry

@@ -1,0 +1,30 @@
+// The largest step that symplectic Euler stands, from a bound that survives slivers (docs/methods/stable_step.md 1, 2).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "systems/dynamics/elements/compute_element_forces.h"
+
+namespace skerry {
+
+/// What bounds a body's step and where.
+struct StableStep {
+    Real step = 0;             // s, 0.9 * 2 / omega_max; infinity for a body without elements
+    Index element = no_index;  // of ElementBlockTable (lane e % 8 of block e / 8): the element that bounds it
+};
+
+/// Stable step of one body in its present shape: the mass of each node is shared among its elements in proportion to
+/// their stiffness, and omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material Hessian of the
+/// present deformation bounded as docs/methods/stable_step.md 4 gives it. A rigorous bound (never above the exact
+/// limit), sequential, deterministic. Where elements have levels it is the step of level 0 for which every level has
+/// what element_levels.h asks. `stiffness_sum` is scratch, one entry a node.
+StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                       std::span<const Real> mass, std::span<Real> stiffness_sum);
+
+/// omega_max^2 of the rest stiffness by power iteration on the assembled linear operator (an estimate from below,
+/// docs/methods/stable_step.md 5): for tests and reports.
+Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                                    std::span<const Real> inverse_mass, int iterations);
+
+}  // namespace skerry

@@ -1,0 +1,41 @@
+// Every constitutive law, in one list.
+#pragma once
+
+#include "components/options.h"
+#include "systems/material/corotational.h"
+#include "systems/material/linear.h"
+#include "systems/material/stable_neo_hookean.h"
+
+namespace skerry {
+
+/// Calls visit(law) with the law of a model, an empty object: what visits it is compiled once for each law. A law is a
+/// struct in a file of its own, with
+///
+///     has_frame           whether it turns with the element: then all by lanes below take R, the rotation nearest to F
+///     stiffness_varies    whether nodes share the step of an element by its stiffness_bound in its present shape, by
+///                         lanes; else as if it had the one of its rest shape
+///     stress_flops        of stress by lanes, a tetrahedron: what profile_elements compares times with
+///     energy_density, stress, stiffness_bound (material, F)     one element, the plain twin of the kernels
+///     energy_density, stress (material, F[, R])                 by lanes
+///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or something above it, as terms
+///                                                               (dynamics/stability/element_stiffness.cpp)
+///
+/// and an entry here and in EnumNames<MaterialModel>.
+template <class Visit>
+[[gnu::always_inline]] inline decltype(auto) with_law(MaterialModel model, Visit&& visit) {
+    switch (model) {
+        case MaterialModel::linear:
+            return visit(Linear{});
+        case MaterialModel::corotational:
+            return visit(Corotational{});
+        case MaterialModel::stable_neo_hookean:
+            break;
+    }
+    return visit(StableNeoHookean{});
+}
+
+inline bool has_frame(MaterialModel model) {
+    return with_law(model, [](auto law) { return law.has_frame; });
+}
+
+}  // namespace skerry

@@ -1,0 +1,87 @@
+// The walk of a large region: its contacts in the order of a colouring, by a team of workers. Impulses have the bits of
+// a walk by one thread over the contacts in that order; sums are taken block by block.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <tuple>
+
+#include "jobs/team.h"
+#include "systems/solver/coloured/colour_contacts.h"
+#include "systems/solver/local/load_sums.h"
+#include "systems/solver/operators/lumped_operator.h"
+
+namespace skerry {
+
+/// Rows by node, and by contact before there is an order, are done in blocks of this many: so many copies of 32 bytes
+/// take several times as long as claiming the block.
+inline constexpr std::size_t row_block = 256;
+
+inline Index row_block_count(std::size_t rows) {
+    return static_cast<Index>((rows + row_block - 1) / row_block);
+}
+
+/// body(begin, end, block) for blocks of row_block rows.
+template <class Body>
+void for_row_blocks(Team& team, std::size_t count, Body&& body) {
+    team.run_blocks(row_block_count(count), [&](Index block) {
+        const std::size_t begin = static_cast<std::size_t>(block) * row_block;
+        body(begin, std::min(begin + row_block, count), block);
+    });
+}
+
+/// What a block adds to a sum, whichever it is.
+using BlockSum = std::tuple<Real, SweepChange, LoadSums>;
+
+/// How many blocks an order has.
+inline std::size_t block_count(const ColouredOrder& order) {
+    return order.block_offset.size() - 1;
+}
+
+class ByColour {
+public:
+    static constexpr bool one_thread = false;
+
+    /// `partial`: block_count(order) rows.
+    ByColour(const ColouredOrder& order, Team& team, std::span<BlockSum> partial)
+        : order_(&order), team_(&team), partial_(partial) {}
+
+    std::size_t number_of(std::size_t place) const { return static_cast<std::size_t>(order_->contact[place]); }
+    /// Phase after phase, also where the phases are of no matter, so that each worker finds the contacts in its cache.
+    template <class Body>
+    void contacts(std::size_t, Body&& body) const {
+        for_blocks([&body](std::size_t begin, std::size_t end, Index) { body(begin, end); });
+    }
+    template <class Body>
+    void nodes(std::size_t count, Body&& body) const {
+        for_row_blocks(*team_, count, [&body](std::size_t begin, std::size_t end, Index) { body(begin, end); });
+    }
+    template <class Sum, class Part>
+    Sum sum(std::size_t, Part&& part) const {
+        for_blocks([this, &part](std::size_t begin, std::size_t end, Index block) {
+            std::get<Sum>(partial_[block]) = part(begin, end);
+        });
+        Sum sum{};
+        for (std::size_t block = 0; block < block_count(*order_); ++block) sum += std::get<Sum>(partial_[block]);
+        return sum;
+    }
+
+private:
+    template <class Body>
+    void for_blocks(Body&& body) const {
+        team_->run_phases(order_->phase_offset.span(), [&](Index block) {
+            body(static_cast<std::size_t>(order_->block_offset[block]),
+                 static_cast<std::size_t>(order_->block_offset[block + 1]), block);
+        });
+    }
+
+    const ColouredOrder* order_;
+    Team* team_;
+    std::span<BlockSum> partial_;
+};
+
+using ColouredOperator = LumpedOperatorBy<ByColour>;
+static_assert(ContactOperator<ColouredOperator>);
+extern template class LumpedOperatorBy<ByColour>;  // compiled once, in by_colour.cpp
+
+}  // namespace skerry

@@ -1,0 +1,55 @@
+// What the stage solve_regions reads and writes, as spans.
+#pragma once
+
+#include <span>
+
+#include "components/contact_table.h"
+#include "components/node_table.h"
+#include "components/types.h"
+#include "jobs/access.h"
+
+namespace skerry {
+
+/// What the stage reads beside the contacts.
+struct RegionInputs {
+    std::span<const Stencil> stencil;
+    std::span<const Vec3> normal;
+    std::span<const Real> gap;
+    std::span<const Vec3> surface_velocity;
+    std::span<const Real> static_friction, dynamic_friction, restitution;
+    std::span<const Real> inverse_mass;  // by node
+    std::span<const Vec3> velocity;      // by node, at the start of the step
+    Real gravity = 0;                    // m/s^2, norm: scale of the error measure
+    // ascending; names the regions across steps. Without it there is no history to schedule by
+    std::span<const ContactKey> key{};
+
+    /// `velocity`: of the nodes, at the start of the step.
+    static RegionInputs bind(const Binder& binder, const ContactTable& contact, const NodeTable& node,
+                             const Column<Vec3>& velocity, const Real& gravity) {
+        return {.stencil = binder.read(contact.stencil),
+                .normal = binder.read(contact.normal),
+                .gap = binder.read(contact.gap),
+                .surface_velocity = binder.read(contact.surface_velocity),
+                .static_friction = binder.read(contact.static_friction),
+                .dynamic_friction = binder.read(contact.dynamic_friction),
+                .restitution = binder.read(contact.restitution),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .velocity = binder.read(velocity),
+                .gravity = binder.value(gravity),
+                .key = binder.read(contact.key)};
+    }
+};
+
+struct RegionOutputs {
+    std::span<Vec3> impulse;        // by contact: warm start in, solution out
+    std::span<Vec3> velocity_next;  // by node: predicted in, solved out
+    std::span<Vec3> push_out;       // by node
+
+    static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node) {
+        return {.impulse = binder.write(contact.impulse),
+                .velocity_next = binder.write(node.velocity_next),
+                .push_out = binder.write(node.push_out)};
+    }
+};
+
+}  // namespace skerry

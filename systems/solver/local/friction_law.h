@@ -1,0 +1,118 @@
+// The friction laws as projections of one contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6).
+// V is a world vector of 3, or of 4 with a zero last place; `normal` is a unit vector, `mu` Coulomb's coefficient.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/options.h"
+#include "components/types.h"
+#include "systems/contact/tangent_frame.h"
+
+namespace skerry {
+
+/// A world vector padded to a vector register; the last place is zero.
+using Vec4 = Eigen::Matrix<Real, 4, 1>;
+
+inline Vec4 padded(const Vec3& v) {
+    return {v.x(), v.y(), v.z(), 0};
+}
+inline Vec3 shortened(const Vec3& v) {
+    return v;
+}
+inline Vec3 shortened(const Vec4& v) {
+    return v.head<3>();
+}
+
+/// The two limits of friction: an impulse inside the static cone sticks, one outside slides with the dynamic
+/// coefficient.
+struct FrictionLimits {
+    Real stick, slide;
+};
+
+/// Exact Coulomb solution of one isotropic contact: `z` is the impulse that would stop it. The tangential part is cut
+/// back along itself, the normal part is kept (docs/methods/friction.md 2.1). Not-a-number stays not-a-number.
+template <class V>
+inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
+    const Real along = normal.dot(z);
+    if (along <= 0) return V::Zero();
+    const V pressed = along * normal;
+    if (mu.stick == 0) return pressed;
+    const V tangential = z - pressed;
+    const Real length_squared = tangential.dot(tangential);
+    const Real limit = mu.stick * along;
+    if (length_squared <= limit * limit) return z;
+    return pressed + (mu.slide * along / std::sqrt(length_squared)) * tangential;
+}
+
+/// The same for the paper's pyramid (eq. 6): each tangential component is cut back on its own.
+template <class V>
+inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
+    const Real along = normal.dot(z);
+    if (along <= 0) return V::Zero();
+    V result = along * normal;
+    if (mu.stick == 0) return result;
+    const TangentFrame frame = tangent_frame(shortened(normal));
+    for (const Vec3& tangent : {frame.first, frame.second}) {
+        Real part = shortened(z).dot(tangent);
+        if (!(std::abs(part) <= mu.stick * along)) part = std::clamp(part, -mu.slide * along, mu.slide * along);
+        result.template head<3>() += part * tangent;
+    }
+    return result;
+}
+
+/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of docs/methods/friction.md 2.5, for the error measures and
+/// the associated law.
+template <class V>
+inline V project_onto_cone(const V& z, const V& normal, Real mu) {
+    const Real along = normal.dot(z);
+    const V tangential = z - along * normal;
+    const Real length = tangential.norm();
+    // The polar cone first: without friction and without a tangential part both would hold of an impulse that pulls.
+    if (mu * length <= -along) return V::Zero();
+    if (length <= mu * along) return z;
+    const Real nearest = (along + mu * length) / (1 + mu * mu);
+    if (length == 0) return nearest * normal;
+    return nearest * normal + (mu * nearest / length) * tangential;
+}
+
+template <class V>
+inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Friction friction) {
+    // one coefficient is all that the law knows
+    if (friction == Friction::cone_convex) return project_onto_cone(z, normal, mu.slide);
+    return friction == Friction::cone ? project_coulomb(z, normal, mu) : project_pyramid(z, normal, mu);
+}
+
+/// W(lambda) of the paper's (19), read as in docs/methods/contact.md 5.6: the part of the residual along which the
+/// impulse may move without leaving its limit. An impulse of zero can only grow; one on the limit of friction does not
+/// go on outwards.
+template <class V>
+inline V feasible_direction(const V& residual, const V& impulse, const V& normal, FrictionLimits mu,
+                            Friction friction) {
+    const Real along = normal.dot(impulse);
+    const Real growth = normal.dot(residual);
+    if (friction == Friction::cone_convex && along <= 0) return project_onto_cone(residual, normal, mu.slide);
+    if (along <= 0) return std::max(Real(0), growth) * normal;
+    if (mu.stick == 0) return growth * normal;
+    constexpr Real rounding = 1e-9;  // relative: what a projection leaves beside the surface counts as on it
+    const Real limit = mu.slide * along * (1 - rounding);
+    if (friction != Friction::pyramid) {
+        const V tangential = impulse - along * normal;
+        const Real length = tangential.norm();
+        if (length < limit || length == 0) return residual;
+        V outward = tangential / length;
+        if (friction == Friction::cone_convex)
+            outward = (outward - mu.slide * normal) / std::sqrt(1 + mu.slide * mu.slide);
+        return residual - std::max(Real(0), outward.dot(residual)) * outward;
+    }
+    V result = residual;
+    const TangentFrame frame = tangent_frame(shortened(normal));
+    for (const Vec3& tangent : {frame.first, frame.second}) {
+        const Real part = shortened(impulse).dot(tangent);
+        const Real push = shortened(residual).dot(tangent);
+        if (std::abs(part) >= limit && part * push >= 0) result.template head<3>() -= push * tangent;
+    }
+    return result;
+}
+
+}  // namespace skerry

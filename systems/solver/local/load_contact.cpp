@@ -1,0 +1,59 @@
+#include "systems/solver/local/load_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skerry {
+namespace {
+
+/// m/s, velocity of the contact at the start of the step and as predicted.
+struct AroundKick {
+    Vec3 before, now;
+};
+
+inline AroundKick around_kick(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next) {
+    const Stencil& stencil = inputs.stencil[row];
+    AroundKick velocity{-inputs.surface_velocity[row], -inputs.surface_velocity[row]};
+    for (std::size_t a = 0; a < 4; ++a) {
+        if (stencil.weight[a] == 0) continue;
+        velocity.before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
+        velocity.now += stencil.weight[a] * velocity_next[stencil.node[a]];
+    }
+    return velocity;
+}
+
+}  // namespace
+
+Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
+                  const SolverSettings& settings, Real h) {
+    const Real gap = inputs.gap[row];
+    const Real closing = gap < 0 ? 0 : gap / h;
+    const Real restitution = inputs.restitution[row];
+    if (restitution == 0) return closing;
+    const auto [before, coming] = around_kick(inputs, row, velocity_next);
+    const Real approach = before.dot(inputs.normal[row]);
+    // What is not clearly faster than what forces give it in one step is no impact (docs/methods/contact.md 3.2):
+    // weight alone gives g h to a resting contact, and elastic forces can throw a node back down in each step, onto a
+    // floor that would throw it up again for ever.
+    const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
+    constexpr Real clearly = 2;  // times faster
+    const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});
+    const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
+    return impact ? std::min(closing, restitution * approach) : closing;
+}
+
+Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next) {
+    if (inputs.dynamic_friction[row] == 0) return Vec3::Zero();
+    const auto [before, now] = around_kick(inputs, row, velocity_next);
+    const Vec3& normal = inputs.normal[row];
+    const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal,
+               turn = slip - slip_before;
+    // What is about to stop or to turn back keeps the law as it is: it has no direction halfway. In between it fades,
+    // or a step would jump.
+    constexpr Real gone = 2, slope = 4;  // in full up to a quarter of the speed, nothing from half of it on
+    const Real fading = gone - slope * turn.norm() / slip_before.norm();
+    if (!(fading > 0) || turn.isZero(0)) return Vec3::Zero();
+    return 0.5 * std::min(Real(1), fading) * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);
+}
+
+}  // namespace skerry

@@ -1,0 +1,78 @@
+// One contact of lumped masses: its block of W is a number times the identity (docs/methods/contact.md 2.1), so that a
+// step of it is a gather of node velocities, a projection and a scatter.
+#pragma once
+
+#include <array>
+
+#include "components/options.h"
+#include "components/types.h"
+#include "systems/solver/local/friction_law.h"
+
+namespace skerry {
+
+/// What a sweep needs of one contact, side by side. Nodes that do not move are not in the stencil: their velocity is in
+/// `offset`.
+struct LumpedContact {
+    Vec4 normal;                 // unit
+    Vec4 offset;                 // m/s: velocity of fixed nodes minus that of the collider, plus bias along the normal
+    std::array<Real, 4> weight;  // of the moving nodes
+    std::array<Real, 4> step;    // 1/kg, weight times inverse mass
+    std::array<Index, 4> node;   // rows of the region's own nodes
+    Index node_count;            // 0: no impulse of this contact could move anything
+    Real diagonal;               // 1/kg, D of docs/methods/contact.md 2.1
+    Real inverse_diagonal;       // kg
+    Real bias;                   // m/s, its part of the offset
+    FrictionLimits friction;
+};
+
+/// start + sum of weight times velocity of the moving nodes.
+inline Vec4 add_node_velocities(const LumpedContact& contact, const Vec4* velocity, Vec4 start) {
+    for (Index a = 0; a < contact.node_count; ++a) start += contact.weight[a] * velocity[contact.node[a]];
+    return start;
+}
+
+/// u = W r + q of one contact.
+inline Vec4 contact_velocity(const LumpedContact& contact, const Vec4* velocity) {
+    return add_node_velocities(contact, velocity, contact.offset);
+}
+
+inline void apply_impulse(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
+    for (Index a = 0; a < contact.node_count; ++a) velocity[contact.node[a]] += contact.step[a] * impulse;
+}
+
+/// The Gauss-Seidel step of one contact (docs/methods/friction.md 2.2). Returns D |change|^2.
+inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity,
+                          Vec4& impulse) {
+    const Vec4 u = contact_velocity(contact, velocity);
+    const Vec4 stopping = impulse - (relaxation * contact.inverse_diagonal) * u;
+    const Vec4 next = project_friction(stopping, contact.normal, contact.friction, friction);
+    const Vec4 change = next - impulse;
+    const Real size = change.dot(change);
+    if (size == 0) return 0;  // most contacts that are apart: nothing to scatter
+    apply_impulse(contact, change, velocity);
+    impulse = next;
+    return contact.diagonal * size;
+}
+
+/// F_i of docs/methods/errors.md 1: how far the impulse is from the one its velocity asks for. The De Saxce form where
+/// it exists (cone, one coefficient), else the residual of the contact step.
+inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse, const Vec4& u) {
+    const FrictionLimits mu = contact.friction;
+    if (friction == Friction::cone && mu.stick == mu.slide) {
+        const Vec4 tangential = u - contact.normal.dot(u) * contact.normal;
+        const Vec4 shifted = u + (mu.stick * tangential.norm()) * contact.normal;
+        return impulse -
+               project_onto_cone(Vec4(impulse - contact.inverse_diagonal * shifted), contact.normal, mu.stick);
+    }
+    return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
+}
+
+/// Whether a contact with this velocity needs no impulse. The associated law presses on what slides unless it lifts off
+/// fast enough.
+inline bool separates(const LumpedContact& contact, Friction friction, const Vec4& u) {
+    const Real along = contact.normal.dot(u);
+    if (friction != Friction::cone_convex) return along >= 0;
+    return along >= contact.friction.slide * (u - along * contact.normal).norm();
+}
+
+}  // namespace skerry

@@ -1,0 +1,49 @@
+// The split impulse of one contact: takes it back out by moving positions only (docs/methods/contact.md 3.4; as a
+// velocity it would add energy, docs/methods/time_stepping.md 2.3).
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "systems/solver/inputs/solver_settings.h"
+#include "systems/solver/local/lumped_contact.h"
+
+namespace skerry {
+
+/// m, gaps above minus this are not worth a push: a resting contact solved to 1e-3 loses at most a thousandth of g h^2
+/// a step, so this is a hundred steps of drift; the second part is the rounding of positions some kilometres from the
+/// origin.
+inline Real push_slop(Real gravity, Real h) {
+    constexpr Real of_kick = 0.1, rounding = 1e-12;  // of g h^2; m
+    return of_kick * gravity * h * h + rounding;
+}
+
+/// The least u_n + p_n of a contact, taken from u_n: negative asks for a push. Contacts that are not pressed in ask for
+/// nothing, whatever error the velocity solve has left: so a region without a pressed contact comes out as zero, on its
+/// own or within a larger one.
+inline Real push_bias(const LumpedContact& contact, Real gap, Real slop, std::span<const Vec4> velocity,
+                      const SolverSettings& settings, Real h) {
+    const Real normal_velocity = contact.normal.dot(contact_velocity(contact, velocity.data())) - contact.bias;
+    if (gap < -slop) return normal_velocity - std::min(settings.recovery * -gap / h, settings.recovery_speed);
+    return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
+}
+
+/// The Gauss-Seidel step of one contact on the pseudo velocities. Returns D change^2.
+inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity, Real& impulse) {
+    Real along = bias;
+    for (Index a = 0; a < contact.node_count; ++a)
+        along += contact.weight[a] * contact.normal.dot(velocity[contact.node[a]]);
+    const Real next = std::max(Real(0), impulse - contact.inverse_diagonal * along);
+    const Real change = next - impulse;
+    if (change == 0) return 0;
+    apply_impulse(contact, change * contact.normal, velocity);
+    impulse = next;
+    return contact.diagonal * change * change;
+}
+
+struct PushMemory {
+    std::span<Real> impulse, bias;  // by contact
+    std::span<Vec4> velocity;       // by node of the region; the result
+};
+
+}  // namespace skerry

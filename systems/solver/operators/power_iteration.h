@@ -1,0 +1,40 @@
+// The largest eigenvalue of D^-1 W, D_i the mobility of contact i: the step length of the gradient methods.
+#pragma once
+
+#include "systems/solver/operators/contact_operator.h"
+
+namespace skerry {
+
+/// From below, to a few percent: `steps` products, from a start without pattern so that no eigenvector is missed. At
+/// least 1 unless the operator is not finite. Uses workspace 1 and 2; `restrict_to(i, vector)` is the part of a vector
+/// that counts for contact i.
+template <ContactOperator Op, class Restrict>
+Real largest_eigenvalue(Op& op, Index steps, const Restrict& restrict_to) {
+    const std::span<Vec4> vector = op.workspace(1), product = op.workspace(2);
+    std::uint32_t state = 1;
+    const auto number = [&state] {  // in [-1, 1), the same on every machine
+        state = state * 1664525u + 1013904223u;
+        return static_cast<Real>(state >> 8) / (1 << 23) - 1;
+    };
+    for (Index i = 0; i < op.size(); ++i) {
+        const Real x = number(), y = number(), z = number();
+        vector[i] = op.mobility(i) > 0 ? restrict_to(i, Vec4(x, y, z, 0)) : Vec4(Vec4::Zero());
+    }
+    Real eigenvalue = 1;
+    for (Index step = 0; step < steps; ++step) {
+        op.multiply(vector, product);
+        Real along = 0, size = 0;  // v . W v and v . D v
+        for (Index i = 0; i < op.size(); ++i) {
+            along += vector[i].dot(product[i]);
+            size += op.mobility(i) * vector[i].squaredNorm();
+        }
+        if (!(size > 0) || !(along > 0)) break;
+        eigenvalue = std::max(eigenvalue, along / size);
+        const Real shorter = 1 / std::sqrt(size);
+        for (Index i = 0; i < op.size(); ++i)
+            if (op.mobility(i) > 0) vector[i] = restrict_to(i, Vec4((shorter / op.mobility(i)) * product[i]));
+    }
+    return eigenvalue;
+}
+
+}  // namespace skerry

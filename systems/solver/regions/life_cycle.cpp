@@ -1,0 +1,71 @@
+#include "systems/solver/regions/life_cycle.h"
+
+namespace skerry {
+
+void RegionMemory::make_room_for(std::size_t contacts, std::size_t nodes, const SolverSettings& settings) {
+    make_room(contact, contacts);
+    make_room(impulse, contacts);
+    make_room(push_impulse, contacts);
+    make_room(push_bias, contacts);
+    make_room(quiet_sweeps, contacts);
+    make_room(last_velocity, contacts);
+    make_room(node, 4 * contacts);
+    make_room(velocity, 4 * contacts);
+    make_room(scratch, 4 * contacts);
+    make_room(place, nodes);
+    for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(workspace[slot], contacts);
+}
+
+RegionOutcome outcome_of(const SolveResult& result) {
+    RegionStatus status = result.converged ? RegionStatus::converged : RegionStatus::iteration_limit;
+    if (!std::isfinite(result.error)) status = RegionStatus::not_finite;
+    return {.iterations = result.iterations, .error = result.error, .status = status};
+}
+
+void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regions) {
+    regions.iterations[number] = outcome.iterations;
+    regions.error[number] = outcome.error;
+    regions.status[number] = outcome.status;
+    regions.shortcut[number] = outcome.shortcut;
+    regions.frozen[number] = outcome.frozen;
+    regions.dissipated[number] = outcome.dissipated;
+}
+
+SolveLimits limits_of(const SolverSettings& settings) {
+    return {settings.tolerance, settings.max_iterations, settings.fixed_iterations, settings.relaxation};
+}
+
+LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node) {
+    RegionMemory& data = stage.memory;
+    const std::size_t first = static_cast<std::size_t>(base);
+    LumpedMemory memory{.contact = data.contact.span().subspan(first, count),
+                        .impulse = data.impulse.span().subspan(first, count),
+                        .velocity = data.velocity.span().subspan(4 * first, node.size()),
+                        .node = node,
+                        .free_velocity = stage.out.velocity_next,
+                        .scratch = data.scratch.span().subspan(4 * first, node.size()),
+                        .workspace = {}};
+    for (std::size_t slot = 0; slot < workspace_slots(stage.settings.method); ++slot)
+        memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
+    return memory;
+}
+
+PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::size_t node_count) {
+    const std::size_t first = static_cast<std::size_t>(base);
+    return {stage.memory.push_impulse.span().subspan(first, count), stage.memory.push_bias.span().subspan(first, count),
+            stage.memory.scratch.span().subspan(4 * first, node_count)};
+}
+
+Real dissipated_by(const RegionStage& stage, Index row) {
+    const Vec3& impulse = stage.out.impulse[row];
+    if (impulse.isZero(0)) return 0;
+    const Stencil& stencil = stage.inputs.stencil[row];
+    Vec3 twice_mean = -2 * stage.inputs.surface_velocity[row];
+    for (std::size_t a = 0; a < 4; ++a)
+        if (stencil.weight[a] != 0)
+            twice_mean +=
+                stencil.weight[a] * (stage.inputs.velocity[stencil.node[a]] + stage.out.velocity_next[stencil.node[a]]);
+    return -0.5 * impulse.dot(twice_mean);
+}
+
+}  // namespace skerry

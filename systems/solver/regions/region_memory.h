@@ -1,0 +1,83 @@
+// Working memory of solve_regions, kept between steps. Rows "by contact" are in the order of RegionTable::contacts, so
+// that a region's rows are consecutive.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "components/column.h"
+#include "components/region_table.h"
+#include "systems/solver/coloured/order_region.h"
+#include "systems/solver/inputs/solver_settings.h"
+#include "systems/solver/operators/lumped_operator.h"
+
+namespace skerry {
+
+/// Regions order[begin] .. order[end - 1], solved one after the other.
+struct RegionTask {
+    Index begin, end;
+};
+
+/// Regions that are worth all workers each.
+struct LargeRegions {
+    Team team;
+    std::vector<std::unique_ptr<ColouredRegion>> region;  // the first large region of the step, the second, ...
+};
+
+/// Longer if need be, never shorter: a column that shrinks and grows again would be cleared each time.
+template <class T>
+void make_room(Column<T>& column, std::size_t count) {
+    if (column.size() < count) column.resize(count);
+}
+
+/// Where loading leaves the velocities of the contacts without impulses, until the method uses the place itself.
+inline constexpr std::size_t free_velocity_slot = 1;
+
+/// How many vectors by contact a method works with; the first keeps the best iterate.
+inline std::size_t workspace_slots(SolverMethod method) {
+    switch (method) {
+        case SolverMethod::pgs:
+            return 1;
+        case SolverMethod::ags:
+        case SolverMethod::automatic:
+            return 2;
+        case SolverMethod::nncg:
+            return 3;
+        case SolverMethod::apgd:
+            return 6;
+        default:
+            return 4;
+    }
+}
+
+struct RegionMemory {
+    // by contact
+    Column<LumpedContact> contact;
+    Column<Vec4> impulse;  // N s
+    std::array<Column<Vec4>, workspace_limit> workspace;
+    Column<Real> push_impulse;  // N s, of the split impulse; before that the normal impulses of frictionless regions
+    Column<Real> push_bias;     // m/s; likewise the previous ones
+    Column<std::uint8_t> quiet_sweeps;  // sweeps without a change
+    Column<Vec4> last_velocity;         // m/s
+    // four places by contact: a region never has more nodes
+    Column<Index> node;     // rows of NodeTable
+    Column<Vec4> velocity;  // m/s
+    Column<Vec4> scratch;   // m/s
+    // by row of NodeTable
+    Column<Index> place;  // in its region's list of nodes, if that list agrees
+    // by region
+    Column<Real> cost;           // microseconds, predicted
+    RegionHistoryTable history;  // of the last step; then
+    RegionHistoryTable present;  // of this one
+    // by task
+    Column<RegionTask> task;
+    LargeRegions large;
+    std::atomic<bool> pushed = false;  // some region wrote push_out in this step
+
+    /// Of the columns by contact and by node.
+    void make_room_for(std::size_t contacts, std::size_t nodes, const SolverSettings& settings);
+};
+
+}  // namespace skerry

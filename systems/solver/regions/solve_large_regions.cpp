@@ -1,0 +1,58 @@
+#include "systems/solver/regions/solve_large_regions.h"
+
+#include "systems/solver/methods/run_method.h"
+
+namespace skerry {
+namespace {
+
+RegionOutcome solve_by_colour(const RegionStage& stage, std::span<const Index> row, Index base, Team& team,
+                              ColouredRegion& kept) {
+    order_region(stage.inputs, row, team, stage.memory.place.span(), kept);
+    const RegionByColour region = load_by_colour(stage, row, base, team, kept);
+    RegionOutcome outcome;
+    if (!start_region(stage, region, outcome)) {
+        ColouredOperator op = operator_of(stage, region);
+        outcome = outcome_of(run_method(stage.settings.method, op, limits_of(stage.settings)));
+    }
+    finish_region(stage, region, outcome);
+    return outcome;
+}
+
+}  // namespace
+
+RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> row, Index base, Team& team,
+                              ColouredRegion& kept) {
+    RegionByColour region{.row = row,
+                          .base = base,
+                          .walk = kept.walk(team),
+                          .memory = memory_from(stage, base, row.size(), kept.node.span())};
+    region.walk.nodes(kept.node.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            region.memory.velocity[n] = padded(stage.out.velocity_next[kept.node[n]]);
+    });
+    load_contacts(stage, region, [&](std::size_t number) {
+        // in the order in which load_contact asks
+        return [next = kept.local[number].data()](Index) mutable { return *next++; };
+    });
+    return region;
+}
+
+void solve_large_regions(Executor& executor, const RegionStage& stage, RegionTable& regions) {
+    LargeRegions& large = stage.memory.large;
+    std::size_t count = 0;
+    for (std::size_t r = 0; r < regions.size(); ++r)
+        count += is_large(stage.settings, regions.contacts[r].size()) ? 1 : 0;
+    if (count == 0) return;
+    while (large.region.size() < count) large.region.push_back(std::make_unique<ColouredRegion>());
+    large.team.gather(executor, [&] {
+        std::size_t next = 0;
+        for (std::size_t r = 0; r < regions.size(); ++r) {
+            if (!is_large(stage.settings, regions.contacts[r].size())) continue;
+            write_outcome(solve_by_colour(stage, regions.contacts[r], regions.contacts.offset[r], large.team,
+                                          *large.region[next++]),
+                          static_cast<Index>(r), regions);
+        }
+    });
+}
+
+}  // namespace skerry

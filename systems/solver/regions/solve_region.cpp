@@ -1,0 +1,118 @@
+#include "systems/solver/regions/solve_region.h"
+
+#include "systems/solver/methods/run_method.h"
+#include "systems/solver/operators/normal_rows.h"
+
+namespace skerry {
+namespace {
+
+/// Sweeps on the normal impulses alone.
+SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& region, const SolveLimits& limits) {
+    const PushMemory memory = push_memory(stage, region.base, region.row.size(), 0);
+    NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
+    const SolveResult result = solve_ags(rows, limits);
+    if (result.converged || !std::isfinite(result.error)) rows.keep();  // else the best ones are there
+    return result;
+}
+
+/// Lets contacts rest whose change is worth no more than a tenth of their share of the tolerance
+/// (docs/methods/region_solver.md 8).
+void allow_freezing(const RegionStage& stage, RegionInOrder& region) {
+    const SolverSettings& settings = stage.settings;
+    if (!settings.freeze_contacts || settings.fixed_iterations) return;
+    const std::size_t first = static_cast<std::size_t>(region.base), count = region.row.size();
+    constexpr Real worth = 0.1;
+    const Real share = worth * settings.tolerance * region.scale;
+    region.memory.still = share * share / static_cast<Real>(count);
+    region.memory.quiet_sweeps = stage.memory.quiet_sweeps.span().subspan(first, count);
+    region.memory.last_velocity = stage.memory.last_velocity.span().subspan(first, count);
+    std::fill(region.memory.quiet_sweeps.begin(), region.memory.quiet_sweeps.end(), velocity_unknown);
+}
+
+/// What is left to do after impulses were put back into their cones: nothing, as a rule.
+SolveResult without_freezing(const RegionStage& stage, RegionInOrder& region, SolveLimits limits, LumpedOperator& op,
+                             SolveResult result) {
+    result.error = op.error();
+    if (!result.converged || result.error <= limits.tolerance) return result;
+    region.memory.quiet_sweeps = {};
+    LumpedOperator awake = operator_of(stage, region);
+    limits.max_iterations = std::max(Index{1}, limits.max_iterations - result.iterations);
+    const SolveResult rest = run_method(stage.settings.method, awake, limits);
+    return {result.iterations + rest.iterations, rest.error, rest.converged};
+}
+
+}  // namespace
+
+// A node's place in the list is remembered by node; regions share no moving node, so none overwrites what another
+// needs, and an entry left from elsewhere shows by the list not agreeing.
+RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, Index base) {
+    RegionMemory& data = stage.memory;
+    const std::span<Index> node = data.node.span().subspan(4 * static_cast<std::size_t>(base), 4 * row.size());
+    RegionInOrder region{.row = row, .base = base, .memory = memory_from(stage, base, row.size(), node)};
+    const std::span<Vec4> velocity = region.memory.velocity;
+    std::size_t node_count = 0;
+    const auto local = [&](Index global) {
+        Index& place = data.place[global];
+        if (static_cast<std::size_t>(place) < node_count && node[place] == global) return place;
+        place = static_cast<Index>(node_count);
+        node[node_count] = global;
+        velocity[node_count++] = padded(stage.out.velocity_next[global]);
+        return place;
+    };
+    load_contacts(
+        stage, region, [&](std::size_t) -> const auto& { return local; });
+    region.memory.node = node.first(node_count);
+    region.memory.velocity = velocity.first(node_count);
+    region.memory.scratch = region.memory.scratch.first(node_count);
+    return region;
+}
+
+RegionOutcome sweep_region(const RegionStage& stage, RegionInOrder& region) {
+    const SolverSettings& settings = stage.settings;
+    const SolveLimits limits = limits_of(settings);
+    if (region.sums.frictionless && settings.frictionless_rows && sweeps_accelerated(settings)) {
+        RegionOutcome outcome = outcome_of(solve_frictionless(stage, region, limits));
+        outcome.shortcut = shortcut_frictionless;
+        return outcome;
+    }
+    allow_freezing(stage, region);
+    LumpedOperator op = operator_of(stage, region);
+    SolveResult result = run_method(settings.method, op, limits);
+    if (op.frozen() > 0 && op.make_feasible()) result = without_freezing(stage, region, limits, op, result);
+    RegionOutcome outcome = outcome_of(result);
+    outcome.frozen = op.frozen();
+    return outcome;
+}
+
+RegionOutcome solve_single(const RegionStage& stage, Index row) {
+    std::array<Index, 4> node;
+    std::array<Vec4, 4> velocity, push_velocity;
+    std::size_t node_count = 0;
+    const LumpedContact contact =
+        load_contact(stage.inputs, row, stage.out.velocity_next, stage.settings, stage.h, [&](Index global) {
+            // a stencil may name a node twice
+            for (std::size_t n = 0; n < node_count; ++n)
+                if (node[n] == global) return static_cast<Index>(n);
+            node[node_count] = global;
+            velocity[node_count] = padded(stage.out.velocity_next[global]);
+            return static_cast<Index>(node_count++);
+        });
+    Vec4 impulse = Vec4::Zero();
+    const Real size = solve_contact(contact, stage.settings.friction, 1, velocity.data(), impulse);
+    RegionOutcome outcome{.iterations = 1, .shortcut = shortcut_closed_form};
+    if (!std::isfinite(size)) {
+        outcome.status = RegionStatus::not_finite;
+        outcome.error = size;
+    }
+    const RegionInOrder region{
+        .row = {&row, 1},
+        .memory = {{&contact, 1}, {&impulse, 1}, {velocity.data(), node_count}, {node.data(), node_count}, {}, {}, {}}};
+    Real push_impulse, push_bias;
+    finish_region(stage, region, {{&push_impulse, 1}, {&push_bias, 1}, {push_velocity.data(), node_count}}, outcome);
+    return outcome;
+}
+
+template bool start_region(const RegionStage&, const RegionInOrder&, RegionOutcome&);
+template void finish_region(const RegionStage&, const RegionInOrder&, RegionOutcome&);
+
+}  // namespace skerry

@@ -1,0 +1,40 @@
+// The stages of a world touch what they declare and nothing else: with SKERRY_CHECK_ACCESS every scene is a test of it,
+// and this one of the check.
+#include <catch2/catch.hpp>
+
+#include "components/check.h"
+#include "engine/world/world_state.h"
+
+using namespace skerry;
+
+#ifdef SKERRY_CHECK_ACCESS
+
+TEST_CASE("a stage that is slipped into the step and looks at what it has not declared fails, by name", "[scene]") {
+    WorldState world{Settings{}};
+    world.scratch.parameters.h = 1e-3;
+    const auto fails_with = [&](const char* message, auto touch) {
+        TaskGraph graph;
+        graph.track(&world, sizeof world, name_of_column);
+        graph.stage(
+            "test/liar", [&](std::span<const Real>) { touch(world); }, read(world.model.nodes.mass));
+        graph.compile();
+        CHECK_THROWS_WITH(graph.run_inline(), Catch::Equals(message));
+    };
+    fails_with("the stage test/liar reads nodes.velocity and has not declared it",
+               [](const WorldState& w) { (void)w.model.nodes.velocity.span(); });
+    fails_with("the stage test/liar writes nodes.mass and has not declared it",
+               [](WorldState& w) { w.model.nodes.mass.clear(); });
+    fails_with("the stage test/liar reads contacts.gap and has not declared it",
+               [](const WorldState& w) { (void)w.scratch.contacts.gap.size(); });
+    world.graph.stage(
+        "test/late", [&world](std::span<const Real>) { world.model.bodies.still_time.clear(); },
+        read(world.model.nodes.mass));
+    world.graph.compile();
+    CHECK_THROWS_WITH(world.graph.run_inline(), Catch::Contains("the stage test/late writes bodies.still_time"));
+}
+
+#else
+
+// Without it, in builds with NDEBUG, there is nothing to test; asan and tsan build with it.
+
+#endif

@@ -1,0 +1,110 @@
+// A step that is not taken changes nothing.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+#include <string>
+
+#include "engine/world/state_hash.h"
+#include "engine/world/step/step.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+
+namespace {
+
+/// A ball on a plane and a held one, one of which gets a load that no number holds.
+struct Doomed {
+    World world;
+    BodyHandle ball, held;
+
+    explicit Doomed(Integrator integrator) : world({.integrator = integrator}) {
+        const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5});
+        world.add_collider(Plane{});
+        ball = world.add_body(mesh::ball(0.05, 4), {.material = rubber, .position = {0, 0, 0.06}});
+        held = world.add_body(mesh::ball(0.05, 4), {.material = rubber, .position = {1, 0, 0.5}});
+        world.attach(held, std::vector<Index>{0, 1, 2}, {.velocity = {0.1, 0, 0}}, {1, 0, 0.5});
+    }
+    void overload() { world.set_loads(ball, std::vector<Vec3>(world.positions(ball).size(), Vec3(1e308, 1e308, 0))); }
+};
+
+}  // namespace
+
+TEST_CASE("a refused step leaves every column of state as it was", "[scene]") {
+    for (const Integrator integrator : {Integrator::leapfrog, Integrator::symplectic_euler}) {
+        Doomed scene(integrator);
+        REQUIRE(scene.world.advance(0.2).ok());
+        REQUIRE(scene.world.contacts().size() > 0);
+        scene.overload();
+        const std::uint64_t before = scene.world.state_hash();
+        const StepReport report = scene.world.advance(0.01);
+        CHECK(report.status == StepStatus::not_finite);
+        CHECK(report.body == scene.ball);
+        CHECK(scene.world.state_hash() == before);
+        // and the world goes on from there
+        scene.world.set_loads(scene.ball, std::vector<Vec3>(scene.world.positions(scene.ball).size(), Vec3::Zero()));
+        CHECK(scene.world.advance(0.1).ok());
+    }
+}
+
+TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
+    // A step that is too fast for a body is tried shorter until it can be taken.
+    World world;
+    const auto rubber = world.add_material({.young_modulus = 1e5});
+    world.add_body(mesh::ball(0.05, 4), {.material = rubber});
+    REQUIRE(world.advance(1e-3).ok());
+    WorldState& state = WorldAccess::state_of(world);
+    const BodyHandle body = world.bodies().front();
+    std::vector<Vec3> velocity(world.velocities(body).size(), Vec3::Zero());
+    const StepPlan plan{
+        .h = state.model.bodies.stable_step[0], .steps = 2, .stable = state.model.bodies.stable_step[0]};
+
+    Tries tries;
+    CHECK(try_step(state, plan, tries) == StepOutcome::committed);
+
+    velocity[0].x() = 0.9 * state.model.bodies.min_altitude[0] / plan.h;  // two corners part by most of their altitude
+    world.set_velocities(body, velocity);
+    const std::uint64_t before = world.state_hash();
+    tries = {};
+    CHECK(try_step(state, plan, tries) == StepOutcome::again_shorter);
+    CHECK(tries.longest == plan.h / 2);
+    CHECK(world.state_hash() == before);
+
+    velocity[0].x() *= 200;  // also in a sixty-fourth of the step
+    world.set_velocities(body, velocity);
+    tries = {};
+    CHECK(try_step(state, {.h = plan.h / 128, .steps = 2, .stable = plan.h}, tries) == StepOutcome::refused);
+    CHECK(state.scratch.findings.verdict.fault == StepFault::too_fast);
+}
+
+TEST_CASE("only what the transaction puts back is written before a step is known to be good", "[scene]") {
+    Doomed scene(Integrator::leapfrog);
+    WorldState& state = WorldAccess::state_of(scene.world);
+    const auto lies_in = [](const void* place, const Access& access) {
+        const auto at = reinterpret_cast<std::uintptr_t>(place);
+        return at >= access.begin && at < access.end;
+    };
+    const auto touches = [&](const StageDeclaration& stage, const void* place, bool writes) {
+        return std::ranges::any_of(
+            stage.accesses, [&](const Access& access) { return access.writes() == writes && lies_in(place, access); });
+    };
+    std::set<std::string> written;
+    int behind_guard = 0;
+    for (const StageDeclaration& stage : state.graph.stages()) {
+        if (stage.guarded && touches(stage, &state.scratch.findings.crossings, false)) {
+            ++behind_guard;  // runs in a step that is good
+            continue;
+        }
+        const auto note = [&](const std::string& table) {
+            return [&, table](const char* name, auto& column, ColumnRole role) {
+                if (is_state(role) && touches(stage, &column, true)) written.insert(table + "." + name);
+            };
+        };
+        state.model.for_each_table([&](const char* table, auto& columns) { columns.for_each_column(note(table)); });
+        state.cache.warm_start.for_each_column(note("warm_start"));
+        state.cache.pairs.for_each_row_column(note("pairs"));
+    }
+    CHECK(behind_guard >= 4);
+    // The list of transaction.h; nodes.velocity_next is derived, and what drift_to writes is written by no stage.
+    CHECK(written == std::set<std::string>{"nodes.velocity", "bodies.max_speed", "pairs.key", "pairs.kind",
+                                           "pairs.first", "pairs.second", "pairs.state"});
+}
