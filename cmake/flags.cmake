@@ -16,11 +16,6 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # inlined.
     target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
 endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Real8 is wider than a register of older machines: how it would be passed does not matter, what passes it is
-    # inlined.
-    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
-endif()
 if(SKERRY_ARCH)
     include(CheckCXXCompilerFlag)
     target_compile_options(skerry_flags INTERFACE -march=${SKERRY_ARCH})
