@@ -81,10 +81,8 @@ Energy World::energy() const {
 
 WorldReport World::report() const {
     const WorldState& world = *state_;
-    const RunCounters& counters = world.record.counters;
-    WorldReport report;
+    WorldReport report{world.record.counters};
     report.time = world.clock.time;
-    report.steps = counters.steps;
     for (BodyKind kind : world.model.bodies.kind) report.bodies += kind == BodyKind::deformable;
     for (std::uint8_t asleep : world.model.bodies.asleep) report.asleep += asleep != 0;
     report.colliders = world.model.colliders.slot.size();
@@ -96,26 +94,12 @@ WorldReport World::report() const {
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;
     for (const StageStats& stage : world.graph.stats())
         report.stages.push_back({stage.name, stage.seconds, stage.runs, stage.skipped});
-    const double steps = counters.steps > 0 ? static_cast<double>(counters.steps) : 1;
-    report.mean_contacts = static_cast<double>(counters.contacts) / steps;
-    report.mean_regions = static_cast<double>(counters.regions) / steps;
-    report.mean_iterations =
-        counters.regions > 0 ? static_cast<double>(counters.iterations) / static_cast<double>(counters.regions) : 0;
-    report.max_contacts = counters.max_contacts;
-    report.max_regions = counters.max_regions;
-    report.largest_region = counters.largest_region;
-    report.worst_error = counters.worst_error;
-    report.worst_region = counters.worst_region;
-    report.unconverged = counters.unconverged;
-    report.certified = counters.certified;
-    report.closed_form = counters.closed_form;
-    report.separating = counters.separating;
-    report.frictionless = counters.frictionless;
-    report.in_lanes = counters.in_lanes;
-    report.frozen = counters.frozen;
-    report.contact_steps = counters.contact_steps;
-    report.swept = counters.swept;
-    report.solved = counters.regions;
+    const auto mean = [](std::uint64_t sum, std::uint64_t count) {
+        return count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : 0;
+    };
+    report.mean_contacts = mean(report.contact_sum, report.steps);
+    report.mean_regions = mean(report.solved, report.steps);
+    report.mean_iterations = mean(report.iteration_sum, report.solved);
     report.broad_searches = world.cache.search.broad_searches;
     report.pair_searches = world.cache.search.pair_searches;
     report.candidates = world.cache.search.candidate_count;
@@ -125,24 +109,15 @@ WorldReport World::report() const {
             report.level_elements.resize(l + 1);
             report.level_elements[l] = levels[l];
         }
-    report.element_steps = counters.element_steps;
-    report.element_impulses = counters.element_impulses;
-    report.inline_steps = counters.inline_steps;
-    report.shortened = counters.shortened;
-    report.retried = counters.retried;
-    report.inversions = counters.inversions;
     report.crossing_tests = world.cache.crossings.tested;
     report.crossings_found = world.cache.crossings.hits;
     report.crossed = world.cache.crossings.let_through;
-    report.limited = counters.limited;
-    report.energy = energy_of(world.model, counters.dissipated);
+    report.energy = energy_of(world.model, report.dissipated);
     for (std::size_t n = 0; n < world.model.nodes.position.size(); ++n) {
         const Vec3 momentum = world.model.nodes.mass[n] * world.model.nodes.velocity[n];
         report.momentum += momentum;
         report.angular_momentum += world.model.nodes.position[n].cross(momentum);
     }
-    report.max_penetration = counters.max_penetration;
-    report.max_gap_violation = counters.max_gap_violation;
     for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b) {
         if (world.model.bodies.element_count[b] == 0) continue;
         const VolumeRatios ratios =

@@ -94,52 +94,57 @@ public:
     std::string body_name;        // when not ok
 };
 
-/// Sums since the world was made. Asking walks all tables; the run itself keeps only counters.
-struct WorldReport {
-    Real time = 0;
+/// Sums, and largest values, over all steps since the world was made. Each step adds to them.
+struct RunCounters {
     std::uint64_t steps = 0;
+    std::uint64_t inline_steps = 0;  // too small to pay for threads
+    std::uint64_t shortened = 0;     // steps tried again at half the length
+    std::uint64_t retried = 0;       // steps tried again with what crossed in them as contacts
+    std::uint64_t limited = 0;       // steps shorter than step_size of the settings, which a body does not stand
+    std::uint64_t inversions = 0;    // elements that turned inside out, each time that one did
+    std::uint64_t contact_sum = 0, iteration_sum = 0;  // contacts, and sweeps of regions, of each step
+    std::uint64_t solved = 0;                          // regions
+    std::uint64_t unconverged = 0;                     // regions
+    std::uint64_t certified = 0;                       // regions whose warm start needed no sweep
+    std::uint64_t closed_form = 0;                     // regions of one contact
+    std::uint64_t separating = 0;                      // regions whose contacts all came apart
+    std::uint64_t frictionless = 0;                    // regions without friction, solved in one row a contact
+    std::uint64_t in_lanes = 0;                        // regions solved side by side with others
+    std::uint64_t frozen = 0;                          // contact steps left out since nothing changed there
+    std::uint64_t contact_steps = 0;                   // contacts times sweeps, of regions that were swept
+    std::uint64_t swept = 0;                           // regions that needed sweeps
+    std::uint64_t element_steps = 0;                   // with multirate: elements times steps
+    std::uint64_t element_impulses = 0;                // of them, how many were evaluated
+    Index max_contacts = 0, max_regions = 0, largest_region = 0;
+    Real worst_error = 0;
+    Index worst_region = 0;                           // contacts of the region that had the worst error
+    Real dissipated = 0;                              // J, by contacts and damping
+    Real max_penetration = 0, max_gap_violation = 0;  // m
+};
+
+/// The sums, and the state as it is now. Asking walks all tables; the run itself keeps only the sums.
+struct WorldReport : RunCounters {
+    Real time = 0;
     std::size_t asleep = 0;  // bodies at rest, now
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
     Real stable_step = 0;                                             // s, of the stiffest body, now
     std::string stable_step_body;                                     // which body that is
     std::vector<StageReport> stages;                                  // in the order of the step
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region
-    Index max_contacts = 0, max_regions = 0, largest_region = 0;
-    Real worst_error = 0;
-    Index worst_region = 0;           // contacts of the region that had the worst error
-    std::uint64_t unconverged = 0;    // regions
-    std::uint64_t certified = 0;      // regions whose warm start needed no sweep
-    std::uint64_t closed_form = 0;    // regions of one contact
-    std::uint64_t separating = 0;     // regions whose contacts all came apart
-    std::uint64_t frictionless = 0;   // regions without friction, solved in one row a contact
-    std::uint64_t in_lanes = 0;       // regions solved side by side with others
-    std::uint64_t frozen = 0;         // contact steps left out since nothing changed there
-    std::uint64_t contact_steps = 0;  // contacts times sweeps, of regions that were swept
-    std::uint64_t swept = 0;          // regions that needed sweeps
-    std::uint64_t solved = 0;         // regions
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
     // Multirate: elements of each level in the last step, an impulse every 2^level steps; empty without it.
     std::vector<std::uint64_t> level_elements;
-    std::uint64_t element_steps = 0;     // elements times steps
-    std::uint64_t element_impulses = 0;  // of them, how many were evaluated
-    std::uint64_t inline_steps = 0;      // too small to pay for threads
-    std::uint64_t shortened = 0;         // steps tried again at half the length
-    std::uint64_t inversions = 0;        // elements that turned inside out, each time that one did
-    std::uint64_t retried = 0;           // steps tried again with what crossed in them as contacts
-    std::uint64_t limited = 0;           // steps shorter than step_size of the settings, which a body does not stand
     // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could
     // stop them.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
     Energy energy;
-    Vec3 momentum = Vec3::Zero();                     // kg m/s
-    Vec3 angular_momentum = Vec3::Zero();             // kg m^2/s, about the origin
-    Real max_penetration = 0, max_gap_violation = 0;  // m, over the run
+    Vec3 momentum = Vec3::Zero();          // kg m/s
+    Vec3 angular_momentum = Vec3::Zero();  // kg m^2/s, about the origin
     // How far to trust it. Differences of energy and momentum from what loads, weights, colliders and losses account
     // for, the largest of the looks taken every 256 steps and now; shares of all that there was to be exchanged.
     Real energy_error = 0, energy_error_share = 0;  // J, 1
-    Real momentum_error = 0,
-         // kg m/s, 1; not a number where a body that is damped is held: damping takes momentum then
-        momentum_error_share = 0;
+    // kg m/s, 1; not a number where a body that is damped is held: damping takes momentum then
+    Real momentum_error = 0, momentum_error_share = 0;
     std::uint64_t balanced_steps = 0;  // steps since the balance was opened: it is closed by changes from outside
     Real worst_volume_ratio = 1;       // smallest det F now; < 0 is inverted
     std::string worst_volume_body;

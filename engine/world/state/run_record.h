@@ -12,16 +12,6 @@
 
 namespace skerry {
 
-/// Sums over all steps since the world was made.
-struct RunCounters {
-    std::uint64_t steps = 0, inline_steps = 0, shortened = 0, retried = 0, limited = 0, inversions = 0;
-    std::uint64_t contacts = 0, regions = 0, iterations = 0, unconverged = 0, certified = 0, closed_form = 0;
-    std::uint64_t separating = 0, frictionless = 0, in_lanes = 0, frozen = 0, contact_steps = 0, swept = 0;
-    std::uint64_t element_steps = 0, element_impulses = 0;
-    Index max_contacts = 0, max_regions = 0, largest_region = 0, worst_region = 0;
-    Real worst_error = 0, dissipated = 0, max_penetration = 0, max_gap_violation = 0;
-};
-
 /// Who wants to see contact problems. Idle, it costs a skipped stage.
 struct ProblemWatch {
     std::function<void(const StepProblem&)> take;

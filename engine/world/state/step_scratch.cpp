@@ -2,6 +2,25 @@
 
 namespace skerry {
 
+SolverSettings solver_settings(const Settings& settings) {
+    SolverSettings solver;
+    solver.method = settings.method;
+    solver.friction = settings.friction;
+    solver.warm_start = settings.warm_start;
+    solver.tolerance = settings.tolerance;
+    solver.max_iterations = settings.max_iterations;
+    solver.fixed_iterations = settings.fixed_iterations;
+    solver.relaxation = settings.relaxation;
+    solver.restitution_speed = settings.restitution_speed;
+    solver.recovery_speed = settings.recovery_speed;
+    solver.certify_warm_start = settings.certify_warm_start;
+    solver.skip_separating = settings.skip_separating;
+    solver.frictionless_rows = settings.frictionless_rows;
+    solver.freeze_contacts = settings.freeze_contacts;
+    solver.small_regions_in_lanes = settings.small_regions_in_lanes;
+    return solver;
+}
+
 StepParameters step_parameters(const Settings& settings) {
     StepParameters step;
     step.gravity = settings.gravity;
@@ -13,20 +32,7 @@ StepParameters step_parameters(const Settings& settings) {
     step.collision.use_budgets = settings.contact_budgets;
     // forward Euler drifts with velocities that no contact has seen: there is nothing to hold it to
     step.collision.continuous = settings.continuous_collision && settings.integrator != Integrator::forward_euler;
-    step.solver.method = settings.method;
-    step.solver.friction = settings.friction;
-    step.solver.warm_start = settings.warm_start;
-    step.solver.tolerance = settings.tolerance;
-    step.solver.max_iterations = settings.max_iterations;
-    step.solver.fixed_iterations = settings.fixed_iterations;
-    step.solver.relaxation = settings.relaxation;
-    step.solver.restitution_speed = settings.restitution_speed;
-    step.solver.recovery_speed = settings.recovery_speed;
-    step.solver.certify_warm_start = settings.certify_warm_start;
-    step.solver.skip_separating = settings.skip_separating;
-    step.solver.frictionless_rows = settings.frictionless_rows;
-    step.solver.freeze_contacts = settings.freeze_contacts;
-    step.solver.small_regions_in_lanes = settings.small_regions_in_lanes;
+    step.solver = solver_settings(settings);
     return step;
 }
 

@@ -59,6 +59,9 @@ struct KeptVelocities {
     Column<Vec3> velocity_next;  // m/s, predicted
 };
 
+/// What the settings ask of the contact solver, whose defaults are theirs.
+SolverSettings solver_settings(const Settings& settings);
+
 /// What the settings ask of every step.
 StepParameters step_parameters(const Settings& settings);
 

@@ -29,14 +29,14 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
     const auto contact_count = static_cast<Index>(scratch.contacts.size());
     const auto region_count = static_cast<Index>(regions.size());
     ++counters.steps;
-    counters.contacts += static_cast<std::uint64_t>(contact_count);
-    counters.regions += static_cast<std::uint64_t>(region_count);
+    counters.contact_sum += static_cast<std::uint64_t>(contact_count);
+    counters.solved += static_cast<std::uint64_t>(region_count);
     counters.max_contacts = std::max(counters.max_contacts, contact_count);
     counters.max_regions = std::max(counters.max_regions, region_count);
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const Index size = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
         counters.largest_region = std::max(counters.largest_region, size);
-        counters.iterations += static_cast<std::uint64_t>(regions.iterations[r]);
+        counters.iteration_sum += static_cast<std::uint64_t>(regions.iterations[r]);
         count_shortcuts(regions, r, counters);
         counters.unconverged += regions.status[r] == RegionStatus::iteration_limit;
         if (!(regions.error[r] > counters.worst_error)) continue;

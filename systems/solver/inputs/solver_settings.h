@@ -28,6 +28,8 @@ struct SolverSettings {
     bool freeze_contacts = false;
     // 2 to 12 contacts: eight regions side by side (method ags, cone, one coefficient)
     bool small_regions_in_lanes = true;
+
+    bool operator==(const SolverSettings&) const = default;
 };
 
 /// Whether a region of the step is solved by accelerated sweeps (solve_ags), which the shortcuts have in forms of their

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/world/state/step_scratch.h"
 #include "skerry/error.h"
 #include "skerry/problem.h"
 #include "skerry/world.h"
@@ -75,4 +76,26 @@ TEST_CASE("with the associated law a problem's errors are those of that law", "[
     CHECK(solution.converged);
     CHECK(std::abs(solution.energy_gap) < 1e-9);                       // r . u
     CHECK(problem_error(problem, solution.reaction).relative > 1e-3);  // both contacts slide: Coulomb's law is not met
+}
+
+TEST_CASE("the settings of a world reach its contact solver, and have the same defaults", "[unit][solver]") {
+    CHECK(solver_settings(Settings{}) == SolverSettings{});
+
+    Settings settings;
+    SolverSettings expected;
+    settings.method = expected.method = SolverMethod::pgs;
+    settings.friction = expected.friction = Friction::pyramid;
+    settings.warm_start = expected.warm_start = WarmStart::off;
+    settings.tolerance = expected.tolerance = 1e-7;
+    settings.max_iterations = expected.max_iterations = 17;
+    settings.fixed_iterations = expected.fixed_iterations = true;
+    settings.relaxation = expected.relaxation = 1.3;
+    settings.restitution_speed = expected.restitution_speed = 0.7;
+    settings.recovery_speed = expected.recovery_speed = 0.9;
+    settings.certify_warm_start = expected.certify_warm_start = false;
+    settings.skip_separating = expected.skip_separating = false;
+    settings.frictionless_rows = expected.frictionless_rows = false;
+    settings.freeze_contacts = expected.freeze_contacts = true;
+    settings.small_regions_in_lanes = expected.small_regions_in_lanes = false;
+    CHECK(solver_settings(settings) == expected);
 }
