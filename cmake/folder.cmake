@@ -1,5 +1,5 @@
-skerry_precompile(skerry_precompiled)
 if(SKERRY_PRECOMPILE)
+    skerry_precompile(skerry_precompiled)
     set_target_properties(skerry_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
 
@@ -10,8 +10,8 @@ function(skerry_folder name)
         add_library(skerry_${name} OBJECT ${ARGN})
         target_link_libraries(skerry_${name} PUBLIC skerry_flags Eigen3::Eigen Threads::Threads)
         set_target_properties(skerry_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-        if(NOT name STREQUAL "jobs")  # which has flags of its own, those of OpenMP
-            skerry_use_precompiled(skerry_${name} skerry_precompiled)
+        if(SKERRY_PRECOMPILE AND NOT name STREQUAL "jobs")  # which has flags of its own, those of OpenMP
+            target_precompile_headers(skerry_${name} REUSE_FROM skerry_precompiled)
         endif()
         target_sources(skerry PRIVATE $<TARGET_OBJECTS:skerry_${name}>)
     else()
