@@ -81,7 +81,8 @@ Energy World::energy() const {
 
 WorldReport World::report() const {
     const WorldState& world = *state_;
-    WorldReport report{world.record.counters};
+    WorldReport report;
+    static_cast<RunCounters&>(report) = world.record.counters;
     report.time = world.clock.time;
     for (BodyKind kind : world.model.bodies.kind) report.bodies += kind == BodyKind::deformable;
     for (std::uint8_t asleep : world.model.bodies.asleep) report.asleep += asleep != 0;
