@@ -13,9 +13,13 @@ namespace skerry {
 /// What a kernel needs of a material, derived once.
 struct MaterialConstants {
     MaterialModel model;
-    Real shear_modulus;  // Pa, Lame mu of small strain
-    Real lame_lambda;    // Pa, Lame lambda of small strain
-    Real density;        // kg/m^3
+    Real shear_modulus;       // Pa, Lame mu of small strain
+    Real lame_lambda;         // Pa, Lame lambda of small strain
+    Real density;             // kg/m^3
+    Real loss_factor = 0;     // systems/material/relaxation.h
+    Real bulk_viscosity = 0;  // damping ratio of an element's own highest frequency, by its change of volume
+
+    bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
 
 /// What a contact needs of a surface.

@@ -33,6 +33,7 @@ struct RegionTable {
     Column<RegionShortcut> shortcut;
     Column<Index> frozen;     // contact steps left out since nothing changed there
     Column<Real> dissipated;  // J, taken out by its contacts in this step
+    Column<Real> push_work;   // J, put in by moving positions alone
     // in which they are started: large ones by predicted cost, small ones by size, single contacts last
     Column<Index> order;
     // no two regions share a moving node; false only from paper_algorithm_1: then solved one by one
@@ -50,6 +51,7 @@ struct RegionTable {
         visit("shortcut", shortcut, ColumnRole::scratch);
         visit("frozen", frozen, ColumnRole::scratch);
         visit("dissipated", dissipated, ColumnRole::scratch);
+        visit("push_work", push_work, ColumnRole::scratch);
         visit("order", order, ColumnRole::scratch);
     }
 };

@@ -136,6 +136,12 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                  {.meaning = "decay rate of deformation velocities; momentum is kept",
                   .unit = "1/s",
                   .limits = at_least(0)})
+            .key("loss_factor", &M::loss_factor,
+                 {.meaning = "tangent of the angle by which strain is behind stress, at every frequency of a body",
+                  .limits = within(0, largest_loss_factor)})
+            .key("bulk_viscosity", &M::bulk_viscosity,
+                 {.meaning = "damping ratio of an element's own highest frequency, by its change of volume",
+                  .limits = within(0, largest_bulk_viscosity)})
             .key("model", &M::model, {.meaning = "the constitutive law"})
             .together({"static_friction", "dynamic_friction"})
             .at_most_one({"friction", "static_friction"})

@@ -22,9 +22,10 @@ void add_row(Hash& hash, const T& row) {
     hash.add(&row, sizeof row);
 }
 void add_row(Hash& hash, const MaterialConstants& row) {
-    static_assert(sizeof row == 4 * sizeof(Real), "a field is not hashed");
+    static_assert(sizeof row == 6 * sizeof(Real), "a field is not hashed");
     hash.add(static_cast<std::uint64_t>(row.model));
-    for (Real number : {row.shear_modulus, row.lame_lambda, row.density}) add_row(hash, number);
+    for (Real number : {row.shear_modulus, row.lame_lambda, row.density, row.loss_factor, row.bulk_viscosity})
+        add_row(hash, number);
 }
 void add_rows(Hash& hash, std::span<const MaterialConstants> rows) {
     for (const MaterialConstants& row : rows) add_row(hash, row);

@@ -45,6 +45,8 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
     table.for_each_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
     const Real e = material.young_modulus, nu = material.poisson_ratio;
     table.constants[row] = material_constants(material.model, e, nu, material.density);
+    table.constants[row].loss_factor = material.loss_factor;
+    table.constants[row].bulk_viscosity = material.bulk_viscosity;
     const Real dynamic = material.dynamic_friction.value_or(material.friction);
     table.surface[row] = {material.static_friction.value_or(std::max(material.friction, dynamic)), dynamic,
                           material.restitution};

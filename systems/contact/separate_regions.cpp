@@ -81,6 +81,7 @@ void resize_results(Index region_count, RegionTable& regions) {
     regions.shortcut.assign(count, shortcut_none);
     regions.frozen.assign(count, 0);
     regions.dissipated.assign(count, 0);
+    regions.push_work.assign(count, 0);
     regions.order.assign(count, 0);
 }
 

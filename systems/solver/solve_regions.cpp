@@ -42,6 +42,7 @@ void make_rows(RegionTable& regions) {
     regions.shortcut.resize(count);
     regions.frozen.resize(count);
     regions.dissipated.resize(count);
+    regions.push_work.resize(count);
     regions.order.resize(count);
 }
 

@@ -23,9 +23,13 @@ World lively_scene(Settings settings, int threads = 1) {
     settings.sleep_speed = 0.2;
     settings.sleep_time = 0.02;
     World world(settings);
-    const auto soft = world.add_material({.young_modulus = 2e4, .friction = 0.5, .damping = 30});
-    const auto stiff =
-        world.add_material({.young_modulus = 4e5, .friction = 0.3, .damping = 2, .model = MaterialModel::corotational});
+    const auto soft = world.add_material(
+        {.young_modulus = 2e4, .friction = 0.5, .damping = 30, .loss_factor = 0.2, .bulk_viscosity = 0.06});
+    const auto stiff = world.add_material({.young_modulus = 4e5,
+                                           .friction = 0.3,
+                                           .damping = 2,
+                                           .loss_factor = 0.05,
+                                           .model = MaterialModel::corotational});
     world.add_collider(Plane{});
     const Mesh paddle = mesh::box({0.3, 0.05, 0.02}, {3, 1, 1});
     world.add_collider(Capsule{0.02, 0.2}, {.position = {-0.25, 0, 0.05},

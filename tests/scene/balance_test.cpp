@@ -49,9 +49,8 @@ TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the err
         CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));
         error.push_back(report.energy_error_share);
     }
-    // symplectic Euler: of first order, and the worst of all looks is noisy
-    CHECK(error[0] < 0.05);
-    CHECK(error[2] < 0.5 * error[0]);
+    // below what the steps themselves are wrong by: energies are those of one time
+    for (Real share : error) CHECK(share < 1e-3);
 }
 
 TEST_CASE("a change from outside starts the balance afresh, and a held body that is damped leaves the momentum open",

@@ -37,12 +37,23 @@ struct ElasticBody {
     }
 
     ElementInputs inputs() const {
-        return {elements.node, elements.inverse_rest, elements.volume, elements.material, constants};
+        return {.node = elements.node,
+                .inverse_rest = elements.inverse_rest,
+                .volume = elements.volume,
+                .material = elements.material,
+                .constants = constants,
+                .relaxation_rate = elements.relaxation_rate,
+                .own_frequency = elements.own_frequency,
+                .relaxing_share = elements.relaxing_share,
+                .viscous_strain = elements.viscous_strain};
     }
 
-    void compute_elements(Executor& executor) {
-        compute_element_forces(executor, inputs(), position, velocity, elements.rotation, elements.rotation_next,
-                               elements.force);
+    /// `h`: s, since the elements were last looked at: what relaxes does so for this long. Returns what that
+    /// dissipates, J.
+    Real compute_elements(Executor& executor, Real h = 0) {
+        return compute_element_forces(executor, inputs(), position, velocity, h, elements.rotation,
+                                      {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
+                                      elements.force);
     }
     void gather(const Vec3& gravity = Vec3::Zero()) {
         gather_node_forces(corners.view(), elements.force, mass, gravity, load, force);

@@ -47,7 +47,7 @@ struct Energy {
     Real kinetic = 0;     // J
     Real elastic = 0;     // J
     Real potential = 0;   // J, of weight, relative to the origin
-    Real dissipated = 0;  // J, by contacts and damping, since the start
+    Real dissipated = 0;  // J, by contacts, damping and losses, since the start
 };
 
 /// What `advance` did. Cheap: no allocation unless something went wrong.
@@ -118,7 +118,7 @@ struct RunCounters {
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
     Index worst_region = 0;                           // contacts of the region that had the worst error
-    Real dissipated = 0;                              // J, by contacts and damping
+    Real dissipated = 0;                              // J, by contacts, damping and losses
     Real max_penetration = 0, max_gap_violation = 0;  // m
 };
 

@@ -14,6 +14,8 @@
 
 namespace skerry {
 
+inline constexpr Real largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
+
 struct MaterialSettings {
     Real young_modulus = 1e5;                // Pa, > 0
     Real poisson_ratio = 0.4;                // > -1 and < 0.5
@@ -23,6 +25,12 @@ struct MaterialSettings {
     std::optional<Real> dynamic_friction{};  // >= 0
     Real restitution = 0;                    // of a surface point at an impact, in [0, 1]; not of the body as a whole
     Real damping = 0;                        // 1/s, >= 0: decay rate of deformation velocities; momentum is kept
+    // Tangent of the angle by which strain is behind stress, at every frequency that a body of this material has: a
+    // free vibration loses about 2 pi times this of its energy in a period. Rubber has 0.05 to 0.2, soft tissue 0.1 to
+    // 0.3, wood 0.01, steel below 0.001. Makes the step a few per cent shorter (docs/methods/elasticity.md 6).
+    Real loss_factor = 0;     // from 0 to 0.3
+    // Damping ratio that an element has at its own highest frequency, where its volume changes.
+    Real bulk_viscosity = 0;  // from 0 to 1
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };
 

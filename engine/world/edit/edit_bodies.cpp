@@ -1,6 +1,7 @@
 // Bodies come and go between steps. A body is a range of rows in every table; rows behind a removed body move down.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -8,7 +9,9 @@
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/element_levels.h"
+#include "systems/dynamics/stability/find_relaxation.h"
 #include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
 
@@ -128,6 +131,22 @@ std::vector<Index> sort_by_level(Model& model, const NewBody& body, Range blocks
     find_viscous_times(model.elements.level.span().subspan(first, count), step,
                        model.elements.viscous_time.span().subspan(first, count));
     return order;
+}
+
+/// How the elements of a new body relax, whose stable step would be `step` (s) if they did not.
+void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real step) {
+    ElementBlockTable& elements = model.elements;
+    const auto part = [](auto& column, Range rows) {
+        return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
+    };
+    const auto material = static_cast<std::size_t>(elements.material[static_cast<std::size_t>(blocks.begin)]);
+    const Real speed = std::sqrt(model.materials.young_modulus[material] / model.materials.constants[material].density);
+    const Real lowest =
+        lowest_frequency_estimate(part(model.nodes.position, nodes), part(model.nodes.mass, nodes), speed);
+    find_relaxation(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, lowest,
+                    step_times_frequency / step,
+                    {part(elements.relaxation_rate, blocks), part(elements.own_frequency, blocks),
+                     part(elements.relaxing_share, blocks)});
 }
 
 /// The triangles that the user gave, or the boundary of the tetrahedra; local nodes.
@@ -253,9 +272,14 @@ Index append_body(Model& model, const NewBody& body) {
     bodies.min_altitude[b] = smallest_altitude(body);
     Column<Real> stiffness_sum;
     stiffness_sum.resize(model.nodes.position.size());
-    const StableStep step =
-        stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum);
-    bodies.rest_step[b] = bodies.stable_step[b] = step.step;
+    const auto step = [&] {
+        return stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+    };
+    bodies.rest_step[b] = bodies.stable_step[b] = step();
+    if (!body.tetrahedra.empty() && model.materials.constants[static_cast<std::size_t>(body.material)].relaxes()) {
+        set_relaxation(model, nodes, blocks, stiffness_sum, bodies.rest_step[b]);
+        bodies.rest_step[b] = bodies.stable_step[b] = step();
+    }
 
     return row;
 }

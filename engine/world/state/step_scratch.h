@@ -41,6 +41,7 @@ struct StepFindings {
     ContactMeasures measures;
     ExternalWork external;
     TakenByRest rest;
+    Real relaxed = 0;  // J, taken out by what relaxes in the elements in this step
     Real damped = 0;  // J, taken out by damping in this step
 };
 

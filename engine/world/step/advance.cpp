@@ -110,6 +110,12 @@ void require_countable(Real dt, Real step) {
 
 }  // namespace
 
+Real lag_between_steps(const WorldState& world) {
+    const Settings& settings = world.model.settings;
+    if (settings.integrator != Integrator::symplectic_euler || settings.multirate) return 0;
+    return (world.record.counters.steps > 0 ? world.scratch.parameters.h : trusted_step(world.model)) / 2;
+}
+
 StepReport World::advance(Real dt) {
     if (!(dt >= 0) || !std::isfinite(dt))
         Complaint{.file = {},
@@ -132,7 +138,8 @@ StepReport World::advance(Real dt) {
     Real left = dt;
     Tries tries;
     world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
-    if (world.record.counters.steps == 0 && left > 0) check_balance(model, world.record.balance);
+    if (world.record.counters.steps == 0 && left > 0)
+        check_balance(model, lag_between_steps(world), world.record.balance);
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     world.transaction.begin_call(model, clock);
     while (left > 0) {
@@ -165,7 +172,7 @@ StepReport World::advance(Real dt) {
             clock.steps_since_watch = 0;
             watch_stable_steps(model, world.scratch.stiffness_sum);
             if (clock.offset == 0)
-                check_balance(model, world.record.balance);
+                check_balance(model, lag_between_steps(world), world.record.balance);
             else
                 look_at_end = true;
         }
@@ -178,7 +185,7 @@ StepReport World::advance(Real dt) {
         drift_to(*world.executor, 0, model, clock, search);
     }
     if (left == 0) clock.time = end;
-    if (look_at_end) check_balance(model, world.record.balance);
+    if (look_at_end) check_balance(model, lag_between_steps(world), world.record.balance);
     return report;
 }
 

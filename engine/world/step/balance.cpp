@@ -16,7 +16,7 @@ struct Present {
     Real momentum_size = 0;                        // kg m/s, sum of m |v|
 };
 
-Present measure(const Model& model) {
+Present measure(const Model& model, Real lag) {
     Present now;
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
@@ -26,6 +26,17 @@ Present measure(const Model& model) {
         now.kinetic += momentum.dot(nodes.velocity[n]) / 2;
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
+    }
+    // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies
+    // keep m v.v' / 2 and their elastic energy together, as leapfrog does.
+    if (lag > 0) {
+        Real power = -elastic_power(model.all_elements(), {0, static_cast<Index>(model.elements.node.size())},
+                                    nodes.position, nodes.velocity);
+        power += now.momentum.dot(model.settings.gravity);
+        if (model.loaded)
+            for (std::size_t n = 0; n < nodes.position.size(); ++n)
+                if (nodes.inverse_mass[n] > 0) power += nodes.load[n].dot(nodes.velocity[n]);
+        now.kinetic += lag * power;
     }
     now.elastic =
         elastic_energy(model.all_elements(), {0, static_cast<Index>(model.elements.node.size())}, nodes.position);
@@ -48,8 +59,11 @@ void add_step(const StepScratch& step, Balance& balance) {
     const ExternalWork& external = step.findings.external;
     const Vec3 impulse = step.parameters.h * step.awake_mass * step.parameters.gravity + external.impulse +
                          contacts.outer_impulse - step.findings.rest.momentum;
-    const Real work =
-        external.work + contacts.outer_work - contacts.dissipated - step.findings.damped - step.findings.rest.energy;
+    Real push_work = 0;
+    if (step.regions.pushed)
+        for (Real of_region : step.regions.push_work) push_work += of_region;
+    const Real work = push_work + external.work + contacts.outer_work - contacts.dissipated - step.findings.damped -
+                      step.findings.relaxed - step.findings.rest.energy;
     ++balance.steps;
     balance.impulse += impulse;
     balance.momentum_flow += impulse.norm();
@@ -57,8 +71,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     balance.energy_flow += std::abs(work);
 }
 
-void check_balance(const Model& model, Balance& balance) {
-    const Present now = measure(model);
+void check_balance(const Model& model, Real lag, Balance& balance) {
+    const Present now = measure(model, lag);
     const Real energy = now.kinetic + now.elastic + now.potential;
     const bool was_open = balance.open;
     if (!was_open) {
@@ -82,8 +96,8 @@ void check_balance(const Model& model, Balance& balance) {
             std::max(balance.momentum_error, (now.momentum - balance.momentum - balance.impulse).norm());
 }
 
-Balance checked_balance(const Model& model, Balance balance) {
-    if (balance.open) check_balance(model, balance);
+Balance checked_balance(const Model& model, Real lag, Balance balance) {
+    if (balance.open) check_balance(model, lag, balance);
     return balance;
 }
 

@@ -35,9 +35,10 @@ void add_step(const StepScratch& step, Balance& balance);
 
 /// Compares what is with what ought to be, and notes the difference if it is the worst so far; opens a balance that is
 /// closed. Walks all tables.
-void check_balance(const Model& model, Balance& balance);
+/// Velocities are `lag` seconds older than positions, or would be: forces of now bring their energy up to date.
+void check_balance(const Model& model, Real lag, Balance& balance);
 
 /// The same for a report: the balance after such a check.
-Balance checked_balance(const Model& model, Balance balance);
+Balance checked_balance(const Model& model, Real lag, Balance balance);
 
 }  // namespace skerry

@@ -39,9 +39,9 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     BodyTable& b = m.bodies;
     NodeBlockTable& k = m.node_blocks;
     const StepParameters& p = w.scratch.parameters;
-    g.stage("dynamics/compute_element_forces", compute_element_forces,
-            inputs<ElementInputs>(e, m.materials, b, p.active, m.any_asleep), read(n.position), read(n.velocity),
-            read(e.rotation), write(e.rotation_next), write(e.force));
+    g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, compute_element_forces,
+                        inputs<ElementInputs>(e, m.materials, b, p.active, m.any_asleep), read(n.position),
+                        read(n.velocity), value(p.h), read(e.rotation), outputs<ElementMemory>(e), write(e.force));
     g.stage("dynamics/predict_velocity", predict_velocity,
             inputs<KickInputs>(k, m.corners, e, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
             write(n.force), write(n.velocity_next));

@@ -21,6 +21,10 @@ Real trusted_step(const Model& model, Index* body = nullptr);
 /// Looks at the stable step of every body again.
 void watch_stable_steps(Model& model, Column<Real>& stiffness_sum);
 
+// advance.cpp
+/// s, by which velocities are older than positions between steps, where all are by the same; else 0.
+Real lag_between_steps(const WorldState& world);
+
 // plan_step.cpp
 struct StepPlan {
     Real h = 0;       // s

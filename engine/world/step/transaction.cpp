@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/world/step/step.h"
-#include "systems/dynamics/elements/keep_frames.h"
+#include "systems/dynamics/elements/keep_memory.h"
 
 namespace skerry {
 
@@ -69,13 +69,14 @@ void commit(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     const StepParameters& parameters = scratch.parameters;
     world.cache.crossings.row.clear();
-    if (parameters.active.all() && !world.model.any_asleep)
+    if (parameters.active.all() && !world.model.any_asleep) {
         elements.rotation.swap(elements.rotation_next);
-    else {
+        elements.viscous_strain.swap(elements.viscous_strain_next);
+    } else {
         ElementInputs active = world.model.elements_active(parameters.active);
         // A body that this step wakes has no frames of this step.
         if (world.model.any_asleep) active.schedule.body_asleep = world.transaction.rested(world.model.bodies);
-        keep_frames(*world.executor, active, elements.rotation_next, elements.rotation);
+        keep_memory(*world.executor, active, elements);
     }
     add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     count_step(scratch, world.record.counters);

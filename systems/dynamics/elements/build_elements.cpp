@@ -51,6 +51,12 @@ Range append_elements(std::span<const Tetrahedron> tetrahedra, std::span<const V
         elements.force.push_back(ElementForces{});
         elements.body.push_back(body);
         elements.material.push_back(material);
+        elements.viscous_strain.push_back(ElementStrain{});
+        elements.viscous_strain_next.push_back(ElementStrain{});
+        elements.relaxation_rate.push_back(ElementLane{});
+        elements.own_frequency.push_back(ElementLane{});
+        elements.relaxing_share.push_back(0);
+        elements.relaxed.push_back(0);
         elements.viscous_time.push_back(0);
         elements.uninverted_until.push_back(-std::numeric_limits<Real>::infinity());
         elements.level.push_back(0);

@@ -19,6 +19,10 @@ struct ElementInputs {
     std::span<const Index> material;
     std::span<const MaterialConstants> constants;
     std::span<const Real> viscous_time = {};  // s; empty: nothing is viscous
+    // Of what relaxes; empty: nothing does
+    std::span<const ElementLane> relaxation_rate = {}, own_frequency = {};  // 1/s
+    std::span<const Real> relaxing_share = {};
+    std::span<const ElementStrain> viscous_strain = {};
     ElementSchedule schedule = {};
 
     /// `any_asleep`: some body rests. Without it and `active`: all elements, whether they are active in this step or
@@ -31,6 +35,10 @@ struct ElementInputs {
                 .material = binder.read(element.material),
                 .constants = binder.read(material.constants),
                 .viscous_time = binder.read(element.viscous_time),
+                .relaxation_rate = binder.read(element.relaxation_rate),
+                .own_frequency = binder.read(element.own_frequency),
+                .relaxing_share = binder.read(element.relaxing_share),
+                .viscous_strain = binder.read(element.viscous_strain),
                 .schedule = {.level = binder.read(element.level),
                              .body = binder.read(element.body),
                              .body_level = binder.read(body.level),
@@ -39,13 +47,26 @@ struct ElementInputs {
     }
 };
 
+/// What elements will remember of this step.
+struct ElementMemory {
+    std::span<ElementRotation> rotation;
+    std::span<ElementStrain> viscous_strain = {};  // empty: nothing relaxes
+    std::span<Real> relaxed = {};                  // J, by block
+
+    static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
+        return {.rotation = binder.write(element.rotation_next),
+                .viscous_strain = binder.write(element.viscous_strain_next),
+                .relaxed = binder.write(element.relaxed)};
+    }
+};
+
 /// force[block][lane][a]: N, on corner a of each element, from the first Piola-Kirchhoff stress P(F), F = Ds B:
 /// (f1 f2 f3) = -V P B^T, f0 = -(f1 + f2 + f3). Corotational elements start the extraction of their frame from
 /// `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Blocks that are not active
 /// keep what they had; those that are active for several steps at once get so many times the force. Parallel over
 /// blocks of lanes.
-void compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const Vec3> velocity, std::span<const ElementRotation> rotation,
-                            std::span<ElementRotation> rotation_next, std::span<ElementForces> force);
+Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
+                            std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
+                            const ElementMemory& next, std::span<ElementForces> force);
 
 }  // namespace skerry

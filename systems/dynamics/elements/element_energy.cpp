@@ -8,6 +8,7 @@
 #include "components/check.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/material/extract_rotation.h"
+#include "systems/material/relaxation.h"
 #include "systems/material/with_law.h"
 
 namespace skerry {
@@ -52,12 +53,34 @@ Real8 energy_of(const MaterialConstants& material, const LaneMat3<Real8>& F, con
 Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const Vec3> position) {
     Real energy = 0;
     for_each_block(elements, blocks, position,
-                   [&](std::size_t, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
+                   [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                        const LaneMat3<Real8>& R) {
-                       const Real8 of_lanes = volume * energy_of(material, F, R);
+                       Real8 density = energy_of(material, F, R);
+                       if (material.relaxes() && !elements.viscous_strain.empty())
+                           density += energy_density(viscous_moduli(material, elements.relaxing_share[b]),
+                                                     viscous_stretch(green_strain(F), elements.viscous_strain[b]));
+                       const Real8 of_lanes = volume * density;
                        for (std::size_t l = 0; l < element_lanes; ++l) energy += of_lanes[l];
                    });
     return energy;
+}
+
+Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                   std::span<const Vec3> velocity) {
+    Real power = 0;
+    for_each_block(elements, blocks, position,
+                   [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
+                       const LaneMat3<Real8>& R) {
+                       LaneMat3<Real8> P = stress_of(material, F, R);
+                       if (material.relaxes() && !elements.viscous_strain.empty())
+                           P = P + multiply(F, stress(viscous_moduli(material, elements.relaxing_share[b]),
+                                                      viscous_stretch(green_strain(F), elements.viscous_strain[b])));
+                       const Real8 of_lanes =
+                           volume * inner_product(P, deformation_gradient(edges(elements.node[b], velocity),
+                                                                          elements.inverse_rest[b]));
+                       for (std::size_t l = 0; l < element_lanes; ++l) power += of_lanes[l];
+                   });
+    return power;
 }
 
 void von_mises_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

@@ -11,6 +11,11 @@ namespace skerry {
 /// Elastic energy of the elements of a range of blocks, J. Sequential, in element order.
 Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const Vec3> position);
 
+/// What the elastic forces of a range of blocks take from nodes that move with these velocities, W: the rate of their
+/// elastic energy. Sequential, in element order.
+Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                   std::span<const Vec3> velocity);
+
 /// Von Mises stress (Pa, of the Cauchy stress) of each element of a range of blocks: von_mises[8 (block - blocks.begin)
 /// + lane].
 void von_mises_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

@@ -89,6 +89,21 @@ private:
     Matrix9 A_{};
 };
 
+/// H of the viscous parts, whose stress is F S: X -> F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and
+/// S are replaced by bounds of their eigenvalues, the first by the mean of F^T F and twice its spread.
+void add_viscous_stiffness(const ViscousPart& viscous, const LaneMat3<Real8>& F, StiffnessTerms& H) {
+    const ViscousModuli& moduli = viscous.moduli;
+    const LaneSymmetric<Real8> strain = green_strain(F), S = stress(moduli, viscous.stretch);
+    const Real8 third = strain.trace() / 3.0;
+    const LaneSymmetric<Real8> deviator{strain.xx - third, strain.yy - third, strain.zz - third,
+                                        strain.xy,         strain.yz,         strain.zx};
+    const Real8 largest = 1.0 + 2.0 * (third + 2.0 * square_root(inner_product(deviator, deviator) / 6.0));
+    const Real8 mu = moduli.mu * viscous.strain_share;
+    H.add_identity(mu * largest + square_root(inner_product(S, S)));
+    H.add_turned_transpose(mu, F);
+    H.add_dyad(moduli.lambda * viscous.strain_share + moduli.bulk * viscous.volume_share, F);
+}
+
 /// (tr A^16)^(1/16), after scaling by the norm so that nothing overflows.
 Real8 largest_eigenvalue_bound(Matrix9& A) {
     const auto norm = [](const Matrix9& m) {
@@ -117,8 +132,8 @@ Real8 largest_eigenvalue_bound(Matrix9& A) {
 
 }  // namespace
 
-Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const Real8& volume,
-                              const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q) {
+Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
+                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q) {
     const LaneMat3<Real8> L = cholesky(Q);
     StiffnessTerms H(L);
     with_law(material.model, [&](auto law) {
@@ -129,6 +144,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
             law.add_stiffness(material, F, H);
         }
     });
+    if (viscous.moduli.mu > 0 || viscous.moduli.bulk > 0) add_viscous_stiffness(viscous, F, H);
     const Real8 bound = volume * largest_eigenvalue_bound(H.compressed());
     return volume > 0.0 ? bound : Real8{};
 }

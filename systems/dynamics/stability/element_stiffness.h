@@ -5,14 +5,22 @@
 #include "components/material_table.h"
 #include "systems/material/extract_rotation.h"
 #include "systems/material/lane_math.h"
+#include "systems/material/relaxation.h"
 
 namespace skerry {
+
+/// What stiffens an element beside its law; moduli of zero: nothing.
+struct ViscousPart {
+    ViscousModuli moduli{};
+    ViscousStretch<Real8> stretch{};
+    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // of the moduli that count
+};
 
 /// lambda_max(M^-1/2 K M^-1/2) of each element from above, 1/s^2, never more than 15 % too large. K = V G^T H G with
 /// the rest gradients G and H = dP/dF at F, M the corners' shares of mass; `Q` = sum over the corners of g_a g_a^T /
 /// m_a. `q` starts the frame of an element whose law has one and is left at the frame found.
 /// Lanes without volume get 0.
-Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const Real8& volume,
-                              const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q);
+Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
+                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q);
 
 }  // namespace skerry

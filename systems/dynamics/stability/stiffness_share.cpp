@@ -1,6 +1,7 @@
 #include "systems/dynamics/stability/stiffness_share.h"
 
 #include "systems/dynamics/stability/element_stiffness.h"
+#include "systems/material/relaxation.h"
 #include "systems/material/with_law.h"
 
 namespace skerry {
@@ -59,8 +60,20 @@ Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, con
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q) {
     const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[block])];
     const LaneMat3<Real8> Q = inverse_mass_tensor(elements, block, F, mass, stiffness_sum);
-    // The last term is nothing, or no number where F is none: not every bound looks at F.
-    return frequency_squared_bound(material, F, load(elements.volume[block]), Q, q) + 0.0 * inner_product(F, F);
+    const Real8 volume = load(elements.volume[block]);
+    // nothing, or no number where F is none: not every bound looks at F
+    const Real8 nothing = 0.0 * inner_product(F, F);
+    if (!material.relaxes() || elements.viscous_strain.empty())
+        return frequency_squared_bound(material, F, {}, volume, Q, q) + nothing;
+    ViscousPart viscous{viscous_moduli(material, elements.relaxing_share[block]),
+                        viscous_stretch(green_strain(F), elements.viscous_strain[block])};
+    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q);
+    // A spring that relaxes by a step's end counts less, and the less the longer the step: the step by the springs in
+    // full is a safe guess of it.
+    const Real8 step = step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0);
+    viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
+    viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
+    return frequency_squared_bound(material, F, viscous, volume, Q, q) + nothing;
 }
 
 }  // namespace skerry

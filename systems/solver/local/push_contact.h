@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "systems/solver/inputs/solver_settings.h"
@@ -18,13 +19,22 @@ inline Real push_slop(Real gravity, Real h) {
     return of_kick * gravity * h * h + rounding;
 }
 
+/// m/s, the fastest push that costs next to nothing: m v^2 / 2 is half a thousandth of what lifting the mass m by
+/// `depth` takes (docs/methods/contact.md 3.4).
+inline Real lift_speed(Real gravity, Real depth) {
+    constexpr Real share = 0.03, standard_gravity = 9.81;
+    return share * std::sqrt(std::max(gravity, standard_gravity) * depth);
+}
+
 /// The least u_n + p_n of a contact, taken from u_n: negative asks for a push. Contacts that are not pressed in ask for
 /// nothing, whatever error the velocity solve has left: so a region without a pressed contact comes out as zero, on its
 /// own or within a larger one.
 inline Real push_bias(const LumpedContact& contact, Real gap, Real slop, std::span<const Vec4> velocity,
-                      const SolverSettings& settings, Real h) {
+                      const SolverSettings& settings, Real gravity, Real h) {
     const Real normal_velocity = contact.normal.dot(contact_velocity(contact, velocity.data())) - contact.bias;
-    if (gap < -slop) return normal_velocity - std::min(settings.recovery * -gap / h, settings.recovery_speed);
+    if (gap < -slop)
+        return normal_velocity -
+               std::min({settings.recovery * -gap / h, settings.recovery_speed, lift_speed(gravity, -gap)});
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 

@@ -29,6 +29,7 @@ void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regi
     regions.shortcut[number] = outcome.shortcut;
     regions.frozen[number] = outcome.frozen;
     regions.dissipated[number] = outcome.dissipated;
+    regions.push_work[number] = outcome.push_work;
 }
 
 SolveLimits limits_of(const SolverSettings& settings) {
@@ -66,6 +67,17 @@ Real dissipated_by(const RegionStage& stage, Index row) {
             twice_mean +=
                 stencil.weight[a] * (stage.inputs.velocity[stencil.node[a]] + stage.out.velocity_next[stencil.node[a]]);
     return -0.5 * impulse.dot(twice_mean);
+}
+
+Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<const Vec4> push_velocity) {
+    Real work = 0;
+    for (std::size_t i = 0; i < memory.contact.size(); ++i)
+        work += memory.impulse[i].dot(add_node_velocities(memory.contact[i], push_velocity.data(), Vec4::Zero()));
+    for (std::size_t n = 0; n < memory.node.size(); ++n) {
+        const Vec3 change = memory.velocity[n].head<3>() - stage.inputs.velocity[memory.node[n]];
+        work -= change.dot(push_velocity[n].head<3>()) / stage.inputs.inverse_mass[memory.node[n]];
+    }
+    return work;
 }
 
 }  // namespace skerry

@@ -33,6 +33,7 @@ struct RegionOutcome {
     RegionShortcut shortcut = shortcut_none;
     Index frozen = 0;
     Real dissipated = 0;  // J
+    Real push_work = 0;   // J
 };
 
 /// Of what a method came to.
@@ -193,8 +194,8 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
         Real size = 0;
         for (std::size_t i = begin; i < end; ++i) {
             memory.impulse[i] = 0;
-            memory.bias[i] =
-                push_bias(contact[i], gap[region.row[walk.number_of(i)]], slop, region.velocity, settings, stage.h);
+            memory.bias[i] = push_bias(contact[i], gap[region.row[walk.number_of(i)]], slop, region.velocity, settings,
+                                       stage.inputs.gravity, stage.h);
             const Real approach = std::min(memory.bias[i], Real(0));
             size += contact[i].inverse_diagonal * approach * approach;
         }
@@ -213,6 +214,10 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
     return true;
 }
 
+/// J, that moving positions by h p takes against the forces of the step but for those of contacts: h times the force on
+/// a node is its momentum after the step, less that before and less what its contacts gave. To first order in h p.
+Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<const Vec4> push_velocity);
+
 /// Finish: writes back, pushes out, and notes what was dissipated.
 template <RegionWalk Walk>
 [[gnu::always_inline]] inline void finish_region(const RegionStage& stage, const LoadedRegion<Walk>& region,
@@ -224,6 +229,7 @@ template <RegionWalk Walk>
         for (std::size_t n = begin; n < end; ++n)
             stage.out.push_out[region.memory.node[n]] = push.velocity[n].template head<3>();
     });
+    outcome.push_work = push_work(stage, region.memory, push.velocity);
     stage.memory.pushed.store(true, std::memory_order_relaxed);
 }
 template <RegionWalk Walk>

@@ -93,7 +93,8 @@ TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
     // whose end is moved at v gets a wave that brings it to v and comes back from the far end at 2 v: so a rigid body
     // would leave at no more than v without any energy, but a deformable one leaves at up to 2 v, with the energy of
     // that.
-    const Real push_speed = Settings{}.recovery_speed;
+    constexpr Real radius = 0.05;
+    const Real push_speed = 0.03 * std::sqrt(9.81 * radius);  // where it begins
     struct Case {
         const char* name;
         bool body;
@@ -101,7 +102,6 @@ TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
     for (const Case& c : {Case{"half inside a floor", false}, Case{"half inside another", true}}) {
         World world(weightless());
         const auto material = world.add_material({.young_modulus = 1e5, .density = 1000, .friction = 0.3});
-        const Real radius = 0.05;
         const Mesh mesh = mesh::ball(radius, 6);
         const auto ball = world.add_body(mesh, {.material = material, .name = "ball"});
         const std::vector<Real> mass = node_masses(world, ball, mesh, 1000);
@@ -111,7 +111,7 @@ TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
             world.add_collider(Plane{});
         Real fastest = 0, kinetic = 0;
         Course whole;
-        for (int look = 0; look < 100 && whole.ok; ++look) {
+        for (int look = 0; look < 600 && whole.ok; ++look) {
             const Course course = follow(world, 0.01, 1);
             whole.ok = course.ok;
             whole.message = course.message;
@@ -122,7 +122,7 @@ TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
         }
         const Real allowed =
             0.5 * world.mass(ball) * push_speed * push_speed * static_cast<Real>(world.bodies().size());
-        const std::string scene = "ball " + std::string(c.name) + ", 1 s";
+        const std::string scene = "ball " + std::string(c.name) + ", 6 s";
         judge({9, scene, "every step taken, finite", whole.ok ? "all steps" : whole.message, whole.ok && whole.finite});
         at_most(9, scene, "exit speed / push speed", fastest / push_speed, 2);
         at_most(9, scene, "kinetic energy / that of the push speed", kinetic / allowed, 4);

@@ -1,7 +1,7 @@
 // Levels of elements, impulses of several steps, and the viscosity of fine elements.
 #include <catch2/catch.hpp>
 
-#include "systems/dynamics/elements/keep_frames.h"
+#include "systems/dynamics/elements/keep_memory.h"
 #include "systems/dynamics/motion/predict_velocity.h"
 #include "systems/dynamics/stability/element_levels.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -27,8 +27,8 @@ struct SliverBody : ElasticBody {
         for (Vec3& v : velocity) v = random_vector(random);
     }
     void compute(const ElementInputs& inputs) {
-        compute_element_forces(*executor, inputs, position, velocity, elements.rotation, elements.rotation_next,
-                               elements.force);
+        compute_element_forces(*executor, inputs, position, velocity, 0, elements.rotation,
+                               {.rotation = elements.rotation_next}, elements.force);
     }
 };
 
@@ -225,7 +225,7 @@ TEST_CASE("frames are kept of corotational blocks that were due", "[unit]") {
     inputs.schedule.active.duration.fill(0);
     inputs.schedule.active.duration[1] = 2;
     body.compute(inputs);
-    keep_frames(*body.executor, inputs, body.elements.rotation_next, body.elements.rotation);
+    keep_memory(*body.executor, inputs, body.elements);
     for (std::size_t b = 0; b < body.elements.level.size(); ++b) {
         const bool turned = body.elements.rotation[b][1][0] != 0;
         CHECK(turned == (b % 2 == 1));

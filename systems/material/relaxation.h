@@ -1,0 +1,111 @@
+// The part of the stress that relaxes: losses that hardly depend on frequency, and bulk viscosity
+// (docs/methods/elasticity.md 6).
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "components/element_table.h"
+#include "components/material_table.h"
+#include "systems/material/lane_math.h"
+
+namespace skerry {
+
+/// A symmetric 3x3 matrix of T.
+template <class T>
+struct LaneSymmetric {
+    T xx, yy, zz, xy, yz, zx;
+
+    T trace() const { return xx + yy + zz; }
+};
+
+template <class T>
+[[gnu::always_inline]] inline LaneSymmetric<T> operator-(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
+    return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.zx - b.zx};
+}
+template <class T>
+[[gnu::always_inline]] inline LaneSymmetric<T> operator*(const T& s, const LaneSymmetric<T>& a) {
+    return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.yz, s * a.zx};
+}
+template <class T>
+[[gnu::always_inline]] inline T inner_product(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
+    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.zx * b.zx);
+}
+
+/// Green's strain, (F^T F - I) / 2: rotations do not change it.
+template <class T>
+[[gnu::always_inline]] inline LaneSymmetric<T> green_strain(const LaneMat3<T>& F) {
+    return {0.5 * dot(F.c0, F.c0) - 0.5, 0.5 * dot(F.c1, F.c1) - 0.5, 0.5 * dot(F.c2, F.c2) - 0.5,
+            0.5 * dot(F.c0, F.c1),       0.5 * dot(F.c1, F.c2),       0.5 * dot(F.c2, F.c0)};
+}
+
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> multiply(const LaneMat3<T>& F, const LaneSymmetric<T>& S) {
+    return {S.xx * F.c0 + S.xy * F.c1 + S.zx * F.c2, S.xy * F.c0 + S.yy * F.c1 + S.yz * F.c2,
+            S.zx * F.c0 + S.yz * F.c1 + S.zz * F.c2};
+}
+
+/// What stretches the springs of the two viscous parts: the strain less what the dashpots have taken.
+template <class T>
+struct ViscousStretch {
+    LaneSymmetric<T> strain;
+    T volume;
+};
+
+/// Stiffness of the two viscous parts, Pa: those of the law times a share, and on the change of volume alone.
+struct ViscousModuli {
+    Real mu, lambda, bulk;
+};
+
+/// The lowest rate of relaxation is the lowest frequency of a body, as a free one, over this: a held end makes a beam
+/// six times slower.
+inline constexpr Real rates_below = 20;
+
+/// Stiffness of what relaxes, over that of the law, for a loss factor at the lowest frequency of a body. Rates are
+/// spread evenly on a logarithmic scale, the highest `span` times the lowest, so that a share s is behind by
+/// (pi / 2) s / log(span) and adds s log(rates_below) / log(span) to the stiffness there.
+inline Real relaxing_share(Real loss_factor, Real span) {
+    return loss_factor * std::log(span) / (std::numbers::pi / 2 - loss_factor * std::log(rates_below));
+}
+
+/// The bulk viscosity is that of a spring and a dashpot whose time is this over the element's own frequency.
+inline constexpr Real bulk_time = 0.5;
+
+inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real relaxing_share) {
+    return {relaxing_share * material.shear_modulus, relaxing_share * material.lame_lambda,
+            2 * material.bulk_viscosity / bulk_time * (material.lame_lambda + 2 * material.shear_modulus)};
+}
+
+/// J/m^3, of the springs stretched by `stretch` while they are stretched by `change` more.
+template <class T>
+[[gnu::always_inline]] inline T work_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch,
+                                             const ViscousStretch<T>& change) {
+    return (2 * moduli.mu) * inner_product(stretch.strain, change.strain) +
+           moduli.lambda * (stretch.strain.trace() * change.strain.trace()) +
+           moduli.bulk * (stretch.volume * change.volume);
+}
+
+/// J/m^3
+template <class T>
+[[gnu::always_inline]] inline T energy_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
+    return 0.5 * work_density(moduli, stretch, stretch);
+}
+
+/// Second Piola-Kirchhoff stress, Pa.
+template <class T>
+[[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
+    LaneSymmetric<T> S = T((T{} + 2 * moduli.mu)) * stretch.strain;
+    const T pressure = moduli.lambda * stretch.strain.trace() + moduli.bulk * stretch.volume;
+    S.xx += pressure;
+    S.yy += pressure;
+    S.zz += pressure;
+    return S;
+}
+
+inline ViscousStretch<Real8> viscous_stretch(const LaneSymmetric<Real8>& strain, const ElementStrain& forgotten) {
+    const LaneSymmetric<Real8> old{load(forgotten[0]), load(forgotten[1]), load(forgotten[2]),
+                                   load(forgotten[3]), load(forgotten[4]), load(forgotten[5])};
+    return {strain - old, strain.trace() - load(forgotten[6])};
+}
+
+}  // namespace skerry

@@ -1,0 +1,144 @@
+// What materials lose: loss_factor and bulk_viscosity (docs/methods/elasticity.md 6).
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+constexpr Real length = 1, thickness = 0.15;
+
+/// A free beam along x that starts to bend in z as it would in its lowest mode.
+struct Beam {
+    World world;
+    BodyHandle body;
+    Mesh mesh = mesh::box({length, thickness, thickness}, {16, 2, 2});
+    std::vector<Real> mass, shape;
+
+    explicit Beam(const MaterialSettings& material) : world(Settings{.gravity = Vec3::Zero()}) {
+        body = world.add_body(mesh, {.material = world.add_material(material)});
+        mass = node_masses(world, body, mesh, material.density);
+        std::vector<Vec3> velocity;
+        const Real k = 4.730040744862704 / length;  // first mode of a free beam: even, with cos(k L) cosh(k L) = 1
+        const Real sigma = std::cos(k * length / 2) / std::cosh(k * length / 2);
+        for (const Vec3& x : mesh.nodes) shape.push_back(sigma * std::cosh(k * x.x()) + std::cos(k * x.x()));
+        const Real speed = 1e-3 * std::sqrt(material.young_modulus / material.density);
+        for (std::size_t n = 0; n < shape.size(); ++n) {
+            const Real slope = k * (sigma * std::sinh(k * mesh.nodes[n].x()) - std::sin(k * mesh.nodes[n].x()));
+            velocity.push_back(speed * Vec3(-mesh.nodes[n].z() * slope, 0, shape[n]));
+        }
+        world.set_velocities(body, velocity);
+    }
+    Real amplitude() const {
+        Real sum = 0;
+        for (std::size_t n = 0; n < shape.size(); ++n)
+            sum += mass[n] * shape[n] * (world.positions(body)[n].z() - mesh.nodes[n].z());
+        return sum;
+    }
+};
+
+/// Of the decay of a vibration: log of the ratio of amplitudes a period apart, over pi.
+Real measured_loss_factor(Beam& beam, Real period) {
+    constexpr int samples = 64, periods = 8;
+    std::vector<Real> peaks;  // of every half period
+    Real before = 0, last = 0;
+    for (int i = 0; i < samples * periods; ++i) {
+        REQUIRE(beam.world.advance(period / samples).ok());
+        const Real now = std::abs(beam.amplitude());
+        if (last > before && last >= now) {
+            // top of the parabola through three samples
+            const Real bend = before - 2 * last + now, slope = (now - before) / 2;
+            peaks.push_back(last - slope * slope / (2 * bend));
+        }
+        before = last;
+        last = now;
+    }
+    REQUIRE(peaks.size() >= 8);
+    CHECK(beam.world.report().energy_error_share < 5e-3);
+    return std::log(peaks.front() / peaks.back()) / (std::numbers::pi * static_cast<Real>(peaks.size() - 1) / 2);
+}
+
+Real bending_period(Real young_modulus, Real density) {
+    const Real omega = 22.373285 / (length * length) * thickness / std::sqrt(12) * std::sqrt(young_modulus / density);
+    return 2 * std::numbers::pi / omega;
+}
+
+}  // namespace
+
+TEST_CASE("a bending beam loses what its loss factor says, at any stiffness", "[scene][accuracy]") {
+    for (Real young_modulus : {1e4, 1e6, 1e10})
+        for (Real loss_factor : {0.02, 0.05, 0.1}) {
+            Beam beam({.young_modulus = young_modulus, .poisson_ratio = 0.3, .loss_factor = loss_factor});
+            INFO("E " << young_modulus << ", loss factor " << loss_factor);
+            CHECK(measured_loss_factor(beam, bending_period(young_modulus, 1000)) == Approx(loss_factor).epsilon(0.05));
+        }
+}
+
+TEST_CASE("without losses a bending beam goes on", "[scene][accuracy]") {
+    Beam beam({.young_modulus = 1e6, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0});
+    CHECK(std::abs(measured_loss_factor(beam, bending_period(1e6, 1000))) < 1e-3);
+}
+
+TEST_CASE("losses keep momentum and leave rigid motion alone", "[scene]") {
+    for (MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
+        World world(Settings{.gravity = Vec3::Zero()});
+        const auto material = world.add_material(
+            {.young_modulus = 1e6, .poisson_ratio = 0.3, .loss_factor = 0.2, .bulk_viscosity = 0.1, .model = model});
+        const Mesh mesh = mesh::box({0.3, 0.2, 0.1}, {3, 2, 1});
+        const auto body =
+            world.add_body(mesh, {.material = material, .velocity = {1, 2, 3}, .angular_velocity = {0.01, 0.02, 0.03}});
+        const WorldReport rigid = world.report();
+        REQUIRE(world.advance(1).ok());
+        CHECK(world.report().energy.dissipated < 1e-6 * rigid.energy.kinetic);
+
+        std::mt19937_64 random(3);
+        std::uniform_real_distribution<Real> speed(-0.5, 0.5);
+        std::vector<Vec3> velocity(mesh.nodes.size());
+        for (Vec3& v : velocity) v = {speed(random), speed(random), speed(random)};
+        world.set_velocities(body, velocity);
+        const WorldReport start = world.report();
+        REQUIRE(world.advance(1).ok());
+        const WorldReport end = world.report();
+        const Real size = world.mass(body) * 0.5;
+        CHECK((end.momentum - start.momentum).norm() < 1e-11 * size);
+        CHECK((end.angular_momentum - start.angular_momentum).norm() < 1e-11 * size);
+        // what was not rigid is gone
+        CHECK(end.energy.elastic < 1e-3 * start.energy.kinetic);
+    }
+}
+
+TEST_CASE("at its stable step a body with losses is stable, and energy adds up", "[scene]") {
+    for (MaterialModel model : {MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean})
+        for (const auto& [loss_factor, viscosity] : {std::pair{0.3, 0.0}, {0.0, 1.0}, {0.3, 1.0}, {0.05, 0.06}}) {
+            World world(Settings{.gravity = Vec3::Zero()});
+            const auto material = world.add_material({.young_modulus = 1e5,
+                                                      .poisson_ratio = 0.45,
+                                                      .loss_factor = loss_factor,
+                                                      .bulk_viscosity = viscosity,
+                                                      .model = model});
+            const Mesh mesh = mesh::ball(0.1, 4);
+            const auto body = world.add_body(mesh, {.material = material});
+            std::mt19937_64 random(5);
+            std::uniform_real_distribution<Real> speed(-0.3, 0.3);
+            std::vector<Vec3> velocity(mesh.nodes.size());
+            for (Vec3& v : velocity) v = {speed(random), speed(random), speed(random)};
+            world.set_velocities(body, velocity);
+            INFO(name_of(model) << ", loss factor " << loss_factor << ", bulk viscosity " << viscosity);
+            const Energy start = world.energy();
+            Energy last = start;
+            for (int i = 0; i < 20; ++i) {
+                REQUIRE(world.advance(100 * world.stable_step()).ok());
+                const Energy now = world.energy();
+                CHECK(now.dissipated >= last.dissipated);
+                CHECK(now.kinetic + now.elastic <= 1.2 * start.kinetic);
+                last = now;
+            }
+            CHECK(last.dissipated > 0.5 * start.kinetic);
+            // white noise at the highest frequencies, where a step is a third of a period
+            CHECK(world.report().energy_error_share < 0.1);
+        }
+}
