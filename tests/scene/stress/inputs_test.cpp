@@ -99,6 +99,8 @@ TEST_CASE("settings and materials that are no numbers or out of range are refuse
         material("dynamic_friction", {[bad](MaterialSettings& m) { m.dynamic_friction = bad; }});
         material("restitution", {[bad](MaterialSettings& m) { m.restitution = bad; }});
         material("damping", {[bad](MaterialSettings& m) { m.damping = bad; }});
+        material("loss_factor", {[bad](MaterialSettings& m) { m.loss_factor = bad; }});
+        material("bulk_viscosity", {[bad](MaterialSettings& m) { m.bulk_viscosity = bad; }});
     }
     material("young_modulus",
              {[](MaterialSettings& m) { m.young_modulus = 0; }, [](MaterialSettings& m) { m.young_modulus = -1; }});
@@ -110,6 +112,10 @@ TEST_CASE("settings and materials that are no numbers or out of range are refuse
     material("restitution",
              {[](MaterialSettings& m) { m.restitution = 1.1; }, [](MaterialSettings& m) { m.restitution = -0.1; }});
     material("damping", {[](MaterialSettings& m) { m.damping = -1; }});
+    material("loss_factor",
+             {[](MaterialSettings& m) { m.loss_factor = -0.1; }, [](MaterialSettings& m) { m.loss_factor = 0.31; }});
+    material("bulk_viscosity", {[](MaterialSettings& m) { m.bulk_viscosity = -0.1; },
+                                [](MaterialSettings& m) { m.bulk_viscosity = 1.1; }});
     judge_refusals("materials", list);
 }
 
