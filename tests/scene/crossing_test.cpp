@@ -88,19 +88,19 @@ TEST_CASE("a body put half into another leaves it about as slowly as it is pushe
                                       {.material = rubber, .position = {0.003, 0.004, 0.045}, .name = "upper"});
     REQUIRE(crossings(surface_of(world, lower), surface_of(world, upper)) > 0);
     Real most = 0;
-    for (int frame = 0; frame < 500; ++frame) {
+    for (int frame = 0; frame < 700; ++frame) {
         REQUIRE(world.advance(0.01).ok());
         const Energy energy = world.energy();
         most = std::max(most, energy.kinetic + energy.elastic);
     }
     CHECK(crossings(surface_of(world, lower), surface_of(world, upper)) == 0);
     CHECK(world.center_of_mass(upper).z() > 0.069);  // out, through the face that was nearest
-    // The push moves positions only, at no more than 0.03 sqrt(9.81 depth): 2 cm/s. What it bends springs back: that is
-    // all the energy there is, and less than both would have if they moved at twice that.
+    // The push moves positions only, at a hundredth of recovery_speed where there is no weight: 5 mm/s. What it bends
+    // springs back: that is all the energy there is, and less than both would have if they moved at twice that.
     const Vec3 before = world.center_of_mass(upper);
     REQUIRE(world.advance(0.01).ok());
-    CHECK((world.center_of_mass(upper) - before).norm() < 0.01 * 0.04);
-    CHECK(most < 0.5 * (world.mass(upper) + world.mass(lower)) * 0.04 * 0.04);
+    CHECK((world.center_of_mass(upper) - before).norm() < 0.01 * 0.01);
+    CHECK(most < 0.5 * (world.mass(upper) + world.mass(lower)) * 0.01 * 0.01);
 }
 
 TEST_CASE("steps that are tried again are the same bits on any number of workers", "[scene][determinism]") {

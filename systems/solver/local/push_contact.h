@@ -19,11 +19,12 @@ inline Real push_slop(Real gravity, Real h) {
     return of_kick * gravity * h * h + rounding;
 }
 
-/// m/s, the fastest push that costs next to nothing: m v^2 / 2 is half a thousandth of what lifting the mass m by
-/// `depth` takes (docs/methods/contact.md 3.4).
-inline Real lift_speed(Real gravity, Real depth) {
-    constexpr Real share = 0.03, standard_gravity = 9.81;
-    return share * std::sqrt(std::max(gravity, standard_gravity) * depth);
+/// m/s, how fast something `depth` deep is pushed out: no faster than costs next to nothing, m v^2 / 2 half a
+/// thousandth of what lifting the mass m by `depth` takes, or a hundredth of the limit (docs/methods/contact.md 3.4).
+inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth, Real h) {
+    constexpr Real of_fall = 0.03, of_limit = 0.01;  // of the root of gravity times depth, and of recovery_speed
+    const Real cheap = std::max(of_fall * std::sqrt(gravity * depth), of_limit * settings.recovery_speed);
+    return std::min({settings.recovery * depth / h, settings.recovery_speed, cheap});
 }
 
 /// The least u_n + p_n of a contact, taken from u_n: negative asks for a push. Contacts that are not pressed in ask for
@@ -32,9 +33,7 @@ inline Real lift_speed(Real gravity, Real depth) {
 inline Real push_bias(const LumpedContact& contact, Real gap, Real slop, std::span<const Vec4> velocity,
                       const SolverSettings& settings, Real gravity, Real h) {
     const Real normal_velocity = contact.normal.dot(contact_velocity(contact, velocity.data())) - contact.bias;
-    if (gap < -slop)
-        return normal_velocity -
-               std::min({settings.recovery * -gap / h, settings.recovery_speed, lift_speed(gravity, -gap)});
+    if (gap < -slop) return normal_velocity - push_speed(settings, gravity, -gap, h);
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
