@@ -120,8 +120,8 @@ void validate(const MaterialSettings& material, const Settings& settings) {
     require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
     require(material.loss_factor >= 0 && material.loss_factor <= largest_loss_factor, object, "loss_factor",
             material.loss_factor, "a number from 0 to 0.3");
-    require(material.bulk_viscosity >= 0 && material.bulk_viscosity <= largest_bulk_viscosity, object,
-            "bulk_viscosity", material.bulk_viscosity, "a number from 0 to 1");
+    require(material.bulk_viscosity >= 0 && material.bulk_viscosity <= largest_bulk_viscosity, object, "bulk_viscosity",
+            material.bulk_viscosity, "a number from 0 to 1");
 }
 
 void validate(const Mesh& mesh, const BodySettings& body) {

@@ -42,7 +42,7 @@ struct StepFindings {
     ExternalWork external;
     TakenByRest rest;
     Real relaxed = 0;  // J, taken out by what relaxes in the elements in this step
-    Real damped = 0;  // J, taken out by damping in this step
+    Real damped = 0;   // J, taken out by damping in this step
 };
 
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
