@@ -27,8 +27,9 @@ struct SliverBody : ElasticBody {
         for (Vec3& v : velocity) v = random_vector(random);
     }
     void compute(const ElementInputs& inputs) {
-        compute_element_forces(*executor, inputs, position, velocity, 0, elements.rotation,
-                               {.rotation = elements.rotation_next}, elements.force);
+        compute_element_forces(*executor, inputs, position, velocity, 1e-3, elements.rotation,
+                               {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
+                               elements.force);
     }
 };
 
@@ -215,8 +216,12 @@ TEST_CASE("viscosity gives no force and no torque as a whole, takes energy, and 
     for (const Vec3& f : force) CHECK(f.norm() < 1e-11 * size);
 }
 
-TEST_CASE("frames are kept of corotational blocks that were due", "[unit]") {
+TEST_CASE("frames and strains are kept of blocks that were due", "[unit]") {
     SliverBody body(MaterialModel::corotational);
+    body.constants[0].loss_factor = 0.1;
+    for (ElementLane& rate : body.elements.relaxation_rate)
+        for (Real& lane : rate.lane) lane = 100;
+    for (Real& share : body.elements.relaxing_share) share = 0.1;
     const std::vector<Index> of_body(body.elements.node.size(), 0);
     const std::vector<std::uint8_t> body_level{0};
     for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
@@ -229,5 +234,8 @@ TEST_CASE("frames are kept of corotational blocks that were due", "[unit]") {
     for (std::size_t b = 0; b < body.elements.level.size(); ++b) {
         const bool turned = body.elements.rotation[b][1][0] != 0;
         CHECK(turned == (b % 2 == 1));
+        const bool forgot = body.elements.viscous_strain[b][0][0] != 0;
+        CHECK(forgot == (b % 2 == 1));
+        CHECK((body.elements.relaxed[b] > 0) == (b % 2 == 1));
     }
 }
