@@ -1,94 +1,163 @@
-// profile_first_scene: what a newcomer builds first, a block on a slope, with default settings: does it hold below the
+// profile_first_scene: what a newcomer builds first, a body on a slope, with default settings: does it hold below the
 // critical angle, and slide above it as Coulomb says? Prints docs/first_scene.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "profiling/measure.h"
+#include "profiling/work_precision/runs.h"
 #include "skerry/world.h"
 
 using namespace skerry;
 
 namespace {
 
-constexpr Real gravity = 9.81, friction = 0.3, height = 0.2;  // m/s^2, 1, m
+constexpr Real gravity = 9.81;                                 // m/s^2
+constexpr int samples_a_second = 100;                          // at which the motion is looked at
+constexpr Real offsets[] = {-2, -0.5, -0.1, 0.1, 0.5, 2, 10};  // degrees from the critical angle
+
+struct Subject {
+    Mesh mesh;  // m, its lowest point at z = 0
+    Real friction = 0.3;
+    bool rolls = false;         // a ball: at no angle here does its contact slip
+    std::vector<Index> sole{};  // nodes that it stands on
+};
+
+Subject standing(Mesh mesh, Real friction = 0.3) {
+    Subject subject{.mesh = std::move(mesh), .friction = friction};
+    Real lowest = std::numeric_limits<Real>::infinity(), highest = -lowest;
+    for (const Vec3& node : subject.mesh.nodes) {
+        lowest = std::min(lowest, node.z());
+        highest = std::max(highest, node.z());
+    }
+    for (Vec3& node : subject.mesh.nodes) node.z() -= lowest;
+    for (std::size_t n = 0; n < subject.mesh.nodes.size(); ++n)
+        if (subject.mesh.nodes[n].z() < 1e-3 * (highest - lowest)) subject.sole.push_back(static_cast<Index>(n));
+    return subject;
+}
+
+Subject block(int cells = 1) {
+    return standing(mesh::box({0.4, 0.4, 0.2}, {4 * cells, 4 * cells, 2 * cells}));
+}
 
 struct Case {
-    Real young_modulus = 1e5;  // Pa
-    Real above = 0;            // m, the lower face above the plane
-    Real offset = 0;           // degrees from the critical angle
-    Real loss_factor = 0, bulk_viscosity = 0;
+    Subject subject;
+    MaterialSettings material{.young_modulus = 1e5, .poisson_ratio = 0.3};
+    Real above = 0;  // m, the lowest point above the plane
     Real step_safety = 1;
-    int cells = 1;  // of the mesh, times 4 x 4 x 2
 };
 
-struct Outcome {
-    Real slip = 0;          // m/s, of the lower face, mean of the second half
-    Real acceleration = 0;  // m/s^2, of the centre of mass, between 0.3 and 0.9 s
-    Real expected = 0;      // m/s^2, by Coulomb's law
-    Real hop = 0;           // m, highest place of the centre of mass above where the lower face at the shell has it
-    Real energy_share = 0;  // by which energy does not add up
-    double cpu = 0;         // s
+/// Where a body is, sample by sample.
+struct Motion {
+    std::vector<Vec3> center;  // m, of mass
+    std::vector<Real> sole;    // m, mean of its nodes down the slope
+    Real hop = 0;              // m, highest place of the centre of mass above where it starts
+    Real energy_share = 0;     // by which energy does not add up
+    double cpu = 0;            // s
+
+    void add(const Subject& subject, std::span<const Vec3> position, const Vec3& at) {
+        center.push_back(at);
+        Real sum = 0;
+        for (const Index node : subject.sole) sum += position[static_cast<std::size_t>(node)].x();
+        sole.push_back(sum / static_cast<Real>(subject.sole.size()));
+    }
+    // over 20 ms: vibrations of the body are no motion of it
+    Real speed_about(Real time) const {
+        const auto middle = static_cast<std::size_t>(std::lround(time * samples_a_second)) - 1;
+        return (center[middle + 1].x() - center[middle - 1].x()) * samples_a_second / 2;
+    }
+    Real acceleration() const { return (speed_about(0.9) - speed_about(0.3)) / 0.6; }
+    Real slip() const {
+        const std::size_t half = sole.size() / 2;
+        return (sole.back() - sole[half - 1]) * samples_a_second / static_cast<Real>(sole.size() - half);
+    }
 };
 
-Outcome run(const Case& one, Real seconds) {
-    const Real angle = std::atan(friction) + one.offset * std::numbers::pi / 180;
+Real angle_of(const Subject& subject, Real offset) {
+    return std::atan(subject.friction) + offset * std::numbers::pi / 180;
+}
+
+Vec3 gravity_at(Real angle) {
+    return gravity * Vec3(std::sin(angle), 0, -std::cos(angle));
+}
+
+/// m/s^2, of a rigid body that starts to move.
+Real expected_acceleration(const Subject& subject, Real angle) {
+    return subject.rolls ? gravity * std::sin(angle) * 5 / 7
+                         : gravity * (std::sin(angle) - subject.friction * std::cos(angle));
+}
+
+Motion run(const Case& one, Real offset, Real seconds) {
     Settings settings;
-    settings.gravity = gravity * Vec3(std::sin(angle), 0, -std::cos(angle));
+    settings.gravity = gravity_at(angle_of(one.subject, offset));
     settings.backend = Backend::serial;
     settings.threads = 1;
     settings.step_safety = one.step_safety;
     World world(settings);
-    const auto material = world.add_material({.young_modulus = one.young_modulus,
-                                              .poisson_ratio = 0.3,
-                                              .friction = friction,
-                                              .loss_factor = one.loss_factor,
-                                              .bulk_viscosity = one.bulk_viscosity});
+    MaterialSettings material = one.material;
+    material.friction = one.subject.friction;
     world.add_collider(Plane{});
-    const Mesh mesh = mesh::box({0.4, 0.4, height}, {4 * one.cells, 4 * one.cells, 2 * one.cells});
-    const auto block = world.add_body(mesh, {.material = material, .position = {0, 0, height / 2 + one.above}});
-    const Real at_shell = height / 2 + world.contact_distance(block) / 2;  // a plane has no part in it
+    const auto body =
+        world.add_body(one.subject.mesh, {.material = world.add_material(material), .position = {0, 0, one.above}});
+    const Real shell = world.contact_distance(body) / 2;  // a plane has no part in it
+    const Real at_shell = world.center_of_mass(body).z() - one.above + shell;
 
-    Outcome outcome;
-    const auto advance_to = [&](Real time) {
-        while (world.time() < time - 1e-9) {
-            if (const StepReport report = world.advance(std::min(0.01, time - world.time())); !report.ok())
-                throw std::runtime_error(report.message());
-            outcome.hop = std::max(outcome.hop, world.center_of_mass(block).z() - at_shell);
-        }
-    };
-    const auto lower_face = [&] {
-        Real sum = 0;
-        int count = 0;
-        for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-            if (mesh.nodes[n].z() < -0.499 * height) {
-                sum += world.positions(block)[n].x();
-                ++count;
-            }
-        return sum / count;
-    };
-    // over 20 ms: vibrations of the body are no motion of it
-    const auto speed_about = [&](Real time) {
-        constexpr Real half = 0.01;
-        advance_to(time - half);
-        const Real before = world.center_of_mass(block).x();
-        advance_to(time + half);
-        return (world.center_of_mass(block).x() - before) / (2 * half);
-    };
+    Motion motion;
     const double start = profiling::cpu_seconds();
-    const Real early = speed_about(0.3), late = speed_about(0.9);
-    outcome.acceleration = (late - early) / 0.6;
-    outcome.expected = gravity * (std::sin(angle) - friction * std::cos(angle));
-    advance_to(seconds / 2);
-    const Real middle = lower_face();
-    advance_to(seconds);
-    outcome.slip = (lower_face() - middle) / (seconds / 2);
-    outcome.cpu = profiling::cpu_seconds() - start;
-    outcome.energy_share = world.report().energy_error_share;
-    return outcome;
+    const int samples = static_cast<int>(std::lround(seconds * samples_a_second));
+    for (int k = 1; k <= samples; ++k) {
+        const Real time = static_cast<Real>(k) / samples_a_second;
+        if (const StepReport report = world.advance(time - world.time()); !report.ok())
+            throw std::runtime_error(report.message());
+        const Vec3 center = world.center_of_mass(body);
+        motion.hop = std::max(motion.hop, center.z() - at_shell);
+        motion.add(one.subject, world.positions(body), center);
+    }
+    motion.cpu = profiling::cpu_seconds() - start;
+    motion.energy_share = world.report().energy_error_share;
+    return motion;
+}
+
+/// Nothing where the peer did not come to the end.
+std::optional<Motion> run(const Case& one, Real offset, Real seconds, const profiling::Peer& peer, Real step,
+                          const std::filesystem::path& folder) {
+    World world;
+    const auto handle = world.add_body(one.subject.mesh, {.material = world.add_material(one.material)});
+    profiling::PrecisionScene scene;
+    scene.material = one.material;
+    scene.material.friction = one.subject.friction;
+    scene.contact_distance = world.contact_distance(handle) / 2;
+    scene.gravity = {{.time = 0, .gravity = gravity_at(angle_of(one.subject, offset))}};
+    scene.planes = {{}};
+    scene.seconds = seconds;
+    scene.samples = static_cast<int>(std::lround(seconds * samples_a_second));
+    profiling::PrecisionBody body{.mesh = one.subject.mesh, .velocity = {}, .fixed = {}, .mass = {}};
+    for (Vec3& node : body.mesh.nodes) node.z() += one.above;
+    body.velocity.assign(body.mesh.nodes.size(), Vec3::Zero());
+    scene.bodies.push_back(std::move(body));
+    profiling::set_masses(scene);
+    constexpr double cap = 60;  // CPU s a run
+    const profiling::Record record = profiling::run_peer(scene, peer, step, 1, cap, folder);
+    if (!record.finished) return std::nullopt;
+    const std::vector<Real>& masses = scene.bodies[0].mass;
+    Motion motion;
+    for (const std::vector<Vec3>& position : record.positions) {
+        Vec3 sum = Vec3::Zero();
+        Real mass = 0;
+        for (std::size_t n = 0; n < position.size(); ++n) {
+            sum += masses[n] * position[n];
+            mass += masses[n];
+        }
+        motion.add(one.subject, position, sum / mass);
+    }
+    motion.cpu = record.seconds;
+    return motion;
 }
 
 std::string number(const char* format, Real value) {
@@ -97,29 +166,36 @@ std::string number(const char* format, Real value) {
     return text;
 }
 
-/// A row: slips below the critical angle, errors of the acceleration above it.
-void print_row(const std::string& head, Case one, Real seconds) {
+/// A row: slips below the critical angle, errors of the acceleration above it; of what rolls these alone.
+template <class Run>
+void print_row(const std::string& head, const Subject& subject, Real seconds, Run&& run_at) {
     std::string row = "| " + head + " |";
-    Outcome worst;
-    for (const Real offset : {-2.0, -0.5, -0.1}) {
-        one.offset = offset;
-        const Outcome outcome = run(one, seconds);
-        row += std::abs(outcome.slip) < 1e-9 ? " 0 |" : number(" %.1e |", outcome.slip);
-        worst.hop = std::max(worst.hop, outcome.hop);
-        worst.energy_share = std::max(worst.energy_share, outcome.energy_share);
-        worst.cpu += outcome.cpu;
-    }
-    for (const Real offset : {0.1, 0.5, 2.0, 10.0}) {
-        one.offset = offset;
-        const Outcome outcome = run(one, seconds);
-        row += number(" %.2f |", 100 * (outcome.acceleration - outcome.expected) / gravity);
-        worst.energy_share = std::max(worst.energy_share, outcome.energy_share);
-        worst.cpu += outcome.cpu;
+    Motion worst;
+    int ended = 0;
+    for (const Real offset : offsets) {
+        const std::optional<Motion> motion = run_at(offset);
+        if (!motion) {
+            row += " - |";
+            continue;
+        }
+        ++ended;
+        const Real angle = angle_of(subject, offset);
+        if (subject.rolls || offset > 0)
+            row += number(" %.2f |", 100 * (motion->acceleration() - expected_acceleration(subject, angle)) / gravity);
+        else
+            row += std::abs(motion->slip()) < 1e-9 ? " 0 |" : number(" %.1e |", motion->slip());
+        if (offset < 0) worst.hop = std::max(worst.hop, motion->hop);
+        worst.energy_share = std::max(worst.energy_share, motion->energy_share);
+        worst.cpu += motion->cpu;
     }
     row += number(" %.2f |", 1e3 * worst.hop) + number(" %.2f |", 100 * worst.energy_share) +
-           number(" %.3f |", worst.cpu / (7 * seconds));
+           number(" %.3f |", worst.cpu / (std::max(1, ended) * seconds));
     std::printf("%s\n", row.c_str());
     std::fflush(stdout);
+}
+
+void print_row(const std::string& head, const Case& one, Real seconds) {
+    print_row(head, one.subject, seconds, [&](Real offset) { return std::optional(run(one, offset, seconds)); });
 }
 
 void print_head(const char* first) {
@@ -131,42 +207,88 @@ std::string start_name(Real above) {
     return above == 0 ? "on the plane" : number("%.0f mm above", 1e3 * above);
 }
 
+void print_starts(const Subject& subject, const MaterialSettings& material, const std::vector<Real>& moduli,
+                  Real seconds) {
+    print_head("E, start");
+    for (const Real modulus : moduli)
+        for (const Real above : {0.0, 0.003}) {
+            Case one{.subject = subject, .material = material, .above = above};
+            one.material.young_modulus = modulus;
+            print_row(number("%.0e, ", modulus) + start_name(above), one, seconds);
+        }
+}
+
+void print_peers(Real seconds, const std::vector<profiling::Peer>& peers, const std::filesystem::path& folder) {
+    print_head("E, engine, step");
+    for (const Real modulus : {1e5, 1e6, 1e8}) {
+        Case one{.subject = block(), .above = 0.003};
+        one.material.young_modulus = modulus;
+        print_row(number("%.0e, ", modulus) + "Skerry, its own", one, seconds);
+        for (const profiling::Peer& peer : peers)
+            for (const Real step : {2e-3, 2e-4}) {
+                if (peer.explicit_step) continue;
+                const std::string head =
+                    number("%.0e, ", modulus) + peer.engine + ", " + peer.variant + number(", %g s", step);
+                print_row(head, one.subject, seconds,
+                          [&](Real offset) { return run(one, offset, seconds, peer, step, folder); });
+            }
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"A block on a slope with default settings: what it does below and above the critical angle."};
+    CLI::App app{"A body on a slope with default settings: what it does below and above the critical angle."};
     Real seconds = 2;
-    std::vector<Real> moduli{1e4, 1e5, 1e6, 1e8, 1e10};
+    std::vector<Real> moduli{1e4, 1e5, 1e6, 1e8, 1e10, 1e11};
+    std::string mesh_file, python = "python3";
+    std::filesystem::path folder = "build/first_scene";
     app.add_option("--seconds", seconds, "Simulated seconds of a run")
         ->check(CLI::Range(1.0, 100.0))
         ->capture_default_str();
     app.add_option("--moduli", moduli, "Young's moduli, Pa")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("--mesh", mesh_file, "This mesh alone, as it lies in its file")->check(CLI::ExistingFile);
+    app.add_option("--python", python, "Python that may have MuJoCo")->capture_default_str();
+    app.add_option("--out", folder, "Folder for what is handed to other engines")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     try {
-        for (const auto& [loss_factor, viscosity] : {std::pair{0.0, 0.0}, {0.05, 0.06}, {0.2, 0.06}}) {
-            std::printf("\n## Loss factor %g, bulk viscosity %g%s\n\n", loss_factor, viscosity,
-                        loss_factor == 0 ? " (default)" : "");
-            print_head("E, start");
-            for (const Real modulus : moduli)
-                for (const Real above : {0.0, 0.003})
-                    print_row(number("%.0e, ", modulus) + start_name(above),
-                              {.young_modulus = modulus,
-                               .above = above,
-                               .loss_factor = loss_factor,
-                               .bulk_viscosity = viscosity},
-                              seconds);
+        const MaterialSettings usual{.poisson_ratio = 0.3};
+        if (!mesh_file.empty()) {
+            print_starts(standing(mesh::read(mesh_file)), usual, moduli, seconds);
+            return 0;
         }
-        std::printf(
-            "\n## Is it the mesh, or the step?\n\nE = 1e5, loss factor 0.05, bulk viscosity 0.06, started on the "
-            "plane.\n\n");
+        const auto section = [](const std::string& title) { std::printf("\n## %s\n\n", title.c_str()); };
+        const auto with_losses = [&](Real loss_factor, Real viscosity) {
+            MaterialSettings material = usual;
+            material.loss_factor = loss_factor;
+            material.bulk_viscosity = viscosity;
+            return material;
+        };
+        section("A block, default settings");
+        print_starts(block(), usual, moduli, seconds);
+        section("A skittle on its foot, friction 0.1");
+        print_starts(standing(mesh::skittle(0.38, 3), 0.1), usual, {1e5, 1e6, 1e8, 1e10}, seconds);
+        section("A ball, which rolls: errors of the acceleration in all columns");
+        Subject ball = standing(mesh::ball(0.1, 4));
+        ball.rolls = true;
+        print_starts(ball, usual, {1e5, 1e6, 1e8, 1e10}, seconds);
+        section("The block without losses");
+        print_starts(block(), with_losses(0, 0), moduli, seconds);
+        section("The block with the losses of a soft solid: loss factor 0.2");
+        print_starts(block(), with_losses(0.2, 0.06), moduli, seconds);
+        section("The block beside other engines, from 3 mm above");
+        std::filesystem::create_directories(folder);
+        const auto peers = profiling::find_peers(std::filesystem::path(argv[0]).parent_path(), python);
+        print_peers(seconds, peers, folder);
+        section("Is it the mesh, or the step? The block at 1e5 Pa, from the plane");
         print_head("mesh, step");
         for (const int cells : {1, 2, 4})
             print_row(std::to_string(4 * cells) + " x " + std::to_string(4 * cells) + " x " +
                           std::to_string(2 * cells) + ", stable",
-                      {.loss_factor = 0.05, .bulk_viscosity = 0.06, .cells = cells}, seconds);
+                      Case{.subject = block(cells)}, seconds);
         for (const Real safety : {0.5, 0.1})
             print_row("4 x 4 x 2, stable / " + number("%.0f", 1 / safety),
-                      {.loss_factor = 0.05, .bulk_viscosity = 0.06, .step_safety = safety}, seconds);
+                      Case{.subject = block(), .step_safety = safety}, seconds);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;

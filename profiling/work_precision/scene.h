@@ -63,6 +63,9 @@ PrecisionScene make_creep_scene(Real fraction);
 inline constexpr Real creep_settling = 2.0;  // s: in one second what the pull has strained has died away to 1e-9 m only
 inline constexpr Real creep_measured = 1.0;  // s
 
+/// A quarter of each tetrahedron to each of its nodes.
+void set_masses(PrecisionScene& scene);
+
 /// Moves every body by a random vector of up to `amplitude` (m) a component; the same seed gives the same vectors.
 void perturb(PrecisionScene& scene, std::uint32_t seed, Real amplitude);
 

@@ -22,18 +22,9 @@ PrecisionBody make_body(Mesh mesh, const Vec3& position, Real base, const Vec3& 
     return body;
 }
 
-void set_masses(PrecisionScene& scene) {
-    for (PrecisionBody& body : scene.bodies) {
-        const std::vector<Vec3>& x = body.mesh.nodes;
-        body.mass.assign(x.size(), 0);
-        for (const auto& t : body.mesh.tetrahedra) {
-            const auto at = [&](int k) -> const Vec3& {
-                return x[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
-            };
-            const Real volume = (at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0)) / 6;
-            for (const Index n : t) body.mass[static_cast<std::size_t>(n)] += scene.material.density * volume / 4;
-        }
-    }
+/// Losses of the peers' materials are others than ours.
+void lose_nothing(MaterialSettings& material) {
+    material.loss_factor = material.bulk_viscosity = 0;
 }
 
 /// A soft ball falls, is pressed flat, leaves the floor and flies up again.
@@ -137,6 +128,20 @@ PrecisionScene pile(int level) {
 
 }  // namespace
 
+void set_masses(PrecisionScene& scene) {
+    for (PrecisionBody& body : scene.bodies) {
+        const std::vector<Vec3>& x = body.mesh.nodes;
+        body.mass.assign(x.size(), 0);
+        for (const auto& t : body.mesh.tetrahedra) {
+            const auto at = [&](int k) -> const Vec3& {
+                return x[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+            };
+            const Real volume = (at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0)) / 6;
+            for (const Index n : t) body.mass[static_cast<std::size_t>(n)] += scene.material.density * volume / 4;
+        }
+    }
+}
+
 std::size_t PrecisionScene::nodes() const {
     std::size_t count = 0;
     for (const PrecisionBody& body : bodies) count += body.mesh.nodes.size();
@@ -173,6 +178,7 @@ PrecisionScene make_scene(std::string_view name, int level) {
     scene.name = name;
     scene.level = level;
     scene.material.model = MaterialModel::corotational;
+    lose_nothing(scene.material);
     set_masses(scene);
     return scene;
 }

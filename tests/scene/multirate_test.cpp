@@ -37,7 +37,8 @@ World sliver_world(bool multirate, MaterialModel model = MaterialModel::stable_n
     settings.backend = backend;
     settings.threads = threads;
     World world(settings);
-    const auto material = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .model = model});
+    const auto material =
+        world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3, .model = model}));
     stir(world, world.add_body(sliver_mesh(), {.material = material}), sliver_mesh());
     return world;
 }
@@ -50,8 +51,10 @@ World stiff_on_soft(bool multirate, Backend backend = Backend::automatic, int th
     settings.backend = backend;
     settings.threads = threads;
     World world(settings);
-    const auto soft = world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2});
-    const auto stiff = world.add_material({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2});
+    const auto soft =
+        world.add_material(test::lossless({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
+    const auto stiff =
+        world.add_material(test::lossless({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
     world.add_collider(Plane{});
     world.add_body(mesh::box({0.2, 0.2, 0.1}, {6, 6, 3}),
                    {.material = soft, .position = {0, 0, 0.052}, .name = "soft"});
@@ -116,8 +119,8 @@ TEST_CASE("without slivers to care for, multirate changes no bit", "[scene]") {
         Settings settings;
         settings.multirate = multirate;
         World world(settings);
-        const auto material =
-            world.add_material({.young_modulus = 1e5, .friction = 0.5, .model = MaterialModel::corotational});
+        const auto material = world.add_material(
+            test::lossless({.young_modulus = 1e5, .friction = 0.5, .model = MaterialModel::corotational}));
         world.add_collider(Plane{});
         const auto body =
             world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = material, .position = {0, 0, 0.06}});
@@ -139,7 +142,7 @@ TEST_CASE("multirate on slivers converges with order 2, with the error of a mesh
         settings.step_safety = safety;
         settings.integrator = integrator;
         World world(settings);
-        const auto material = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3});
+        const auto material = world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3}));
         const auto body = world.add_body(mesh, {.material = material});
         stir(world, body, mesh);
         REQUIRE(world.advance(0.02).ok());
@@ -235,7 +238,7 @@ TEST_CASE("bodies come and go between steps of many levels", "[scene]") {
     World world = sliver_world(true);
     const auto first = world.bodies()[0];
     REQUIRE(world.advance(0.003).ok());
-    const auto material = world.add_material({.young_modulus = 1e6});
+    const auto material = world.add_material(test::lossless({.young_modulus = 1e6}));
     const auto second =
         world.add_body(sliver_mesh(), {.material = material, .position = {0.5, 0, 0}, .velocity = {1, 0, 0}});
     REQUIRE(world.advance(0.003).ok());

@@ -17,6 +17,12 @@ inline Vec3 tilted_gravity(Real degrees) {
     return standard_gravity * Vec3(std::sin(a), 0, -std::cos(a));
 }
 
+/// Loses nothing: what has energies, frequencies and orders in closed form.
+inline MaterialSettings lossless(MaterialSettings material) {
+    material.loss_factor = material.bulk_viscosity = 0;
+    return material;
+}
+
 /// Contacts solved until the error of the step is all that is left.
 inline Settings accurate(const Vec3& gravity = {0, 0, -standard_gravity}, Real tolerance = 1e-8) {
     Settings settings;

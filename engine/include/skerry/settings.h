@@ -28,9 +28,9 @@ struct MaterialSettings {
     // Tangent of the angle by which strain is behind stress, at every frequency that a body of this material has: a
     // free vibration loses about 2 pi times this of its energy in a period. Rubber has 0.05 to 0.2, soft tissue 0.1 to
     // 0.3, wood 0.01, steel below 0.001. Makes the step a few per cent shorter (docs/methods/elasticity.md 6).
-    Real loss_factor = 0;  // from 0 to 0.3
+    Real loss_factor = 0.05;  // from 0 to 0.3
     // Damping ratio that an element has at its own highest frequency, where its volume changes.
-    Real bulk_viscosity = 0;  // from 0 to 1
+    Real bulk_viscosity = 0.06;  // from 0 to 1
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };
 

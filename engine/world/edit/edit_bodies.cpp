@@ -143,8 +143,8 @@ void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Rea
     const Real speed = std::sqrt(model.materials.young_modulus[material] / model.materials.constants[material].density);
     const Real lowest =
         lowest_frequency_estimate(part(model.nodes.position, nodes), part(model.nodes.mass, nodes), speed);
-    find_relaxation(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, lowest,
-                    step_times_frequency / step,
+    find_relaxation(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.position, model.nodes.mass,
+                    stiffness_sum, lowest, step_times_frequency / step,
                     {part(elements.relaxation_rate, blocks), part(elements.own_frequency, blocks),
                      part(elements.relaxing_share, blocks)});
 }

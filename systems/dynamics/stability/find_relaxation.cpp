@@ -29,12 +29,35 @@ Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const R
     return std::min(of_beam * thickness / length, of_ball) * speed / length;
 }
 
-void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                     std::span<const Real> mass, std::span<const Real> stiffness_sum, Real lowest, Real highest,
-                     const RelaxationOutputs& out) {
-    constexpr Real golden = 0.6180339887498949;  // multiples of it, less whole numbers, fill an interval evenly
+namespace {
+
+/// m, the edge of a cube as large as an element is on average.
+Real mean_size(std::span<const ElementLane> volume) {
+    Real sum = 0, count = 0;
+    for (const ElementLane& lanes : volume)
+        for (const Real v : lanes.lane) {
+            sum += v;
+            count += v > 0;
+        }
+    return count > 0 ? std::cbrt(sum / count) : 0;
+}
+
+/// A number from 0 to 1 for every place. Multiples of these three, less whole numbers, fill an interval evenly, along a
+/// row of elements as well as in a cloud of them (the roots of x^4 = x + 1, Roberts 2018).
+Real share_of_place(const Vec3& place) {
+    const Real sum = 0.8191725133961645 * place.x() + 0.6710436067037893 * place.y() + 0.5497004779019703 * place.z();
+    return sum + 0.38196601125 - std::floor(sum + 0.38196601125);
+}
+
+}  // namespace
+
+void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> rest_position,
+                     std::span<const Vec3> position, std::span<const Real> mass, std::span<const Real> stiffness_sum,
+                     Real lowest, Real highest, const RelaxationOutputs& out) {
     constexpr Real least_span = 100, largest_span = 1e4;
     const Real span = lowest > 0 ? std::clamp(rates_below * highest / lowest, least_span, largest_span) : largest_span;
+    const Real size = mean_size(
+        elements.volume.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size())));
     const Real8 one = Real8{} + 1.0;
     LaneQuaternion<Real8> q{one, {}, {}, {}};
     for (std::size_t i = 0; i < out.relaxation_rate.size(); ++i) {
@@ -42,8 +65,10 @@ void find_relaxation(const ElementInputs& elements, Range blocks, std::span<cons
         const Real8 squared =
             frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q);
         for (std::size_t l = 0; l < element_lanes; ++l) {
-            const Real place = golden * (static_cast<Real>(i * element_lanes + l) + 0.5);
-            out.relaxation_rate[i][l] = highest * std::pow(span, std::floor(place) - place);
+            Vec3 place = Vec3::Zero();
+            for (std::size_t a = 0; a < 4; ++a)
+                place += rest_position[static_cast<std::size_t>(elements.node[b][a][l])] / 4;
+            out.relaxation_rate[i][l] = highest * std::pow(span, -share_of_place(place / size));
             out.own_frequency[i][l] = std::sqrt(squared[l]);
         }
         const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];

@@ -23,9 +23,10 @@ struct RelaxationOutputs {
 /// Every element of a body has one rate at which its stress relaxes. Rates are dealt out evenly on a logarithmic scale
 /// between `highest`, the highest frequency of the body (1/s), and a twentieth of `lowest`, about its lowest, so that
 /// neighbours differ and any part of more than some elements has them all (coarse-grained memory variables, Day and
-/// Bradley 2001). `stiffness_sum` is that of the stable step. Sequential.
-void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                     std::span<const Real> mass, std::span<const Real> stiffness_sum, Real lowest, Real highest,
-                     const RelaxationOutputs& out);
+/// Bradley 2001). Which element gets which goes by its place in the shape at rest, so that the order of nodes and
+/// elements does not matter. `stiffness_sum` is that of the stable step. Sequential.
+void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> rest_position,
+                     std::span<const Vec3> position, std::span<const Real> mass, std::span<const Real> stiffness_sum,
+                     Real lowest, Real highest, const RelaxationOutputs& out);
 
 }  // namespace skerry

@@ -45,11 +45,11 @@ struct PointOverTriangle {
 };
 
 MaterialSettings bar_material() {
-    return {.young_modulus = modulus,
-            .poisson_ratio = 0,
-            .density = density,
-            .friction = 0,
-            .model = MaterialModel::linear};
+    return test::lossless({.young_modulus = modulus,
+                           .poisson_ratio = 0,
+                           .density = density,
+                           .friction = 0,
+                           .model = MaterialModel::linear});
 }
 
 Settings without_gravity() {

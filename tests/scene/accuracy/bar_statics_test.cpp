@@ -19,11 +19,11 @@ const Real c = std::sqrt(modulus / density);  // m/s
 constexpr std::array<Index, 3> bottom{0, 1, 2};
 
 MaterialSettings bar_material(Real damping = 0) {
-    return {.young_modulus = modulus,
-            .poisson_ratio = 0,
-            .density = density,
-            .damping = damping,
-            .model = MaterialModel::linear};
+    return test::lossless({.young_modulus = modulus,
+                           .poisson_ratio = 0,
+                           .density = density,
+                           .damping = damping,
+                           .model = MaterialModel::linear});
 }
 
 Settings weightless() {

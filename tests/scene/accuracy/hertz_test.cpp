@@ -18,11 +18,11 @@ const Real c = std::sqrt(modulus / density);                                    
 constexpr Real a = 0.01, shell = a / 50;
 
 MaterialSettings hertz_material() {
-    return {.young_modulus = modulus,
-            .poisson_ratio = nu,
-            .density = density,
-            .friction = 0,
-            .model = MaterialModel::linear};
+    return test::lossless({.young_modulus = modulus,
+                           .poisson_ratio = nu,
+                           .density = density,
+                           .friction = 0,
+                           .model = MaterialModel::linear});
 }
 
 Settings weightless() {

@@ -25,7 +25,7 @@ Positions hang(Real h, bool early) {
     Settings settings;
     settings.step_size = h;
     World world(settings);
-    const auto material = world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3});
+    const auto material = world.add_material(test::lossless({.young_modulus = 2e4, .poisson_ratio = 0.3}));
     const Mesh mesh = mesh::box({0.1, 0.1, 0.2}, {2, 2, 4});
     const auto body = world.add_body(mesh, {.material = material});
     std::vector<Index> top;
@@ -50,7 +50,8 @@ Positions bounce(Real h) {
     settings.tolerance = 1e-10;
     settings.max_iterations = 20000;
     World world(settings);
-    const auto material = world.add_material({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.3});
+    const auto material =
+        world.add_material(test::lossless({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.3}));
     world.add_collider(Plane{});
     const auto body = world.add_body(
         mesh::ball(0.05, 4),
@@ -66,8 +67,8 @@ Positions land_flat(Real h, Real friction = 0, const Vec3& velocity = {0, 0, -0.
     settings.integrator = Integrator::leapfrog;
     settings.step_size = h;
     World world(settings);
-    const auto material =
-        world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = friction});
+    const auto material = world.add_material(
+        test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = friction}));
     world.add_collider(Plane{});
     const auto body = world.add_body(
         mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
@@ -148,7 +149,7 @@ TEST_CASE("the Coulomb gap of every step is within the tolerance of the solver",
     settings.tolerance = tolerance;
     settings.max_iterations = 20000;
     World world(settings);
-    const auto material = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 4});
+    const auto material = world.add_material(test::lossless({.young_modulus = 3e4, .friction = 0.5, .damping = 4}));
     world.add_collider(Plane{});
     for (int i = 0; i < 6; ++i)
         world.add_body(

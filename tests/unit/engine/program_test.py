@@ -89,7 +89,7 @@ class ProgramTest(unittest.TestCase):
         self.assertNotIn("DOUBT", done.stdout)
 
     def test_a_run_that_is_not_to_be_relied_on_says_so(self):
-        stacked = dict(SCENE["bodies"][0], name="upper", position=[0.03, 0.02, 0.32])
+        stacked = dict(SCENE["bodies"][0], name="upper", position=[0.03, 0.02, 0.32], velocity=[0.5, 0.2, -2])
         scene = self.write("stack.json", dict(SCENE, bodies=[*SCENE["bodies"], stacked]))
         stats = self.folder / "stats.json"
         done = self.skerry("run", scene, "--tolerance", 1e-15, "--stats", stats)
