@@ -33,13 +33,15 @@ struct BodyTable {
     Column<Index> collider;  // row of ColliderTable of a kinematic body, else no_index
     Column<Range> nodes;
     Column<Range> node_blocks;
-    Column<Range> blocks;  // of ElementBlockTable
+    Column<Range> blocks;         // of ElementBlockTable
+    Column<Range> element_nodes;  // of ElementNodeTable
+    Column<Range> tetrahedron_blocks;
     Column<Range> triangles;
     Column<Range> edges;
     Column<Range> vertices;
     Column<Range> bvh_nodes;
     Column<Range> bvh_leaves;
-    Column<Index> element_count;
+    Column<Index> tetrahedron_count;
     Column<Index> pinned_count;     // nodes without freedom
     Column<Real> contact_distance;  // m, thickness of the contact shell; two bodies keep the mean of theirs
     Column<Real> mean_edge;         // m, of the surface at rest
@@ -59,7 +61,7 @@ struct BodyTable {
     Column<Real> displacement;  // m, greatest distance of a node from its displacement origin
     // m: since any earlier time no node has come further than the growth of travel plus twice the displacement then
     Column<Real> travel;
-    Column<Real> uninverted_until;  // m: the least of the body's element blocks
+    Column<Real> uninverted_until;  // m: the least of the body's tetrahedra
 
     /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines; displacement, travel and
     /// uninverted_until by ContactCache::forget_distances.
@@ -72,12 +74,14 @@ struct BodyTable {
         visit("nodes", nodes, ColumnRole::link);
         visit("node_blocks", node_blocks, ColumnRole::link);
         visit("blocks", blocks, ColumnRole::link);
+        visit("element_nodes", element_nodes, ColumnRole::link);
+        visit("tetrahedron_blocks", tetrahedron_blocks, ColumnRole::link);
         visit("triangles", triangles, ColumnRole::derived);
         visit("edges", edges, ColumnRole::derived);
         visit("vertices", vertices, ColumnRole::derived);
         visit("bvh_nodes", bvh_nodes, ColumnRole::derived);
         visit("bvh_leaves", bvh_leaves, ColumnRole::derived);
-        visit("element_count", element_count, ColumnRole::state);
+        visit("tetrahedron_count", tetrahedron_count, ColumnRole::state);
         visit("pinned_count", pinned_count, ColumnRole::state);
         visit("contact_distance", contact_distance, ColumnRole::state);
         visit("mean_edge", mean_edge, ColumnRole::state);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstring>
 
 #include "components/types.h"
 
@@ -25,14 +24,53 @@ struct alignas(sizeof(T) * W <= 64 ? sizeof(T) * W : 64) Lanes {
 /// gives for one Real.
 typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 
-inline Real8 load(const Lanes<Real, element_lanes>& from) {
-    Real8 to;
-    std::memcpy(&to, from.lane, sizeof to);
-    return to;
+/// Half of it.
+typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2)));
+
+// The same where other reals lie, at the address of any Real. Not memcpy: without 512-bit registers that becomes copies
+// of 16 bytes, which a load of 32 bytes right after has to wait for.
+typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
+typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
+
+/// What the kernel of the element forces works on: as many reals as a register has.
+#ifdef __AVX512F__
+using KernelReal = Real8;
+#else
+using KernelReal = Real4;
+#endif
+template <class T>
+inline constexpr std::size_t lanes_of = sizeof(T) / sizeof(Real);
+inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>;  // of a block
+
+[[gnu::always_inline]] inline Real4 half_at(const Real* from) {
+    return *reinterpret_cast<const Real4InMemory*>(from);
+}
+[[gnu::always_inline]] inline void store_half(const Real4& from, Real* to) {
+    *reinterpret_cast<Real4InMemory*>(to) = from;
 }
 
-inline void store(const Real8& from, Lanes<Real, element_lanes>& to) {
-    std::memcpy(to.lane, &from, sizeof from);
+[[gnu::always_inline]] inline Real8 load(const Lanes<Real, element_lanes>& from) {
+    return *reinterpret_cast<const Real8InMemory*>(from.lane);
+}
+
+[[gnu::always_inline]] inline void store(const Real8& from, Lanes<Real, element_lanes>& to) {
+    *reinterpret_cast<Real8InMemory*>(to.lane) = from;
+}
+
+/// Part `part` of the lanes of a block, for T = Real8 all of them.
+template <class T>
+[[gnu::always_inline]] inline T load_part(const Lanes<Real, element_lanes>& from, std::size_t part) {
+    if constexpr (lanes_of<T> == element_lanes)
+        return load(from);
+    else
+        return half_at(from.lane + part * lanes_of<T>);
+}
+template <class T>
+[[gnu::always_inline]] inline void store_part(const T& from, Lanes<Real, element_lanes>& to, std::size_t part) {
+    if constexpr (lanes_of<T> == element_lanes)
+        store(from, to);
+    else
+        store_half(from, to.lane + part * lanes_of<T>);
 }
 
 }  // namespace skerry

@@ -22,6 +22,16 @@ struct MaterialConstants {
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
 
+/// Which part of the stress an element gives: all of it, or what goes with one of Lame's constants alone.
+enum class ElementPart : std::uint8_t { whole, shear, volume };
+
+/// What goes with one of Lame's constants alone: the other is zero.
+inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
+    if (part == ElementPart::shear) material.lame_lambda = 0;
+    if (part == ElementPart::volume) material.shear_modulus = 0;
+    return material;
+}
+
 /// What a contact needs of a surface.
 struct SurfaceProperties {
     Real static_friction;

@@ -10,6 +10,11 @@
 namespace skerry {
 
 enum class MaterialModel { linear, corotational, stable_neo_hookean };
+/// What carries the stress of a body. linear: its tetrahedra, with constant strain each; they lock: in bending, and
+/// where volume hardly changes. edge_smoothed: its edges, with the mean strain of the tetrahedra around each.
+/// edge_node_smoothed: the same for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a
+/// Poisson ratio of 0.45, edge_node_smoothed above (docs/methods/elasticity.md 7).
+enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
 /// cone_convex is the associated law: every contact minimises a convex energy over the cone, and what slides also lifts
 /// off at mu times its speed. A solution is found whatever mu is, but it is another model: its Coulomb error is 1e-5 to
 /// 6e-2 on most problems, 2e-1 at the worst (docs/solvers.md). For comparison, and as the last resort where Coulomb's
@@ -34,6 +39,15 @@ struct EnumNames<MaterialModel> {
         {MaterialModel::linear, "linear"},
         {MaterialModel::corotational, "corotational"},
         {MaterialModel::stable_neo_hookean, "stable_neo_hookean"},
+    }};
+};
+template <>
+struct EnumNames<ElementKind> {
+    static constexpr std::array<std::pair<ElementKind, std::string_view>, 4> table{{
+        {ElementKind::linear, "linear"},
+        {ElementKind::smoothed, "smoothed"},
+        {ElementKind::edge_smoothed, "edge_smoothed"},
+        {ElementKind::edge_node_smoothed, "edge_node_smoothed"},
     }};
 };
 template <>

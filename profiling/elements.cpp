@@ -120,9 +120,10 @@ void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_
         end.push_back(std::min(n + nodes_per_block, count));
     }
     const std::vector<Index> of_body(begin.size(), 0);
-    predict_velocity(executor,
-                     {begin, end, of_body, body.corners.view(), body.elements.force, {}, body.mass, body.inverse_mass},
-                     body.velocity, 1e-6, body.force, velocity_next);
+    predict_velocity(
+        executor,
+        {begin, end, of_body, body.corners.view(), body.element_nodes.force, {}, body.mass, body.inverse_mass},
+        body.velocity, 1e-6, body.force, velocity_next);
 }
 
 void measure(Executor& executor, const test::TetMesh& mesh, const std::string& name, double bandwidth, double flops,
@@ -142,7 +143,7 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
         std::vector<Vec3> velocity_next = body.velocity;
         const double elements = median_seconds(repeats, [&](int r) {
             compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, 0, body.elements.rotation,
-                                   {.rotation = body.elements.rotation_next}, body.elements.force);
+                                   {.rotation = body.elements.rotation_next}, body.element_nodes.force);
             swap(body.elements.rotation, body.elements.rotation_next);
         });
         const double gather = median_seconds(repeats, [&](int) { kick(executor, body, velocity_next); });

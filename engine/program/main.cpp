@@ -95,6 +95,8 @@ void add_run(CLI::App& app, RunOptions& options) {
     add_number(command, "--tolerance", options.overrides.tolerance, "relative error of a region");
     add_number(command, "--relaxation", options.overrides.relaxation,
                "of the sweeps, below 2; above 1 is over-relaxation");
+    add_choice<ElementKind>(command, "--element", options.overrides.element,
+                            "what carries the stress of all bodies; smoothed bends as it should on coarse meshes");
     add_choice<ContactRegions>(command, "--contact-regions", options.overrides.contact_regions,
                                "how contacts are grouped");
     command.add_flag("--quiet", options.quiet, "no progress, no summary");

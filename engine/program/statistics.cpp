@@ -39,6 +39,7 @@ Json trust_of(const RunResult& result) {
           {"body", r.worst_volume_body},
           {"element", r.worst_volume_element},
           {"near_inversion", r.near_inversion},
+          {"folded", r.folded},
           {"inverted", r.inverted},
           {"inversions", r.inversions}}},
         {"doubts", doubts_of(result)},
@@ -74,6 +75,9 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     else if (r.near_inversion > 0)
         doubts.push_back(std::to_string(r.near_inversion) + " elements are near inversion, the worst in " +
                          r.worst_volume_body + ", element " + std::to_string(r.worst_volume_element));
+    if (r.folded > 0)
+        doubts.push_back(std::to_string(r.folded) + " smoothed elements are folded, some of them in " + r.folded_body +
+                         ", the worst at element " + std::to_string(r.folded_element));
     return doubts;
 }
 

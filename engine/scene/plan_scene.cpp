@@ -126,6 +126,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
+        body.settings.element = entry.element;
         body.settings.name = copies ? name + "_" + std::to_string(copy) : name;
         body.mesh = plan.meshes.size() - 1;
         body.material = material;
@@ -194,6 +195,8 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, plan);
+    if (overrides.element)
+        for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i));
     for (const ProbeEntry& probe : scene.probes) plan.probes.push_back(plan_probe(probe, plan));

@@ -85,6 +85,7 @@ struct BodyEntry {
     Vec3 angular_velocity = Vec3::Zero();
     std::optional<Real> contact_distance;
     bool self_contact = false;
+    ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;
     Place place;
 };

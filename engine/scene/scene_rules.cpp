@@ -61,6 +61,7 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                   .unit = "m",
                   .limits = at_least(0)})
             .key("self_contact", &BodyEntry::self_contact, {.meaning = "whether it touches itself; false by default"})
+            .key("element", &BodyEntry::element, {.meaning = "what carries its stress"})
             .key("pin", &BodyEntry::pin, {.meaning = "nodes that are held"})
             .at_most_one({"position", "positions"})
             .at_most_one({"positions", "repeat"});

@@ -73,12 +73,19 @@ void add_nodes(Hash& hash, Model& model, std::size_t body) {
 }
 
 void add_elements(Hash& hash, Model& model, std::size_t body) {
-    const Range blocks = model.bodies.blocks[body];
+    const Range tetrahedra = model.bodies.tetrahedron_blocks[body], blocks = model.bodies.blocks[body],
+                rows = model.bodies.element_nodes[body];
     const Index first_node = model.bodies.nodes[body].begin, row = static_cast<Index>(body);
+    add_state(hash, model.tetrahedra, tetrahedra);
+    for (Index t = tetrahedra.begin; t < tetrahedra.end; ++t)
+        for (const NodeLane& corner : model.tetrahedra.node[t])
+            for (Index node : corner.lane) add_row(hash, node - first_node);
+    add_state(hash, model.element_nodes, rows);
+    for (Index k = rows.begin; k < rows.end; ++k)
+        for (Index node : model.element_nodes.node[k].lane) add_row(hash, node - first_node);
     add_state(hash, model.elements, blocks);
     for (Index e = blocks.begin; e < blocks.end; ++e) {
-        for (const auto& corner : model.elements.node[e])
-            for (Index node : corner.lane) add_row(hash, node - first_node);
+        add_row(hash, model.elements.first[e] - rows.begin);
         add_row(hash, model.elements.body[e] - row);
         hash.add(slot_of(model.materials.slot, model.elements.material[e]));
     }

@@ -65,6 +65,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     append_body(state_->model, {.slot = handle.slot,
                                 .kind = BodyKind::deformable,
                                 .self_contact = body.self_contact,
+                                .element = body.element,
                                 .material = material,
                                 .collider = no_index,
                                 .contact_distance = body.contact_distance.value_or(-1),

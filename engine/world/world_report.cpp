@@ -1,11 +1,13 @@
 #include "engine/world/world_report.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
+#include "systems/dynamics/checks/volume_ratios.h"
 #include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
@@ -17,8 +19,7 @@ Energy energy_of(const Model& model, Real dissipated) {
         energy.kinetic += nodes.mass[n] * nodes.velocity[n].squaredNorm() / 2;
         energy.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
     }
-    energy.elastic =
-        elastic_energy(model.all_elements(), {0, static_cast<Index>(model.elements.node.size())}, nodes.position);
+    energy.elastic = elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
     energy.dissipated = dissipated;
     return energy;
 }
@@ -29,6 +30,24 @@ std::string short_text(Real value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", value);
     return text;
+}
+
+/// Counts smoothed elements that are pressed together though no tetrahedron needs to be.
+void note_folds(const Model& model, std::size_t body, WorldReport& report) {
+    constexpr Real folded = 0.2;
+    const Range blocks = model.bodies.blocks[body];
+    const ElementInputs elements = model.all_elements();
+    const auto of_body =
+        elements.count.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size()));
+    if (std::ranges::all_of(of_body, [](Index count) { return count == 4; })) return;  // tetrahedra
+    const VolumeRatios ratios = element_volume_ratios(elements, blocks, model.nodes.position, folded);
+    if (ratios.near_inversion == 0) return;
+    if (report.folded == 0) {
+        const Index place = ratios.item - blocks.begin * static_cast<Index>(element_lanes);
+        report.folded_body = model.body_records[body].name;
+        report.folded_element = model.body_records[body].element_tetrahedra[static_cast<std::size_t>(place)].front();
+    }
+    report.folded += ratios.near_inversion;
 }
 
 }  // namespace
@@ -88,7 +107,7 @@ WorldReport World::report() const {
     for (std::uint8_t asleep : world.model.bodies.asleep) report.asleep += asleep != 0;
     report.colliders = world.model.colliders.slot.size();
     report.nodes = world.model.nodes.position.size();
-    for (Index count : world.model.bodies.element_count) report.elements += static_cast<std::size_t>(count);
+    for (Index count : world.model.bodies.tetrahedron_count) report.elements += static_cast<std::size_t>(count);
     Index stiffest = no_index;
     report.stable_step = skerry::stable_step(world.model.bodies, &stiffest);
     if (stiffest != no_index)
@@ -120,15 +139,17 @@ WorldReport World::report() const {
         report.angular_momentum += world.model.nodes.position[n].cross(momentum);
     }
     for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b) {
-        if (world.model.bodies.element_count[b] == 0) continue;
+        if (world.model.bodies.tetrahedron_count[b] == 0) continue;
         const VolumeRatios ratios =
-            measure_volume_ratios(world.model.all_elements(), world.model.bodies.blocks[b], world.model.nodes.position);
+            tetrahedron_volume_ratios(world.model.tetrahedra.node, world.model.tetrahedra.volume,
+                                      world.model.bodies.tetrahedron_blocks[b], world.model.nodes.position);
         report.near_inversion += ratios.near_inversion;
         report.inverted += ratios.inverted;
+        note_folds(world.model, b, report);
         if (ratios.smallest >= report.worst_volume_ratio) continue;
         report.worst_volume_ratio = ratios.smallest;
         report.worst_volume_body = world.model.body_records[b].name;
-        report.worst_volume_element = world.model.user_element(b, ratios.element);
+        report.worst_volume_element = world.model.user_tetrahedron(b, ratios.item);
     }
     const Balance balance = checked_balance(world.model, lag_between_steps(world), world.record.balance);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };

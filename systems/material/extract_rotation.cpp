@@ -83,8 +83,9 @@ std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& s
     return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start) {
-    for (int l = 0; l < element_lanes; ++l) {
+template <class T>
+void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& start) {
+    for (int l = 0; l < static_cast<int>(lanes_of<T>); ++l) {
         if (volume[l] == 0) continue;
         const std::array<Real, 4> q = nearest_rotation(lane_of(F, l), {start.w[l], start.x[l], start.y[l], start.z[l]});
         start.w[l] = q[0];
@@ -93,5 +94,7 @@ void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaterni
         start.z[l] = q[3];
     }
 }
+template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);
+template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
 }  // namespace skerry

@@ -65,27 +65,33 @@ template <class T>
 std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start);
 
 /// The same in all lanes, from `start`; a lane without volume keeps its own. Out of line and slow: rarely needed.
-void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
+template <class T>
+void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& start);
+extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);
+extern template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
 /// The rotations nearest to F in all lanes, started from q. Lanes without volume keep theirs.
-[[gnu::always_inline]] inline void extract_rotation(const LaneMat3<Real8>& F, const Real8& volume,
-                                                    LaneQuaternion<Real8>& q) {
+template <class T>
+[[gnu::always_inline]] inline void extract_rotation(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& q) {
     constexpr int max_passes = 4;  // from a warm start two are enough; what needs more is solved lane by lane
-    const LaneQuaternion<Real8> start = q;
+    const LaneQuaternion<T> start = q;
     for (int pass = 0; pass < max_passes; ++pass)
         if (all(turn_towards(F, q) | (volume == 0.0))) return;
     q = start;
     solve_rotations(F, volume, q);
 }
 
-inline LaneQuaternion<Real8> load(const ElementRotation& from) {
-    return {load(from[0]), load(from[1]), load(from[2]), load(from[3])};
+template <class T>
+LaneQuaternion<T> load_part(const ElementRotation& from, std::size_t part) {
+    return {load_part<T>(from[0], part), load_part<T>(from[1], part), load_part<T>(from[2], part),
+            load_part<T>(from[3], part)};
 }
-inline void store(const LaneQuaternion<Real8>& from, ElementRotation& to) {
-    store(from.w, to[0]);
-    store(from.x, to[1]);
-    store(from.y, to[2]);
-    store(from.z, to[3]);
+template <class T>
+void store_part(const LaneQuaternion<T>& from, ElementRotation& to, std::size_t part) {
+    store_part(from.w, to[0], part);
+    store_part(from.x, to[1], part);
+    store_part(from.y, to[2], part);
+    store_part(from.z, to[3], part);
 }
 
 }  // namespace skerry

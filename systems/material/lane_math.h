@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "components/lanes.h"
 #include "components/types.h"
@@ -14,14 +13,13 @@ namespace skerry {
 inline Real square_root(Real x) {
     return std::sqrt(x);
 }
-inline Real8 square_root(const Real8& x) {
-    alignas(sizeof(Real8)) Real lane[element_lanes];
-    std::memcpy(lane, &x, sizeof x);
+template <class T>
+requires(lanes_of<T> > 1) [[gnu::always_inline]] inline T square_root(const T& x) {
+    Lanes<Real, element_lanes> root;
+    store_part(x, root, 0);
 #pragma omp simd
-    for (int l = 0; l < element_lanes; ++l) lane[l] = std::sqrt(lane[l]);
-    Real8 root;
-    std::memcpy(&root, lane, sizeof root);
-    return root;
+    for (std::size_t l = 0; l < lanes_of<T>; ++l) root.lane[l] = std::sqrt(root.lane[l]);
+    return load_part<T>(root, 0);
 }
 
 /// log(1 + x). Lane by lane, so that a lane has the bits of its element alone: energies are reported, not stepped with.
@@ -41,7 +39,7 @@ inline bool all(bool mask) {
 template <class Mask>
 bool all(const Mask& mask) {
     auto both = mask[0];
-    for (int l = 1; l < element_lanes; ++l) both &= mask[l];
+    for (std::size_t l = 1; l < lanes_of<Mask>; ++l) both &= mask[l];
     return both != 0;
 }
 
@@ -52,23 +50,23 @@ struct LaneVec3 {
 };
 
 template <class T>
-LaneVec3<T> operator+(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+[[gnu::always_inline]] inline LaneVec3<T> operator+(const LaneVec3<T>& a, const LaneVec3<T>& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <class T>
-LaneVec3<T> operator-(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+[[gnu::always_inline]] inline LaneVec3<T> operator-(const LaneVec3<T>& a, const LaneVec3<T>& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class S, class T>
-LaneVec3<T> operator*(const S& s, const LaneVec3<T>& a) {
+[[gnu::always_inline]] inline LaneVec3<T> operator*(const S& s, const LaneVec3<T>& a) {
     return {s * a.x, s * a.y, s * a.z};
 }
 template <class T>
-T dot(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+[[gnu::always_inline]] inline T dot(const LaneVec3<T>& a, const LaneVec3<T>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 template <class T>
-LaneVec3<T> cross(const LaneVec3<T>& a, const LaneVec3<T>& b) {
+[[gnu::always_inline]] inline LaneVec3<T> cross(const LaneVec3<T>& a, const LaneVec3<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
@@ -96,7 +94,7 @@ template <class T>
     return b.x * a.c0 + b.y * a.c1 + b.z * a.c2;
 }
 template <class T>
-LaneMat3<T> multiply(const LaneMat3<T>& a, const LaneMat3<T>& b) {
+[[gnu::always_inline]] inline LaneMat3<T> multiply(const LaneMat3<T>& a, const LaneMat3<T>& b) {
     return {multiply(a, b.c0), multiply(a, b.c1), multiply(a, b.c2)};
 }
 template <class T>
@@ -117,7 +115,8 @@ template <class T>
 }
 
 /// One lane as a plain matrix, and back.
-inline Mat3 lane_of(const LaneMat3<Real8>& a, int l) {
+template <class T>
+Mat3 lane_of(const LaneMat3<T>& a, int l) {
     Mat3 m;
     m << a.c0.x[l], a.c1.x[l], a.c2.x[l], a.c0.y[l], a.c1.y[l], a.c2.y[l], a.c0.z[l], a.c1.z[l], a.c2.z[l];
     return m;

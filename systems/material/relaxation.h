@@ -102,10 +102,11 @@ template <class T>
     return S;
 }
 
-inline ViscousStretch<Real8> viscous_stretch(const LaneSymmetric<Real8>& strain, const ElementStrain& forgotten) {
-    const LaneSymmetric<Real8> old{load(forgotten[0]), load(forgotten[1]), load(forgotten[2]),
-                                   load(forgotten[3]), load(forgotten[4]), load(forgotten[5])};
-    return {strain - old, strain.trace() - load(forgotten[6])};
+template <class T>
+[[gnu::always_inline]] inline ViscousStretch<T> viscous_stretch(const LaneSymmetric<T>& strain,
+                                                                const ElementStrain& forgotten, std::size_t part = 0) {
+    const auto old = [&](std::size_t i) { return load_part<T>(forgotten[i], part); };
+    return {strain - LaneSymmetric<T>{old(0), old(1), old(2), old(3), old(4), old(5)}, strain.trace() - old(6)};
 }
 
 }  // namespace skerry

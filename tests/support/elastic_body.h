@@ -17,12 +17,15 @@ namespace skerry::test {
 struct ElasticBody {
     std::vector<Vec3> position, velocity, load, force;
     std::vector<Real> mass, inverse_mass;
+    TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
+    ElementNodeTable element_nodes;
     Range blocks;
     Ragged<Index> corners;
     Column<MaterialConstants> constants;
 
-    ElasticBody(const TetMesh& mesh, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity()) {
+    ElasticBody(const TetMesh& mesh, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
+                ElementKind kind = ElementKind::linear) {
         const std::size_t n = mesh.nodes.size();
         for (const Vec3& x : mesh.nodes) position.push_back(rotation * x);
         velocity.assign(n, Vec3::Zero());
@@ -30,17 +33,24 @@ struct ElasticBody {
         force.assign(n, Vec3::Zero());
         mass.assign(n, 0);
         constants.push_back(material);
-        blocks = append_elements(mesh.tetrahedra, mesh.nodes, 0, 0, 0, rotation, elements);
+        append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
+        blocks = append_elements(elements_of({mesh.tetrahedra, mesh.nodes, rotation}, kind), {}, 0, 0, 0, elements,
+                                 element_nodes)
+                     .blocks;
         add_lumped_mass(mesh.tetrahedra, mesh.nodes, material.density, mass);
         for (Real m : mass) inverse_mass.push_back(1 / m);
-        build_corners(elements.node, elements.volume, n, corners);
+        build_corners(elements, element_nodes, n, corners);
     }
 
     ElementInputs inputs() const {
-        return {.node = elements.node,
-                .inverse_rest = elements.inverse_rest,
+        return {.first = elements.first,
+                .count = elements.count,
+                .node = element_nodes.node,
+                .gradient = element_nodes.gradient,
                 .volume = elements.volume,
+                .mass_share = elements.mass_share,
                 .material = elements.material,
+                .part = elements.part,
                 .constants = constants,
                 .relaxation_rate = elements.relaxation_rate,
                 .own_frequency = elements.own_frequency,
@@ -53,10 +63,10 @@ struct ElasticBody {
     Real compute_elements(Executor& executor, Real h = 0) {
         return compute_element_forces(executor, inputs(), position, velocity, h, elements.rotation,
                                       {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
-                                      elements.force);
+                                      element_nodes.force);
     }
     void gather(const Vec3& gravity = Vec3::Zero()) {
-        gather_node_forces(corners.view(), elements.force, mass, gravity, load, force);
+        gather_node_forces(corners.view(), element_nodes.force, mass, gravity, load, force);
     }
     void compute_forces(Executor& executor, const Vec3& gravity = Vec3::Zero()) {
         compute_elements(executor);
@@ -64,18 +74,35 @@ struct ElasticBody {
         swap(elements.rotation, elements.rotation_next);
     }
 
+    /// Number of nodes, and node and force k, of an element.
+    std::size_t node_count(std::size_t element) const {
+        return static_cast<std::size_t>(elements.count[element / element_lanes]);
+    }
+    std::size_t node(std::size_t element, std::size_t k) const {
+        return static_cast<std::size_t>(element_nodes.node[row(element) + k][element % element_lanes]);
+    }
+    Vec3& element_force(std::size_t element, std::size_t k) {
+        return element_nodes.force[row(element) + k][element % element_lanes];
+    }
+    Vec3 gradient(std::size_t element, std::size_t k) const {
+        const ElementGradient& g = element_nodes.gradient[row(element) + k];
+        const std::size_t l = element % element_lanes;
+        return {g[0][l], g[1][l], g[2][l]};
+    }
+
     /// F of one element by the textbook, for comparison with the kernels.
     Mat3 deformation(std::size_t element) const {
-        const std::size_t b = element / element_lanes, l = element % element_lanes;
-        const auto at = [&](std::size_t a) -> const Vec3& {
-            return position[static_cast<std::size_t>(elements.node[b][a][l])];
-        };
-        Mat3 Ds, B;
-        Ds << at(1) - at(0), at(2) - at(0), at(3) - at(0);
-        for (std::size_t i = 0; i < 9; ++i) B.data()[i] = elements.inverse_rest[b][i][l];
-        return Ds * B;
+        Mat3 F = Mat3::Zero();
+        for (std::size_t k = 0; k < node_count(element); ++k)
+            F += position[node(element, k)] * gradient(element, k).transpose();
+        return F;
     }
     Real volume(std::size_t element) const { return elements.volume[element / element_lanes][element % element_lanes]; }
+
+private:
+    std::size_t row(std::size_t element) const {
+        return static_cast<std::size_t>(elements.first[element / element_lanes]);
+    }
 };
 
 }  // namespace skerry::test

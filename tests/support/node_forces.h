@@ -14,10 +14,9 @@ inline void gather_node_forces(RaggedView<Index> corners, std::span<const Elemen
                                std::span<Vec3> force) {
     for (std::size_t n = 0; n < force.size(); ++n) {
         Vec3 sum = Vec3::Zero();
-        for (const Index corner : corners[n]) {
-            const auto e = static_cast<std::size_t>(corner / 4);
-            sum += element_force[e / element_lanes][e % element_lanes][static_cast<std::size_t>(corner % 4)];
-        }
+        for (const Index corner : corners[n])
+            sum += element_force[static_cast<std::size_t>(corner) / element_lanes]
+                                [static_cast<std::size_t>(corner) % element_lanes];
         force[n] = sum + mass[n] * gravity + load[n];
     }
 }

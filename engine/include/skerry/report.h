@@ -150,7 +150,12 @@ struct WorldReport : RunCounters {
     std::string worst_volume_body;
     Index worst_volume_element = -1;  // its place in the mesh of that body
     Index near_inversion = 0;         // elements whose det F is below 0.1
-    Index inverted = 0;               // elements whose det F is below 0
+    // Smoothed elements below a fifth of their volume: tetrahedra around an edge that have folded against each other
+    // can stay so, each of them sound. A body with some, and a tetrahedron of its worst.
+    Index folded = 0;
+    std::string folded_body;
+    Index folded_element = -1;
+    Index inverted = 0;  // elements whose det F is below 0
 };
 
 }  // namespace skerry

@@ -20,6 +20,7 @@ struct SceneOverrides {
     std::optional<Real> tolerance{};
     std::optional<Real> relaxation{};
     std::optional<Real> step_size{};
+    std::optional<ElementKind> element{};  // of all bodies
 };
 
 /// A part of a body whose contacts a run reports, such as the feet of a table.

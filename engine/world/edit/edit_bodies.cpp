@@ -102,51 +102,65 @@ void erase_rows(auto& table, Range gone) {
     });
 }
 
-/// Sorts the elements of a new body by level, so that blocks have one level; their order within a level stays. Returns
-/// which tetrahedron element e is: order[e]; empty while they stand in the order of the mesh.
-std::vector<Index> sort_by_level(Model& model, const NewBody& body, Range blocks, Index first_node, Index row) {
+/// A new body as the tables have it: rows, and which element of the list stands at each place of its blocks.
+struct BodyRows {
+    Index row;
+    Range nodes, tetrahedra;
+    AppendedElements elements;
+};
+
+auto rows_of(auto& column, Range rows) {
+    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
+}
+
+/// Elements by level, so that blocks have one level.
+void sort_by_level(Model& model, const NewBody& body, const ElementList& list, BodyRows& rows) {
     Column<Real> stiffness_sum;
     stiffness_sum.resize(model.nodes.position.size());
-    std::vector<std::uint8_t> level(static_cast<std::size_t>(blocks.size()) * element_lanes);
+    const Range blocks = rows.elements.blocks;
+    std::vector<std::uint8_t> at_place(rows.elements.element.size()), level(list.size());
     const ElementInputs elements = model.all_elements();
     const Real step = stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
-    find_element_levels(elements, blocks, model.nodes.position, model.nodes.mass, step, stiffness_sum, level);
-    level.resize(body.tetrahedra.size());
-    if (std::all_of(level.begin(), level.end(), [](std::uint8_t l) { return l == 0; })) return {};
+    find_element_levels(elements, blocks, model.nodes.position, model.nodes.mass, step, stiffness_sum, at_place);
+    for (std::size_t place = 0; place < at_place.size(); ++place)
+        if (const Index e = rows.elements.element[place]; e != no_index)
+            level[static_cast<std::size_t>(e)] = at_place[place];
+    if (std::all_of(level.begin(), level.end(), [](std::uint8_t l) { return l == 0; })) return;
 
-    std::vector<Index> order(level.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-        return level[static_cast<std::size_t>(a)] < level[static_cast<std::size_t>(b)];
-    });
-    std::vector<std::array<Index, 4>> sorted;
-    sorted.reserve(order.size());
-    for (Index t : order) sorted.push_back(body.tetrahedra[static_cast<std::size_t>(t)]);
+    erase_rows(model.element_nodes, rows.elements.nodes);
     erase_rows(model.elements, blocks);
-    append_elements(sorted, body.nodes, first_node, row, body.material, body.rotation, model.elements);
-    for (Index b = blocks.begin; b < blocks.end; ++b)  // the first lane has the lowest level
-        model.elements.level[static_cast<std::size_t>(b)] =
-            level[static_cast<std::size_t>(order[static_cast<std::size_t>(b - blocks.begin) * element_lanes])];
-    const auto first = static_cast<std::size_t>(blocks.begin), count = static_cast<std::size_t>(blocks.size());
-    find_viscous_times(model.elements.level.span().subspan(first, count), step,
-                       model.elements.viscous_time.span().subspan(first, count));
-    return order;
+    rows.elements =
+        append_elements(list, level, rows.nodes.begin, rows.row, body.material, model.elements, model.element_nodes);
+    find_viscous_times(rows_of(model.elements.level, rows.elements.blocks), step,
+                       rows_of(model.elements.viscous_time, rows.elements.blocks));
+}
+
+/// The tetrahedra that the element at each place covers.
+Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index> element_at) {
+    Ragged<Index> covered;
+    covered.offset.push_back(0);
+    for (const Index e : element_at) {
+        if (e != no_index) {
+            const auto at = static_cast<std::size_t>(e);
+            for (std::size_t i = list.first_tetrahedron[at]; i < list.first_tetrahedron[at + 1]; ++i)
+                covered.item.push_back(list.tetrahedron[i]);
+        }
+        covered.offset.push_back(static_cast<Index>(covered.item.size()));
+    }
+    return covered;
 }
 
 /// How the elements of a new body relax, whose stable step would be `step` (s) if they did not.
 void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real step) {
     ElementBlockTable& elements = model.elements;
-    const auto part = [](auto& column, Range rows) {
-        return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-    };
     const auto material = static_cast<std::size_t>(elements.material[static_cast<std::size_t>(blocks.begin)]);
     const Real speed = std::sqrt(model.materials.young_modulus[material] / model.materials.constants[material].density);
     const Real lowest =
-        lowest_frequency_estimate(part(model.nodes.position, nodes), part(model.nodes.mass, nodes), speed);
+        lowest_frequency_estimate(rows_of(model.nodes.position, nodes), rows_of(model.nodes.mass, nodes), speed);
     find_relaxation(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.position, model.nodes.mass,
                     stiffness_sum, lowest, step_times_frequency / step,
-                    {part(elements.relaxation_rate, blocks), part(elements.own_frequency, blocks),
-                     part(elements.relaxing_share, blocks)});
+                    {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
+                     rows_of(elements.relaxing_share, blocks)});
 }
 
 /// The triangles that the user gave, or the boundary of the tetrahedra; local nodes.
@@ -167,18 +181,24 @@ void shift(Range& range, Range gone) {
 
 /// Renumbers everything that points behind the rows that one body had.
 struct Renumber {
-    Range nodes, node_blocks, blocks, triangles, edges, vertices, vertex_triangles, bvh_nodes, bvh_leaves, bodies;
+    Range nodes, node_blocks, blocks, element_nodes, tetrahedron_blocks, triangles, edges, vertices, vertex_triangles,
+        bvh_nodes, bvh_leaves, bodies;
 
-    Range elements() const { return {blocks.begin * element_lanes, blocks.end * element_lanes}; }
+    Range tetrahedra() const {
+        return {tetrahedron_blocks.begin * element_lanes, tetrahedron_blocks.end * element_lanes};
+    }
 
     void apply(Model& model) const {
         for (Index& body : model.nodes.body) shift(body, bodies);
         for (Index& n : model.node_blocks.begin) shift(n, nodes);
         for (Index& n : model.node_blocks.end) shift(n, nodes);
         for (Index& body : model.node_blocks.body) shift(body, bodies);
-        for (ElementNodes& corner : model.elements.node)
-            for (auto& lanes : corner)
+        for (TetrahedronNodes& corner : model.tetrahedra.node)
+            for (NodeLane& lanes : corner)
                 for (Index& n : lanes.lane) shift(n, nodes);
+        for (NodeLane& lanes : model.element_nodes.node)
+            for (Index& n : lanes.lane) shift(n, nodes);
+        for (Index& first : model.elements.first) shift(first, element_nodes);
         for (Index& body : model.elements.body) shift(body, bodies);
         surface(model.surface);
         for (BvhNode& node : model.bvh.node) {
@@ -205,7 +225,7 @@ private:
         for (auto& vertex : tables.triangles.vertex)
             for (Index& v : vertex) shift(v, vertices);
         for (Index& element : tables.triangles.element)
-            if (element != no_index) shift(element, elements());
+            if (element != no_index) shift(element, tetrahedra());
         for (auto& corner : tables.edges.node)
             for (Index& n : corner) shift(n, nodes);
         for (auto& side : tables.edges.triangle)
@@ -222,6 +242,8 @@ private:
             shift(table.nodes[b], nodes);
             shift(table.node_blocks[b], node_blocks);
             shift(table.blocks[b], blocks);
+            shift(table.element_nodes[b], element_nodes);
+            shift(table.tetrahedron_blocks[b], tetrahedron_blocks);
             shift(table.triangles[b], triangles);
             shift(table.edges[b], edges);
             shift(table.vertices[b], vertices);
@@ -241,13 +263,16 @@ Index append_body(Model& model, const NewBody& body) {
 
     const Range nodes = append_nodes(model, body, row);
     set_masses_and_motion(model, body, nodes);
-    Range blocks = appended(model.elements.node.size(), model.elements.node.size());
+    BodyRows rows{row, nodes, {}, {}};
+    rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
+    ElementList list;
     if (!body.tetrahedra.empty())
-        blocks = append_elements(body.tetrahedra, body.nodes, nodes.begin, row, body.material, body.rotation,
-                                 model.elements);
-    std::vector<Index> order;
-    if (model.settings.multirate && !body.tetrahedra.empty())
-        order = sort_by_level(model, body, blocks, nodes.begin, row);
+        list =
+            elements_of({body.tetrahedra, body.nodes, body.rotation},
+                        resolved(body.element, model.materials.poisson_ratio[static_cast<std::size_t>(body.material)]));
+    rows.elements = append_elements(list, {}, nodes.begin, row, body.material, model.elements, model.element_nodes);
+    if (model.settings.multirate && !body.tetrahedra.empty()) sort_by_level(model, body, list, rows);
+    const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;
     bodies.self_contact[b] = body.self_contact;
@@ -258,13 +283,15 @@ Index append_body(Model& model, const NewBody& body) {
         static_cast<Index>(model.node_blocks.begin.size()) - (nodes.size() + nodes_per_block - 1) / nodes_per_block,
         static_cast<Index>(model.node_blocks.begin.size())};
     bodies.blocks[b] = blocks;
-    bodies.element_count[b] = static_cast<Index>(body.tetrahedra.size());
+    bodies.element_nodes[b] = rows.elements.nodes;
+    bodies.tetrahedron_blocks[b] = rows.tetrahedra;
+    bodies.tetrahedron_count[b] = static_cast<Index>(body.tetrahedra.size());
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(model.elements, blocks);
     model.body_records.push_back({.name = {},
                                   .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
                                   .surface = outline(body),
-                                  .element_order = std::move(order)});
+                                  .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
     model.append_outline(b);
     bodies.mean_edge[b] = mean_edge_length(model, bodies.edges[b]);
     bodies.contact_distance[b] =
@@ -276,11 +303,15 @@ Index append_body(Model& model, const NewBody& body) {
         return stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     };
     bodies.rest_step[b] = bodies.stable_step[b] = step();
-    if (!body.tetrahedra.empty() && model.materials.constants[static_cast<std::size_t>(body.material)].relaxes()) {
+    if (body.tetrahedra.empty()) return row;
+    if (model.materials.constants[static_cast<std::size_t>(body.material)].relaxes())
         set_relaxation(model, nodes, blocks, stiffness_sum, bodies.rest_step[b]);
-        bodies.rest_step[b] = bodies.stable_step[b] = step();
-    }
-
+    // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
+    const auto& levels = bodies.level_count[b];
+    if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; }))
+        find_mass_shares(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum,
+                         rows_of(model.elements.mass_share, blocks));
+    bodies.rest_step[b] = bodies.stable_step[b] = step();
     return row;
 }
 
@@ -296,23 +327,19 @@ void erase_body(Model& model, Index row) {
         }
 
     const BodyTable& bodies = model.bodies;
-    Renumber renumber{bodies.nodes[b],
-                      bodies.node_blocks[b],
-                      bodies.blocks[b],
-                      bodies.triangles[b],
-                      bodies.edges[b],
-                      bodies.vertices[b],
-                      {},
-                      bodies.bvh_nodes[b],
-                      bodies.bvh_leaves[b],
-                      {row, row + 1}};
+    Renumber renumber{bodies.nodes[b],         bodies.node_blocks[b],        bodies.blocks[b],
+                      bodies.element_nodes[b], bodies.tetrahedron_blocks[b], bodies.triangles[b],
+                      bodies.edges[b],         bodies.vertices[b],           {},
+                      bodies.bvh_nodes[b],     bodies.bvh_leaves[b],         {row, row + 1}};
     if (renumber.vertices.size() > 0)
         renumber.vertex_triangles = {
             model.surface.vertices.triangle_begin[static_cast<std::size_t>(renumber.vertices.begin)],
             model.surface.vertices.triangle_end[static_cast<std::size_t>(renumber.vertices.end) - 1]};
     erase_rows(model.nodes, renumber.nodes);
     erase_rows(model.node_blocks, renumber.node_blocks);
+    erase_rows(model.tetrahedra, renumber.tetrahedron_blocks);
     erase_rows(model.elements, renumber.blocks);
+    erase_rows(model.element_nodes, renumber.element_nodes);
     erase_rows(model.surface.triangles, renumber.triangles);
     erase_rows(model.surface.edges, renumber.edges);
     erase_rows(model.surface.vertices, renumber.vertices);

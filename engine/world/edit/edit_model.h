@@ -14,6 +14,7 @@ struct NewBody {
     std::uint32_t slot = 0;
     BodyKind kind = BodyKind::deformable;
     bool self_contact = false;
+    ElementKind element = ElementKind::linear;
     Index material = no_index;
     Index collider = no_index;
     Real contact_distance = -1;  // m, < 0: 2 % of the mean edge

@@ -10,7 +10,7 @@ void ContactCache::search_afresh(Model& model) {
     search.collider_valid_until.clear();
     constexpr Real long_ago = -std::numeric_limits<Real>::infinity();
     std::ranges::fill(model.bodies.uninverted_until, long_ago);
-    std::ranges::fill(model.elements.uninverted_until, long_ago);
+    std::ranges::fill(model.tetrahedra.uninverted_until, long_ago);
 }
 
 void ContactCache::forget_distances(Model& model) {

@@ -27,14 +27,6 @@ Index live_row(const Map& map, HandleType handle, const char* call, const char* 
     return row;
 }
 
-/// Triangles name the elements that they belong to as these stand in the table.
-void renumber_elements(std::span<const Index> order, std::span<BoundaryTriangle> triangles) {
-    if (order.empty()) return;
-    std::vector<Index> place(order.size());
-    for (std::size_t e = 0; e < order.size(); ++e) place[static_cast<std::size_t>(order[e])] = static_cast<Index>(e);
-    for (BoundaryTriangle& triangle : triangles) triangle.element = place[static_cast<std::size_t>(triangle.element)];
-}
-
 }  // namespace
 
 Index Model::row(BodyHandle body, const char* call) const {
@@ -51,17 +43,15 @@ Index Model::row(AttachmentHandle attachment, const char* call) const {
 }
 
 ElementInputs Model::all_elements() const {
-    return ElementInputs::bind({}, elements, materials, bodies);
+    return ElementInputs::bind({}, elements, element_nodes, materials, bodies);
 }
 
 ElementInputs Model::elements_active(const ActiveLevels& active) const {
-    return ElementInputs::bind({}, elements, materials, bodies, active, any_asleep);
+    return ElementInputs::bind({}, elements, element_nodes, materials, bodies, active, any_asleep);
 }
 
-Index Model::user_element(std::size_t body, Index element) const {
-    const Index place = element - static_cast<Index>(element_lanes) * bodies.blocks[body].begin;
-    const std::vector<Index>& order = body_records[body].element_order;
-    return order.empty() ? place : order[static_cast<std::size_t>(place)];
+Index Model::user_tetrahedron(std::size_t body, Index place) const {
+    return place - static_cast<Index>(element_lanes) * bodies.tetrahedron_blocks[body].begin;
 }
 
 void Model::wake(std::size_t body) {
@@ -88,14 +78,13 @@ void Model::note_loads() {
 }
 
 void Model::rebuild_derived() {
-    build_corners(elements.node, elements.volume, nodes.position.size(), corners);
-    for (LevelMask& levels : nodes.levels) levels = 0;
-    for (std::size_t b = 0; b < elements.node.size(); ++b)
-        for (std::size_t l = 0; l < element_lanes; ++l)
-            if (elements.volume[b][l] > 0)
-                for (std::size_t a = 0; a < 4; ++a)
-                    nodes.levels[static_cast<std::size_t>(elements.node[b][a][l])] |=
-                        static_cast<LevelMask>(1u << elements.level[b]);
+    build_corners(elements, element_nodes, nodes.position.size(), corners);
+    for (std::size_t n = 0; n < corners.size(); ++n) {
+        unsigned levels = 0;
+        for (const Index corner : corners[n])
+            levels |= 1u << element_nodes.level[static_cast<std::size_t>(corner) / element_lanes];
+        nodes.levels[n] = static_cast<LevelMask>(levels);
+    }
     body_mass.assign(bodies.slot.size(), 0);
     for (std::size_t n = 0; n < nodes.mass.size(); ++n)
         body_mass[static_cast<std::size_t>(nodes.body[n])] += nodes.mass[n];
@@ -107,16 +96,14 @@ void Model::rebuild_derived() {
 
 void Model::append_outline(std::size_t body) {
     const BodyRecord& record = body_records[body];
-    const bool has_elements = !record.tetrahedra.empty();
+    const bool has_tetrahedra = !record.tetrahedra.empty();
     std::vector<BoundaryTriangle> triangles;
-    if (has_elements) {
+    if (has_tetrahedra)
         triangles = boundary_triangles(record.tetrahedra);
-        renumber_elements(record.element_order, triangles);
-    } else {
+    else
         for (const auto& triangle : record.surface) triangles.push_back({triangle, no_index});
-    }
-    const Index first_element = has_elements ? bodies.blocks[body].begin * element_lanes : no_index;
-    const SurfaceRanges ranges = append_surface(triangles, bodies.nodes[body].begin, first_element, surface);
+    const Index first_tetrahedron = has_tetrahedra ? bodies.tetrahedron_blocks[body].begin * element_lanes : no_index;
+    const SurfaceRanges ranges = append_surface(triangles, bodies.nodes[body].begin, first_tetrahedron, surface);
     bodies.triangles[body] = ranges.triangles;
     bodies.edges[body] = ranges.edges;
     bodies.vertices[body] = ranges.vertices;

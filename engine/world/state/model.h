@@ -31,7 +31,8 @@ struct BodyRecord {
     std::string name;
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
-    std::vector<Index> element_order;              // which tetrahedron element e of the body is; empty: number e
+    // the tetrahedra that the element at each place of its blocks covers; none in a lane that is left over
+    Ragged<Index> element_tetrahedra;
 };
 
 struct ColliderRecord {
@@ -44,8 +45,10 @@ struct Model {
 
     NodeTable nodes;
     NodeBlockTable node_blocks;
+    TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
-    Ragged<Index> corners;  // by node: 4 element + corner; derived: rebuild_derived
+    ElementNodeTable element_nodes;
+    Ragged<Index> corners;  // by node: element_lanes row + lane of element_nodes; derived: rebuild_derived
     SurfaceTables surface;
     BvhTable bvh;
     BvhLeafTable bvh_leaves;
@@ -72,8 +75,9 @@ struct Model {
     /// For what looks at all elements, whether they are active in the present step or not.
     ElementInputs all_elements() const;
     ElementInputs elements_active(const ActiveLevels& active) const;
-    /// An element, by row of the table, by its number in the mesh that the user gave.
-    Index user_element(std::size_t body, Index element) const;
+    Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
+    /// The number of a tetrahedron in the mesh that the user gave, by its place in the table.
+    Index user_tetrahedron(std::size_t body, Index place) const;
 
     /// Ends the rest of one body, or of all.
     void wake(std::size_t body);
@@ -94,7 +98,9 @@ struct Model {
     void for_each_table(auto&& visit) {
         visit("nodes", nodes);
         visit("node_blocks", node_blocks);
+        visit("tetrahedra", tetrahedra);
         visit("elements", elements);
+        visit("element_nodes", element_nodes);
         visit("surface", surface);
         visit("bvh", bvh);
         visit("bvh_leaves", bvh_leaves);

@@ -41,7 +41,7 @@ void blame(const WorldState& world, StepReport& report) {
         report.body = world.model.body_map.handle_of_slot(world.model.bodies.slot[b]);
     report.body_name = world.model.body_records[b].name;
     if (verdict.node != no_index) report.node = verdict.node - world.model.bodies.nodes[b].begin;
-    if (verdict.element != no_index) report.element = world.model.user_element(b, verdict.element);
+    if (verdict.tetrahedron != no_index) report.element = world.model.user_tetrahedron(b, verdict.tetrahedron);
 }
 
 void add_to_report(const WorldState& world, StepReport& report) {
@@ -76,7 +76,7 @@ void note_inversions(WorldState& world, StepReport& report) {
     if (report.inverted == 0) {
         report.inverted_body = world.model.body_map.handle_of_slot(world.model.bodies.slot[b]);
         report.inverted_name = world.model.body_records[b].name;
-        report.inverted_element = world.model.user_element(b, inversions.element);
+        report.inverted_element = world.model.user_tetrahedron(b, inversions.tetrahedron);
     }
     report.inverted += inversions.count;
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);

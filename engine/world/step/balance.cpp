@@ -30,16 +30,14 @@ Present measure(const Model& model, Real lag) {
     // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies
     // keep m v.v' / 2 and their elastic energy together, as leapfrog does.
     if (lag > 0) {
-        Real power = -elastic_power(model.all_elements(), {0, static_cast<Index>(model.elements.node.size())},
-                                    nodes.position, nodes.velocity);
+        Real power = -elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         power += now.momentum.dot(model.settings.gravity);
         if (model.loaded)
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
                 if (nodes.inverse_mass[n] > 0) power += nodes.load[n].dot(nodes.velocity[n]);
         now.kinetic += lag * power;
     }
-    now.elastic =
-        elastic_energy(model.all_elements(), {0, static_cast<Index>(model.elements.node.size())}, nodes.position);
+    now.elastic = elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
     return now;
 }
 

@@ -40,11 +40,12 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     NodeBlockTable& k = m.node_blocks;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, compute_element_forces,
-                        inputs<ElementInputs>(e, m.materials, b, p.active, m.any_asleep), read(n.position),
-                        read(n.velocity), value(p.h), read(e.rotation), outputs<ElementMemory>(e), write(e.force));
+                        inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
+                        read(n.position), read(n.velocity), value(p.h), read(e.rotation), outputs<ElementMemory>(e),
+                        write(m.element_nodes.force));
     g.stage("dynamics/predict_velocity", predict_velocity,
-            inputs<KickInputs>(k, m.corners, e, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
-            write(n.force), write(n.velocity_next));
+            inputs<KickInputs>(k, m.corners, m.element_nodes, n, b, p.gravity, m.loaded, m.any_asleep),
+            read(n.velocity), value(p.h), write(n.force), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
 }
@@ -91,18 +92,18 @@ void list_checks(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     NodeTable& n = m.nodes;
     BodyTable& b = m.bodies;
-    ElementBlockTable& e = m.elements;
     NodeBlockTable& k = m.node_blocks;
     const bool& pushed = w.scratch.regions.pushed;
     StepFindings& found = w.scratch.findings;
     const StepParameters& p = w.scratch.parameters;
-    g.stage_with_result("dynamics/check_state", found.verdict, check_state, inputs<CheckInputs>(k, b, n, e, pushed),
-                        value(p.h), value(p.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
+    g.stage_with_result("dynamics/check_state", found.verdict, check_state,
+                        inputs<CheckInputs>(k, b, n, m.tetrahedra, pushed), value(p.h), value(p.max_strain_step),
+                        write(k.max_speed_squared), write(b.max_speed));
     const auto if_possible =
         only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; }, read(found.verdict));
     g.stage_with_result("dynamics/find_inversions", found.inversions, find_inversions,
-                        inputs<InversionInputs>(e, b, n, pushed), value(p.h), make(w.scratch.inversion_parts),
-                        outputs<InversionBudgets>(e, b), if_possible);
+                        inputs<InversionInputs>(m.tetrahedra, b, n, pushed), value(p.h),
+                        make(w.scratch.inversion_parts), outputs<InversionBudgets>(m.tetrahedra, b), if_possible);
     const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
                                 value(m.loaded), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,

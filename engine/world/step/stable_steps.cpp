@@ -26,7 +26,7 @@ void watch_stable_steps(Model& model, Column<Real>& stiffness_sum) {
     stiffness_sum.resize(model.nodes.position.size());
     const ElementInputs elements = model.all_elements();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        if (model.bodies.element_count[b] > 0)
+        if (model.bodies.tetrahedron_count[b] > 0)
             model.bodies.stable_step[b] =
                 stable_step(elements, model.bodies.blocks[b], model.nodes.position, model.nodes.mass, stiffness_sum)
                     .step;

@@ -54,7 +54,7 @@ bool run_stages(WorldState& world) {
     find_active_levels(world.clock.cycle, model.bodies, scratch.parameters);
     world.transaction.begin_try(model);
     Trace* const trace = world.record.tracing ? &world.record.trace : nullptr;
-    const bool small = model.elements.node.size() * element_lanes + scratch.contacts.size() < inline_work;
+    const bool small = model.elements.first.size() * element_lanes + scratch.contacts.size() < inline_work;
     if (small)
         world.graph.run_inline(trace);
     else

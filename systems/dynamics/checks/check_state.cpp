@@ -67,9 +67,9 @@ struct Fastest {
 Fastest fastest_corner(const CheckInputs& state, std::size_t block) {
     Fastest fastest;
     for (std::size_t l = 0; l < element_lanes; ++l) {
-        const Vec3 base = motion(state, static_cast<std::size_t>(state.element_node[block][0][l]));
+        const Vec3 base = motion(state, static_cast<std::size_t>(state.tetrahedron_node[block][0][l]));
         for (std::size_t a = 1; a < 4; ++a) {
-            const Index node = state.element_node[block][a][l];
+            const Index node = state.tetrahedron_node[block][a][l];
             fastest.look_at({(motion(state, static_cast<std::size_t>(node)) - base).squaredNorm(), node,
                              static_cast<Index>(block * element_lanes + l)});
         }
@@ -80,8 +80,8 @@ Fastest fastest_corner(const CheckInputs& state, std::size_t block) {
 /// Whether any corner of a block of elements is faster than that: all elements side by side, and nothing is said of
 /// which.
 bool any_corner_faster(const CheckInputs& state, std::size_t block, Real limit_squared) {
-    LaneMat3<Real8> parting = edges(state.element_node[block], state.velocity_next);
-    if (!state.push_out.empty()) parting = parting + edges(state.element_node[block], state.push_out);
+    LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
+    if (!state.push_out.empty()) parting = parting + edges(state.tetrahedron_node[block], state.push_out);
     const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
                 third = dot(parting.c2, parting.c2);
     return !all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared));

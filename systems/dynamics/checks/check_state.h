@@ -17,11 +17,11 @@ enum class StepFault { none, not_finite, too_fast, too_far, too_stiff };
 /// Why a step must not be committed.
 struct StepVerdict {
     StepFault fault = StepFault::none;
-    Index body = no_index;     // row of BodyTable
-    Index node = no_index;     // row of NodeTable, when one node is to blame
-    Real value = 0;            // not_finite: -; too_fast: displacement of this step over the smallest element altitude;
-                               // too_far: distance between neighbouring numbers there, over the mean edge
-    Index element = no_index;  // row: lane of a block, when one element is to blame
+    Index body = no_index;         // row of BodyTable
+    Index node = no_index;         // row of NodeTable, when one node is to blame
+    Real value = 0;                // not_finite: -; too_fast: displacement of this step over the smallest altitude;
+                                   // too_far: distance between neighbouring numbers there, over the mean edge
+    Index tetrahedron = no_index;  // place: lane of a block, when one tetrahedron is to blame
 };
 
 struct CheckInputs {
@@ -30,13 +30,13 @@ struct CheckInputs {
     std::span<const Real> body_min_altitude;  // m; 0 for a kinematic body: not judged by speed
     std::span<const Vec3> velocity;           // m/s, at the start of the step
     std::span<const Vec3> velocity_next;
-    std::span<const Vec3> push_out;                   // m/s; empty: no contact pushes
-    std::span<const ElementNodes> element_node = {};  // ElementBlockTable
-    std::span<const Range> body_blocks = {};          // BodyTable; empty: bodies are judged as one element each
+    std::span<const Vec3> push_out;                           // m/s; empty: no contact pushes
+    std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
+    std::span<const Range> body_blocks = {};  // BodyTable; empty: bodies are judged as one tetrahedron each
 
     /// `pushed`: some contact pushes.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
-                            const NodeTable& node, const ElementBlockTable& element, const bool& pushed) {
+                            const NodeTable& node, const TetrahedronBlockTable& tetrahedron, const bool& pushed) {
         return {.block_begin = binder.read(block.begin),
                 .block_end = binder.read(block.end),
                 .block_body = binder.read(block.body),
@@ -45,16 +45,16 @@ struct CheckInputs {
                 .velocity = binder.read(node.velocity),
                 .velocity_next = binder.read(node.velocity_next),
                 .push_out = binder.read_if(binder.read(pushed), node.push_out),
-                .element_node = binder.read(element.node),
-                .body_blocks = binder.read(body.blocks)};
+                .tetrahedron_node = binder.read(tetrahedron.node),
+                .body_blocks = binder.read(body.tetrahedron_blocks)};
     }
 };
 
 /// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is
-/// not finite, or two corners of one element that move apart by more than `max_strain_step` (fraction of the smallest
-/// altitude of the body) in this step. Common motion and slow turns of a large body do no harm and are not counted.
-/// Without `body_blocks` a node is compared with the mean velocity of its body instead, which refuses a quick turn of a
-/// large body, too. Parallel over node blocks.
+/// not finite, or two corners of one tetrahedron that move apart by more than `max_strain_step` (fraction of the
+/// smallest altitude of the body) in this step. Common motion and slow turns of a large body do no harm and are not
+/// counted. Without `body_blocks` a node is compared with the mean velocity of its body instead, which refuses a quick
+/// turn of a large body, too. Parallel over node blocks.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
                         std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
 

@@ -69,9 +69,9 @@ struct Body {
 
     bool has_inverted(Range blocks) const {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-            const Real8 volume = determinant(edges(inputs.element_node[b], inputs.position));
+            const Real8 volume = determinant(edges(inputs.tetrahedron_node[b], inputs.position));
             for (std::size_t l = 0; l < element_lanes; ++l)
-                if (inputs.element_volume[b][l] > 0 && !(volume[l] > 0)) return true;
+                if (inputs.tetrahedron_volume[b][l] > 0 && !(volume[l] > 0)) return true;
         }
         return false;
     }
@@ -86,19 +86,19 @@ private:
     }
 
     void look_at_block(std::size_t b, Real& uninverted_until, InversionPart& part) const {
-        const LaneMat3<Real8> now = edges(inputs.element_node[b], inputs.position);
-        const Real safe = width(now, inputs.element_volume[b]) / 2;
+        const LaneMat3<Real8> now = edges(inputs.tetrahedron_node[b], inputs.position);
+        const Real safe = width(now, inputs.tetrahedron_volume[b]) / 2;
         uninverted_until = travel_base + safe;
         if (!(reach < safe)) find_turned(b, now, part);
     }
 
     void find_turned(std::size_t b, const LaneMat3<Real8>& now, InversionPart& part) const {
-        LaneMat3<Real8> motion = edges(inputs.element_node[b], inputs.velocity_next);
-        if (!inputs.push_out.empty()) motion = motion + edges(inputs.element_node[b], inputs.push_out);
+        LaneMat3<Real8> motion = edges(inputs.tetrahedron_node[b], inputs.velocity_next);
+        if (!inputs.push_out.empty()) motion = motion + edges(inputs.tetrahedron_node[b], inputs.push_out);
         const Real8 before = determinant(now), after = determinant(now + h * motion);
         for (std::size_t l = 0; l < element_lanes; ++l) {
-            if (!(inputs.element_volume[b][l] > 0) || !(before[l] > 0) || after[l] > 0) continue;
-            if (part.count++ == 0) part.element = static_cast<Index>(b * element_lanes + l);
+            if (!(inputs.tetrahedron_volume[b][l] > 0) || !(before[l] > 0) || after[l] > 0) continue;
+            if (part.count++ == 0) part.tetrahedron = static_cast<Index>(b * element_lanes + l);
         }
     }
 };
@@ -108,7 +108,7 @@ private:
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
                            const InversionBudgets& budgets) {
     SKERRY_CHECK(budgets.body_uninverted_until.size() == inputs.body_blocks.size());
-    SKERRY_CHECK(budgets.block_uninverted_until.size() == inputs.element_node.size());
+    SKERRY_CHECK(budgets.block_uninverted_until.size() == inputs.tetrahedron_node.size());
     Inversions found;
     for (std::size_t b = 0; b < inputs.body_blocks.size(); ++b) {
         const Range blocks = inputs.body_blocks[b];
@@ -128,7 +128,7 @@ Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Re
         for (const InversionPart& part : parts) {
             budgets.body_uninverted_until[b] = std::min(budgets.body_uninverted_until[b], part.uninverted_until);
             if (part.count == 0) continue;
-            if (found.count == 0) found = {0, static_cast<Index>(b), part.element, false};
+            if (found.count == 0) found = {0, static_cast<Index>(b), part.tetrahedron, false};
             found.count += part.count;
         }
         if (found.count > before) found.first |= !body.has_inverted(blocks);

@@ -1,4 +1,4 @@
-// Which elements the step would turn inside out (docs/methods/time_stepping.md 4.2).
+// Which tetrahedra the step would turn inside out (docs/methods/time_stepping.md 4.2).
 #pragma once
 
 #include <span>
@@ -12,19 +12,19 @@
 namespace skerry {
 
 struct InversionInputs {
-    std::span<const ElementNodes> element_node;  // ElementBlockTable
-    std::span<const ElementLane> element_volume;
+    std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
+    std::span<const ElementLane> tetrahedron_volume;
     std::span<const Range> body_blocks;  // BodyTable
     std::span<const Real> body_max_speed, body_travel, body_displacement;
     std::span<const Vec3> position;                 // m, at the start of the step
     std::span<const Vec3> velocity_next, push_out;  // push_out: empty: no contact pushes
 
     /// `pushed`: some contact pushes.
-    static InversionInputs bind(const Binder& binder, const ElementBlockTable& element, const BodyTable& body,
+    static InversionInputs bind(const Binder& binder, const TetrahedronBlockTable& tetrahedron, const BodyTable& body,
                                 const NodeTable& node, const bool& pushed) {
-        return {.element_node = binder.read(element.node),
-                .element_volume = binder.read(element.volume),
-                .body_blocks = binder.read(body.blocks),
+        return {.tetrahedron_node = binder.read(tetrahedron.node),
+                .tetrahedron_volume = binder.read(tetrahedron.volume),
+                .body_blocks = binder.read(body.tetrahedron_blocks),
                 .body_max_speed = binder.read(body.max_speed),
                 .body_travel = binder.read(body.travel),
                 .body_displacement = binder.read(body.displacement),
@@ -34,32 +34,32 @@ struct InversionInputs {
     }
 };
 
-/// Elements whose volume is positive at the start of the step and not at its end.
+/// Tetrahedra whose volume is positive at the start of the step and not at its end.
 struct Inversions {
     Index count = 0;
-    Index body = no_index;     // row of BodyTable, of the first
-    Index element = no_index;  // of the table: lane of a block
-    bool first = false;        // some body of them had no inverted element before
+    Index body = no_index;         // row of BodyTable, of the first
+    Index tetrahedron = no_index;  // of the table: lane of a block
+    bool first = false;            // some body of them had no inverted tetrahedron before
 };
 
 /// Working memory, kept between steps: what was found in some blocks.
 struct InversionPart {
-    Real uninverted_until = 0;            // m, the least of them
-    Index count = 0, element = no_index;  // that the step turns over, and the first of them
+    Real uninverted_until = 0;                // m, the least of them
+    Index count = 0, tetrahedron = no_index;  // that the step turns over, and the first of them
 };
 
 struct InversionBudgets {
-    std::span<Real> block_uninverted_until;  // ElementBlockTable
+    std::span<Real> block_uninverted_until;  // TetrahedronBlockTable
     std::span<Real> body_uninverted_until;   // BodyTable
 
-    static InversionBudgets bind(const Binder& binder, ElementBlockTable& element, BodyTable& body) {
-        return {binder.write(element.uninverted_until), binder.write(body.uninverted_until)};
+    static InversionBudgets bind(const Binder& binder, TetrahedronBlockTable& tetrahedron, BodyTable& body) {
+        return {binder.write(tetrahedron.uninverted_until), binder.write(body.uninverted_until)};
     }
 };
 
-/// Looks only where the body can have come far enough: an element is not turned over before its corners have moved by
-/// half of its width, the distance of the two nearest parallel planes around it. So slivers are looked at often, the
-/// rest of their body is not. Budgets are written where elements are looked at. Parallel over element blocks.
+/// Looks only where the body can have come far enough: a tetrahedron is not turned over before its corners have moved
+/// by half of its width, the distance of the two nearest parallel planes around it. So slivers are looked at often, the
+/// rest of their body is not. Budgets are written where tetrahedra are looked at. Parallel over blocks.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
                            const InversionBudgets& budgets);
 

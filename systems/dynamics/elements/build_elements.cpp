@@ -1,7 +1,8 @@
 #include "systems/dynamics/elements/build_elements.h"
 
-#include <Eigen/LU>
+#include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "components/check.h"
 
@@ -9,80 +10,124 @@ namespace skerry {
 
 namespace {
 
-using Tetrahedron = std::array<Index, 4>;
-
-/// Columns: corners 1 to 3 minus corner 0.
-Mat3 rest_edges(const Tetrahedron& tet, std::span<const Vec3> position) {
-    const auto at = [&](std::size_t a) -> const Vec3& { return position[static_cast<std::size_t>(tet[a])]; };
-    Mat3 Dm;
-    Dm << at(1) - at(0), at(2) - at(0), at(3) - at(0);
-    return Dm;
+/// Places of the elements of a list, block by block.
+std::vector<Index> places_of(const ElementList& list, std::span<const std::uint8_t> level) {
+    std::vector<Index> order(list.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto key = [&](Index e) {
+        const auto at = static_cast<std::size_t>(e);
+        return std::pair(level.empty() ? std::uint8_t{0} : level[at], list.part[at]);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    constexpr std::size_t window = 256;
+    std::vector<Index> places;
+    for (std::size_t first = 0; first < order.size();) {
+        const ElementPart part = list.part[static_cast<std::size_t>(order[first])];
+        std::size_t end = first;
+        while (end < order.size() && list.part[static_cast<std::size_t>(order[end])] == part) ++end;
+        for (std::size_t begin = first; begin < end; begin += window)
+            std::stable_sort(
+                order.begin() + static_cast<std::ptrdiff_t>(begin),
+                order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + window, end)), [&](Index a, Index b) {
+                    const std::uint8_t la = key(a).first, lb = key(b).first;
+                    if (la != lb) return la < lb;
+                    return list.nodes_of(static_cast<std::size_t>(a)) < list.nodes_of(static_cast<std::size_t>(b));
+                });
+        places.insert(places.end(), order.begin() + static_cast<std::ptrdiff_t>(first),
+                      order.begin() + static_cast<std::ptrdiff_t>(end));
+        while (places.size() % element_lanes != 0) places.push_back(no_index);
+        first = end;
+    }
+    return places;
 }
 
 }  // namespace
 
-Range append_elements(std::span<const Tetrahedron> tetrahedra, std::span<const Vec3> rest_position, Index first_node,
-                      Index body, Index material, const Mat3& rotation, ElementBlockTable& elements) {
-    const Index first_block = static_cast<Index>(elements.node.size());
+Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
+                        Index first_node, TetrahedronBlockTable& table) {
+    const Index first_block = static_cast<Index>(table.node.size());
     for (std::size_t first = 0; first < tetrahedra.size(); first += element_lanes) {
-        ElementNodes node;
-        for (auto& corner : node)
+        TetrahedronNodes node;
+        for (NodeLane& corner : node)
             for (Index& n : corner.lane) n = first_node;
-        ElementRest rest{};
         ElementLane volume{};
-        ElementRotation quaternion{};
-        for (Real& w : quaternion[0].lane) w = 1;
         for (std::size_t l = 0; l < element_lanes && first + l < tetrahedra.size(); ++l) {
-            const Tetrahedron& tet = tetrahedra[first + l];
-            const Mat3 Dm = rotation * rest_edges(tet, rest_position);
-            const Real determinant = Dm.determinant();
-            SKERRY_CHECK(determinant > 0);
-            const Mat3 B = Dm.inverse();
-            for (std::size_t a = 0; a < 4; ++a) node[a][l] = first_node + tet[a];
-            for (std::size_t i = 0; i < 9; ++i) rest[i][l] = B.data()[i];
-            volume[l] = determinant / 6;
+            for (std::size_t a = 0; a < 4; ++a) node[a][l] = first_node + tetrahedra[first + l][a];
+            volume[l] = six_volumes(tetrahedra[first + l], rest_position) / 6;
         }
-        elements.node.push_back(node);
-        elements.inverse_rest.push_back(rest);
-        elements.volume.push_back(volume);
-        elements.rotation.push_back(quaternion);
-        // both: kernels of other models touch neither, and the step swaps them
-        elements.rotation_next.push_back(quaternion);
-        elements.force.push_back(ElementForces{});
-        elements.body.push_back(body);
-        elements.material.push_back(material);
-        elements.viscous_strain.push_back(ElementStrain{});
-        elements.viscous_strain_next.push_back(ElementStrain{});
-        elements.relaxation_rate.push_back(ElementLane{});
-        elements.own_frequency.push_back(ElementLane{});
-        elements.relaxing_share.push_back(0);
-        elements.relaxed.push_back(0);
-        elements.viscous_time.push_back(0);
-        elements.uninverted_until.push_back(-std::numeric_limits<Real>::infinity());
-        elements.level.push_back(0);
+        table.node.push_back(node);
+        table.volume.push_back(volume);
+        table.uninverted_until.push_back(-std::numeric_limits<Real>::infinity());
     }
-    for (std::size_t b = static_cast<std::size_t>(first_block); b < elements.force.size(); ++b)
-        for (auto& lane : elements.force[b]) lane.fill(Vec3::Zero());
-    return {first_block, static_cast<Index>(elements.node.size())};
+    return {first_block, static_cast<Index>(table.node.size())};
 }
 
-void add_lumped_mass(std::span<const Tetrahedron> tetrahedra, std::span<const Vec3> rest_position, Real density,
-                     std::span<Real> mass) {
-    for (const Tetrahedron& tet : tetrahedra) {
-        const Real share = density * rest_edges(tet, rest_position).determinant() / 24;  // rho V / 4
-        for (Index n : tet) mass[static_cast<std::size_t>(n)] += share;
+AppendedElements append_elements(const ElementList& list, std::span<const std::uint8_t> level, Index first_node,
+                                 Index body, Index material, ElementBlockTable& blocks, ElementNodeTable& nodes) {
+    SKERRY_CHECK(level.empty() || level.size() == list.size());
+    const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
+    AppendedElements appended{{}, {}, places_of(list, level)};
+    for (std::size_t place = 0; place < appended.element.size(); place += element_lanes) {
+        const std::span<const Index> lanes = std::span(appended.element).subspan(place, element_lanes);
+        std::size_t count = 0;
+        for (const Index e : lanes)
+            if (e != no_index) count = std::max(count, list.nodes_of(static_cast<std::size_t>(e)));
+        const std::size_t block = blocks.first.size(), row = nodes.node.size();
+        const auto leader = static_cast<std::size_t>(lanes[0]);
+        blocks.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(block + 1); });
+        nodes.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(row + count); });
+        blocks.first[block] = static_cast<Index>(row);
+        blocks.count[block] = static_cast<Index>(count);
+        blocks.body[block] = body;
+        blocks.material[block] = material;
+        blocks.part[block] = list.part[leader];
+        blocks.level[block] = level.empty() ? std::uint8_t{0} : level[leader];
+        for (Real& w : blocks.rotation[block][0].lane) w = 1;
+        blocks.rotation_next[block] = blocks.rotation[block];  // kernels of some laws touch neither, and the step swaps
+        for (Real& share : blocks.mass_share[block].lane) share = 1;
+        for (std::size_t k = 0; k < count; ++k) nodes.level[row + k] = blocks.level[block];
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const bool used = lanes[l] != no_index;
+            const auto e = static_cast<std::size_t>(lanes[l]);
+            if (used) blocks.volume[block][l] = list.volume[e];
+            const std::size_t own = used ? list.nodes_of(e) : 0;
+            for (std::size_t k = 0; k < count; ++k) {
+                const std::size_t at = used ? list.first_node[e] + (k < own ? k : 0) : 0;
+                nodes.node[row + k][l] = first_node + (used ? list.node[at] : 0);
+                for (std::size_t i = 0; i < 3 && k < own; ++i)
+                    nodes.gradient[row + k][i][l] = list.gradient[at][static_cast<Eigen::Index>(i)];
+                nodes.force[row + k][l] = Vec3::Zero();
+            }
+        }
+    }
+    appended.blocks = {static_cast<Index>(first_block), static_cast<Index>(blocks.first.size())};
+    appended.nodes = {static_cast<Index>(first_row), static_cast<Index>(nodes.node.size())};
+    return appended;
+}
+
+void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
+                     Real density, std::span<Real> mass) {
+    for (const auto& tetrahedron : tetrahedra) {
+        const Real share = density * six_volumes(tetrahedron, rest_position) / 24;  // rho V / 4
+        for (const Index n : tetrahedron) mass[static_cast<std::size_t>(n)] += share;
     }
 }
 
-void build_corners(std::span<const ElementNodes> node, std::span<const ElementLane> volume, std::size_t node_count,
+void build_corners(const ElementBlockTable& blocks, const ElementNodeTable& nodes, std::size_t node_count,
                    Ragged<Index>& corners) {
     // Counting sort: count, sum up, fill in element order.
     const auto for_each_corner = [&](auto&& visit) {
-        for (std::size_t b = 0; b < node.size(); ++b)
-            for (std::size_t l = 0; l < element_lanes; ++l)
-                for (std::size_t a = 0; a < 4; ++a)
-                    if (volume[b][l] > 0)
-                        visit(static_cast<std::size_t>(node[b][a][l]), 4 * (b * element_lanes + l) + a);
+        for (std::size_t b = 0; b < blocks.first.size(); ++b) {
+            const auto first = static_cast<std::size_t>(blocks.first[b]);
+            const auto count = static_cast<std::size_t>(blocks.count[b]);
+            for (std::size_t l = 0; l < element_lanes; ++l) {
+                if (!(blocks.volume[b][l] > 0)) continue;
+                const Index anchor = nodes.node[first][l];
+                for (std::size_t k = 0; k < count; ++k)
+                    if (k == 0 || nodes.node[first + k][l] != anchor)
+                        visit(static_cast<std::size_t>(nodes.node[first + k][l]), (first + k) * element_lanes + l);
+            }
+        }
     };
     corners.offset.assign(node_count + 1, 0);
     for_each_corner([&](std::size_t n, std::size_t) { ++corners.offset[n + 1]; });

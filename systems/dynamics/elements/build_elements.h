@@ -1,4 +1,4 @@
-// Rest data of the tetrahedra of a new body.
+// Rows of the tables for the tetrahedra and elements of a new body.
 #pragma once
 
 #include <array>
@@ -8,22 +8,34 @@
 #include "components/body_table.h"
 #include "components/element_table.h"
 #include "components/ragged.h"
+#include "systems/dynamics/kinds/element_list.h"
 
 namespace skerry {
 
-/// Appends the blocks of a new body's tetrahedra. `tetrahedra` index the body's own nodes; `first_node` is the row of
-/// its first node. Rest positions must give positive volumes (the scene builder has checked). The rest shape is that of
-/// `rest_position` turned by `rotation`, as the body is put into the world: F = I there for every model, the linear one
-/// included, and corotational frames start at the identity.
-Range append_elements(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
-                      Index first_node, Index body, Index material, const Mat3& rotation, ElementBlockTable& elements);
+/// Appends the blocks of a new body's tetrahedra, in the order of the mesh. `tetrahedra` index the body's own nodes;
+/// `first_node` is the row of its first node.
+Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
+                        Index first_node, TetrahedronBlockTable& table);
+
+struct AppendedElements {
+    Range blocks, nodes;         // rows
+    std::vector<Index> element;  // of the list, by place in the blocks; no_index in a lane that is left over
+};
+
+/// Appends the elements of a new body. They keep their order but for two things: a block has elements of one part, and
+/// among few hundred neighbours of a part those with as many nodes stand together, so that few rows are left over.
+/// `level` of each element of the list, or none: all 0; elements are sorted by level, and a block has the lowest of its
+/// elements.
+AppendedElements append_elements(const ElementList& list, std::span<const std::uint8_t> level, Index first_node,
+                                 Index body, Index material, ElementBlockTable& blocks, ElementNodeTable& nodes);
 
 /// Adds rho V / 4 of each tetrahedron to its nodes.
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      Real density, std::span<Real> mass);
 
-/// For every node the corners (4 * element + corner) around it, in element order. Padding lanes are left out.
-void build_corners(std::span<const ElementNodes> node, std::span<const ElementLane> volume, std::size_t node_count,
+/// For every node the places (element_lanes * row + lane) where elements have a force for it, in element order. What is
+/// left over is left out.
+void build_corners(const ElementBlockTable& blocks, const ElementNodeTable& nodes, std::size_t node_count,
                    Ragged<Index>& corners);
 
 }  // namespace skerry

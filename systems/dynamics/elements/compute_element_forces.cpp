@@ -16,43 +16,98 @@ namespace {
 
 constexpr std::size_t blocks_per_job = 64;  // 512 tetrahedra, some 4 us: well above the cost of handing out a job
 
-LaneMat3<Real8> transposed(const LaneMat3<Real8>& a) {
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> transposed(const LaneMat3<T>& a) {
     return {{a.c0.x, a.c1.x, a.c2.x}, {a.c0.y, a.c1.y, a.c2.y}, {a.c0.z, a.c1.z, a.c2.z}};
 }
 
 /// Stress of the strain rate, F S with S = time (2 mu E' + lambda tr(E') I) and E' = (F^T F' + F'^T F) / 2: nothing in
 /// rigid motion, and no torque, since F S F^T is symmetric.
-LaneMat3<Real8> viscous_stress(const MaterialConstants& material, Real time, const LaneMat3<Real8>& F,
-                               const LaneMat3<Real8>& F_rate) {
-    const LaneMat3<Real8> product = multiply(transposed(F), F_rate);
-    LaneMat3<Real8> S = (time * material.shear_modulus) * (product + transposed(product));
-    const Real8 pressure = (time * material.lame_lambda) * (product.c0.x + product.c1.y + product.c2.z);
+template <class T>
+LaneMat3<T> viscous_stress(const MaterialConstants& material, Real time, const LaneMat3<T>& F,
+                           const LaneMat3<T>& F_rate) {
+    const LaneMat3<T> product = multiply(transposed(F), F_rate);
+    LaneMat3<T> S = (time * material.shear_modulus) * (product + transposed(product));
+    const T pressure = (time * material.lame_lambda) * (product.c0.x + product.c1.y + product.c2.z);
     S.c0.x += pressure;
     S.c1.y += pressure;
     S.c2.z += pressure;
     return multiply(F, S);
 }
 
-/// The dashpots give way for `duration` seconds, then the springs push. Returns the stress, Pa, and writes what the
-/// dashpots have taken and what they dissipated, J.
-[[gnu::always_inline]] inline LaneMat3<Real8> relax(const ViscousModuli& moduli, const LaneMat3<Real8>& F,
-                                                    const Real8& volume, const Real8& rate, const Real8& frequency,
-                                                    Real duration, const ElementStrain& forgotten,
-                                                    ElementStrain& forgotten_next, Real& relaxed) {
-    const LaneSymmetric<Real8> strain = green_strain(F);
-    const ViscousStretch<Real8> before = viscous_stretch(strain, forgotten);
-    // backward Euler: never more than all
-    const ViscousStretch<Real8> after{Real8(1.0 / (1.0 + duration * rate)) * before.strain,
-                                      before.volume / (1.0 + (duration / bulk_time) * frequency)};
-    const LaneSymmetric<Real8> next = strain - after.strain;
-    const Real8 all[7] = {next.xx, next.yy, next.zz, next.xy, next.yz, next.zx, strain.trace() - after.volume};
-    for (std::size_t i = 0; i < 7; ++i) store(all[i], forgotten_next[i]);
-    // What the springs, as stretched as they push, do to the dashpots. Not the drop of their energy: the kick that
-    // follows is by so much weaker, which velocities half a step off the positions do not show yet.
-    const Real8 lost =
-        volume * work_density(moduli, after, {before.strain - after.strain, before.volume - after.volume});
-    relaxed = ((lost[0] + lost[4]) + (lost[1] + lost[5])) + ((lost[2] + lost[6]) + (lost[3] + lost[7]));
-    return multiply(F, stress(moduli, after));
+/// A block of elements in this step, of which a part is computed at a time.
+struct Block {
+    const ElementInputs& elements;
+    std::size_t block;
+    BlockNodes nodes;
+    MaterialConstants material;
+    Real duration;  // in steps
+    Real h;         // s, a step
+
+    template <class T>
+    T part_of(std::span<const ElementLane> column, std::size_t part) const {
+        return load_part<T>(column[block], part);
+    }
+
+    /// The dashpots give way for as long as the block is due, then the springs push. Returns the stress, Pa, and writes
+    /// what the dashpots have taken and what they dissipated, J.
+    template <class T>
+    [[gnu::always_inline]] LaneMat3<T> relax(const LaneMat3<T>& F, std::size_t part, ElementStrain& forgotten_next,
+                                             ElementLane& dissipated) const {
+        const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
+        const LaneSymmetric<T> strain = green_strain(F);
+        const ViscousStretch<T> before = viscous_stretch(strain, elements.viscous_strain[block], part);
+        const Real time = duration * h;
+        // backward Euler: never more than all
+        const ViscousStretch<T> after{
+            T(1.0 / (1.0 + time * part_of<T>(elements.relaxation_rate, part))) * before.strain,
+            before.volume / (1.0 + (time / bulk_time) * part_of<T>(elements.own_frequency, part))};
+        const LaneSymmetric<T> next = strain - after.strain;
+        store_part(next.xx, forgotten_next[0], part);
+        store_part(next.yy, forgotten_next[1], part);
+        store_part(next.zz, forgotten_next[2], part);
+        store_part(next.xy, forgotten_next[3], part);
+        store_part(next.yz, forgotten_next[4], part);
+        store_part(next.zx, forgotten_next[5], part);
+        store_part(T(strain.trace() - after.volume), forgotten_next[6], part);
+        // What the springs, as stretched as they push, do to the dashpots. Not the drop of their energy: the kick that
+        // follows is by so much weaker, which velocities half a step off the positions do not show yet.
+        store_part(T(part_of<T>(elements.volume, part) *
+                     work_density(moduli, after, {before.strain - after.strain, before.volume - after.volume})),
+                   dissipated, part);
+        return multiply(F, stress(moduli, after));
+    }
+
+    [[gnu::always_inline]] void forces_of_part(std::size_t part, std::span<const Vec3> position,
+                                               std::span<const Vec3> velocity,
+                                               std::span<const ElementRotation> rotation, const ElementMemory& next,
+                                               ElementLane& dissipated, ElementForces* force) const {
+        using T = KernelReal;
+        const LaneMat3<T> F = deformation_gradient(nodes, part, position);
+        const T volume = part_of<T>(elements.volume, part);
+        LaneMat3<T> P = with_law(material.model, [&](auto law) {
+            if constexpr (law.has_frame) {
+                LaneQuaternion<T> q = load_part<T>(rotation[block], part);
+                extract_rotation(F, volume, q);
+                store_part(q, next.rotation[block], part);
+                return law.stress(material, F, rotation_of(q));
+            } else {
+                return law.stress(material, F);
+            }
+        });
+        if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0)
+            P = P +
+                viscous_stress(material, elements.viscous_time[block], F, deformation_gradient(nodes, part, velocity));
+        if (material.relaxes() && !next.viscous_strain.empty())
+            P = P + relax(F, part, next.viscous_strain[block], dissipated);
+        write_forces(P, nodes, part, duration * volume, force);
+    }
+};
+
+/// The same order however many lanes are computed at once.
+Real sum_of(const ElementLane& lanes) {
+    const Real* const x = lanes.lane;
+    return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
 }
 
 }  // namespace
@@ -60,9 +115,9 @@ LaneMat3<Real8> viscous_stress(const MaterialConstants& material, Real time, con
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, std::span<ElementForces> force) {
-    SKERRY_CHECK(force.size() == elements.node.size() && rotation.size() == force.size() &&
-                 next.rotation.size() == force.size());
-    parallel_for(executor, elements.node.size(), blocks_per_job, [&](std::size_t begin, std::size_t end) {
+    SKERRY_CHECK(force.size() == elements.node.size() && rotation.size() == elements.blocks() &&
+                 next.rotation.size() == elements.blocks());
+    parallel_for(executor, elements.blocks(), blocks_per_job, [&](std::size_t begin, std::size_t end) {
         if (elements.schedule.none_active(begin, end)) {
             if (!next.relaxed.empty()) std::fill(next.relaxed.begin() + begin, next.relaxed.begin() + end, Real{0});
             return;
@@ -73,27 +128,12 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 if (!next.relaxed.empty()) next.relaxed[b] = 0;
                 continue;
             }
-            const ElementRest& B = elements.inverse_rest[b];
-            const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];
-            const LaneMat3<Real8> F = deformation_gradient(edges(elements.node[b], position), B);
-            LaneMat3<Real8> P = with_law(material.model, [&](auto law) {
-                if constexpr (law.has_frame) {
-                    LaneQuaternion<Real8> q = load(rotation[b]);
-                    extract_rotation(F, load(elements.volume[b]), q);
-                    store(q, next.rotation[b]);
-                    return law.stress(material, F, rotation_of(q));
-                } else {
-                    return law.stress(material, F);
-                }
-            });
-            if (!elements.viscous_time.empty() && elements.viscous_time[b] > 0)
-                P = P + viscous_stress(material, elements.viscous_time[b], F,
-                                       deformation_gradient(edges(elements.node[b], velocity), B));
-            if (material.relaxes() && !next.viscous_strain.empty())
-                P = P + relax(viscous_moduli(material, elements.relaxing_share[b]), F, load(elements.volume[b]),
-                              load(elements.relaxation_rate[b]), load(elements.own_frequency[b]), duration * h,
-                              elements.viscous_strain[b], next.viscous_strain[b], next.relaxed[b]);
-            spread_forces(P, B, duration * load(elements.volume[b]), force[b]);
+            const Block block{elements, b, elements.nodes_of(b), elements.material_of(b), duration, h};
+            ElementForces* const rows = force.data() + static_cast<std::size_t>(elements.first[b]);
+            ElementLane dissipated{};
+            for (std::size_t part = 0; part < kernel_parts; ++part)
+                block.forces_of_part(part, position, velocity, rotation, next, dissipated, rows);
+            if (!next.relaxed.empty()) next.relaxed[b] = sum_of(dissipated);
         }
     });
     const auto relaxes = [](const MaterialConstants& material) { return material.relaxes(); };

@@ -1,4 +1,4 @@
-// Elastic forces of the tetrahedra (docs/methods/elasticity.md 1).
+// Elastic forces of the elements (docs/methods/elasticity.md 1).
 #pragma once
 
 #include <span>
@@ -13,10 +13,13 @@
 namespace skerry {
 
 struct ElementInputs {
-    std::span<const ElementNodes> node;
-    std::span<const ElementRest> inverse_rest;
+    std::span<const Index> first, count;  // rows of the two below, by block
+    std::span<const NodeLane> node;
+    std::span<const ElementGradient> gradient;
     std::span<const ElementLane> volume;
+    std::span<const ElementLane> mass_share;
     std::span<const Index> material;
+    std::span<const ElementPart> part;
     std::span<const MaterialConstants> constants;
     std::span<const Real> viscous_time = {};  // s; empty: nothing is viscous
     // Of what relaxes; empty: nothing does
@@ -25,14 +28,28 @@ struct ElementInputs {
     std::span<const ElementStrain> viscous_strain = {};
     ElementSchedule schedule = {};
 
+    std::size_t blocks() const { return first.size(); }
+    BlockNodes nodes_of(std::size_t block) const {
+        const auto row = static_cast<std::size_t>(first[block]);
+        return {node.data() + row, gradient.data() + row, count[block]};
+    }
+    MaterialConstants material_of(std::size_t block) const {
+        return part_of(constants[static_cast<std::size_t>(material[block])], part[block]);
+    }
+
     /// `any_asleep`: some body rests. Without it and `active`: all elements, whether they are active in this step or
     /// not.
-    static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const MaterialTable& material,
-                              const BodyTable& body, const ActiveLevels& active = {}, const bool& any_asleep = false) {
-        return {.node = binder.read(element.node),
-                .inverse_rest = binder.read(element.inverse_rest),
+    static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
+                              const MaterialTable& material, const BodyTable& body, const ActiveLevels& active = {},
+                              const bool& any_asleep = false) {
+        return {.first = binder.read(element.first),
+                .count = binder.read(element.count),
+                .node = binder.read(nodes.node),
+                .gradient = binder.read(nodes.gradient),
                 .volume = binder.read(element.volume),
+                .mass_share = binder.read(element.mass_share),
                 .material = binder.read(element.material),
+                .part = binder.read(element.part),
                 .constants = binder.read(material.constants),
                 .viscous_time = binder.read(element.viscous_time),
                 .relaxation_rate = binder.read(element.relaxation_rate),
@@ -60,11 +77,11 @@ struct ElementMemory {
     }
 };
 
-/// force[block][lane][a]: N, on corner a of each element, from the first Piola-Kirchhoff stress P(F), F = Ds B:
-/// (f1 f2 f3) = -V P B^T, f0 = -(f1 + f2 + f3). Corotational elements start the extraction of their frame from
-/// `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Blocks that are not active
-/// keep what they had; those that are active for several steps at once get so many times the force. Parallel over
-/// blocks of lanes.
+/// force[row][lane]: N, on the nodes of each element, from the first Piola-Kirchhoff stress P(F),
+/// F = sum_k (x_k - x_0) (x) g_k: f_k = -V P g_k, f_0 = -(f_1 + f_2 + ...). Corotational elements start the extraction
+/// of their frame from `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Blocks
+/// that are not active keep what they had; those that are active for several steps at once get so many times the force.
+/// Parallel over blocks of lanes.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, std::span<ElementForces> force);

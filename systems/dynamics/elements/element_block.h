@@ -1,7 +1,7 @@
-// What the kernels do with a block of element_lanes tetrahedra: fetch its corners, form F, spread its forces.
+// What the kernels do with a block: fetch its nodes, form F, write its forces.
 #pragma once
 
-#include <cstring>
+#include <algorithm>
 #include <span>
 
 #include "components/element_table.h"
@@ -9,43 +9,40 @@
 
 namespace skerry {
 
-/// Four reals: a position and whatever follows it.
-typedef Real Real4 __attribute__((vector_size(4 * sizeof(Real))));
-
-inline Real4 load_position(const Vec3* at) {
-    Real4 p;
-    std::memcpy(&p, static_cast<const void*>(at), sizeof p);
-    return p;
+/// A position and whatever follows it.
+[[gnu::always_inline]] inline Real4 load_position(const Vec3* at) {
+    return half_at(at->data());
 }
 
-/// Positions of one corner of all lanes as (x, y, z, next node's x) of lanes 0 4, 1 5, 2 6, 3 7. A full-width load per
-/// node and a few shuffles, in place of three gathers, which cost a load per lane each.
-struct CornerPairs {
-    Real8 p04, p15, p26, p37;
+/// One node of as many lanes as the kernel takes at once, in the order in which the transposes below want them. A
+/// full-width load per node and a few shuffles, in place of three gathers, which cost a load per lane each.
+#ifdef __AVX512F__
+/// (x, y, z, next node's x) of lanes 0 4, 1 5, 2 6, 3 7
+struct Corner {
+    Real8 pair[4];
 };
 
-[[gnu::always_inline]] inline CornerPairs load_corner(const Lanes<Index, element_lanes>& node, const Vec3* position) {
+[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t, const Vec3* position) {
     const auto pair = [&](std::size_t l) {
         return __builtin_shufflevector(load_position(position + node[l]), load_position(position + node[l + 4]), 0, 1,
                                        2, 3, 4, 5, 6, 7);
     };
-    return {pair(0), pair(1), pair(2), pair(3)};
+    return {{pair(0), pair(1), pair(2), pair(3)}};
 }
 
 /// The same for a block that touches the last node: nothing follows its position.
-[[gnu::noinline]] inline CornerPairs load_corner_near_end(const Lanes<Index, element_lanes>& node,
-                                                          const Vec3* position) {
+[[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t, const Vec3* position) {
     const auto pair = [&](std::size_t l) {
         const Vec3 &a = position[node[l]], &b = position[node[l + 4]];
         return Real8{a[0], a[1], a[2], 0, b[0], b[1], b[2], 0};
     };
-    return {pair(0), pair(1), pair(2), pair(3)};
+    return {{pair(0), pair(1), pair(2), pair(3)}};
 }
 
 /// Corner minus corner 0, lanes side by side.
-[[gnu::always_inline]] inline LaneVec3<Real8> edge(const CornerPairs& corner, const CornerPairs& corner0) {
-    const Real8 d04 = corner.p04 - corner0.p04, d15 = corner.p15 - corner0.p15;
-    const Real8 d26 = corner.p26 - corner0.p26, d37 = corner.p37 - corner0.p37;
+[[gnu::always_inline]] inline LaneVec3<Real8> edge(const Corner& corner, const Corner& corner0) {
+    const Real8 d04 = corner.pair[0] - corner0.pair[0], d15 = corner.pair[1] - corner0.pair[1];
+    const Real8 d26 = corner.pair[2] - corner0.pair[2], d37 = corner.pair[3] - corner0.pair[3];
     const Real8 low01 = __builtin_shufflevector(d04, d15, 0, 8, 2, 10, 4, 12, 6, 14);   // x0 x1 z0 z1 x4 x5 z4 z5
     const Real8 high01 = __builtin_shufflevector(d04, d15, 1, 9, 3, 11, 5, 13, 7, 15);  // y0 y1 .. .. y4 y5 .. ..
     const Real8 low23 = __builtin_shufflevector(d26, d37, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -55,60 +52,175 @@ struct CornerPairs {
             __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
 
-/// The columns of Ds: corners 1 to 3 minus corner 0.
-[[gnu::always_inline]] inline LaneMat3<Real8> edges(const ElementNodes& node, std::span<const Vec3> position) {
-    Index highest = 0;
-    for (std::size_t a = 0; a < 4; ++a)
-        for (std::size_t l = 0; l < element_lanes; ++l) highest = node[a][l] > highest ? node[a][l] : highest;
-    if (static_cast<std::size_t>(highest) + 1 < position.size()) [[likely]] {
-        const CornerPairs corner0 = load_corner(node[0], position.data());
-        return {edge(load_corner(node[1], position.data()), corner0),
-                edge(load_corner(node[2], position.data()), corner0),
-                edge(load_corner(node[3], position.data()), corner0)};
-    }
-    const CornerPairs corner0 = load_corner_near_end(node[0], position.data());
-    return {edge(load_corner_near_end(node[1], position.data()), corner0),
-            edge(load_corner_near_end(node[2], position.data()), corner0),
-            edge(load_corner_near_end(node[3], position.data()), corner0)};
+/// x, y and z of the lanes one after the other.
+[[gnu::always_inline]] inline void store_forces(const LaneVec3<Real8>& f, std::size_t, ElementForces& force) {
+    const Real8 xy_low = __builtin_shufflevector(f.x, f.y, 0, 8, -1, 1, 9, -1, 2, 10);
+    const Real8 xy_middle = __builtin_shufflevector(f.x, f.y, -1, 3, 11, -1, 4, 12, -1, 5);
+    const Real8 xy_high = __builtin_shufflevector(f.x, f.y, 13, -1, 6, 14, -1, 7, 15, -1);
+    const Real8 out[3] = {__builtin_shufflevector(xy_low, f.z, 0, 1, 8, 3, 4, 9, 6, 7),
+                          __builtin_shufflevector(xy_middle, f.z, 10, 1, 2, 11, 4, 5, 12, 7),
+                          __builtin_shufflevector(xy_high, f.z, 0, 13, 2, 3, 14, 5, 6, 15)};
+    for (std::size_t k = 0; k < 3; ++k) *reinterpret_cast<Real8InMemory*>(force[0].data() + 8 * k) = out[k];
+}
+#else
+struct Corner {
+    Real4 lane[4];  // x, y, z, next node's x
+};
+
+[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t part, const Vec3* position) {
+    const Index* const of = node.lane + 4 * part;
+    return {{load_position(position + of[0]), load_position(position + of[1]), load_position(position + of[2]),
+             load_position(position + of[3])}};
 }
 
-/// F = Ds B.
-[[gnu::always_inline]] inline LaneMat3<Real8> deformation_gradient(const LaneMat3<Real8>& Ds, const ElementRest& B) {
-    return {load(B[0]) * Ds.c0 + load(B[1]) * Ds.c1 + load(B[2]) * Ds.c2,
-            load(B[3]) * Ds.c0 + load(B[4]) * Ds.c1 + load(B[5]) * Ds.c2,
-            load(B[6]) * Ds.c0 + load(B[7]) * Ds.c1 + load(B[8]) * Ds.c2};
-}
-
-/// Four components of the forces of all lanes, lane l to out + 12 l: a 4 x 8 transpose.
-[[gnu::always_inline]] inline void spread(const Real8& a, const Real8& b, const Real8& c, const Real8& d, Real* out) {
-    const Real8 ab_even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
-                ab_odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-    const Real8 cd_even = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14),
-                cd_odd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
-    const auto store_pair = [&](const Real8& two, int low, int high) {
-        const Real4 first = __builtin_shufflevector(two, two, 0, 1, 2, 3),
-                    second = __builtin_shufflevector(two, two, 4, 5, 6, 7);
-        std::memcpy(out + 12 * low, &first, sizeof first);
-        std::memcpy(out + 12 * high, &second, sizeof second);
+/// The same for a block that touches the last node: nothing follows its position.
+[[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t part, const Vec3* position) {
+    const auto at = [&](std::size_t l) {
+        const Vec3& p = position[node[4 * part + l]];
+        return Real4{p[0], p[1], p[2], 0};
     };
-    store_pair(__builtin_shufflevector(ab_even, cd_even, 0, 1, 8, 9, 4, 5, 12, 13), 0, 4);
-    store_pair(__builtin_shufflevector(ab_odd, cd_odd, 0, 1, 8, 9, 4, 5, 12, 13), 1, 5);
-    store_pair(__builtin_shufflevector(ab_even, cd_even, 2, 3, 10, 11, 6, 7, 14, 15), 2, 6);
-    store_pair(__builtin_shufflevector(ab_odd, cd_odd, 2, 3, 10, 11, 6, 7, 14, 15), 3, 7);
+    return {{at(0), at(1), at(2), at(3)}};
 }
 
-/// (f1 f2 f3) = -V P B^T and f0 = -(f1 + f2 + f3), corner by corner into `force`.
-[[gnu::always_inline]] inline void spread_forces(const LaneMat3<Real8>& P, const ElementRest& B, const Real8& volume,
-                                                 ElementForces& force) {
-    const LaneMat3<Real8> Q = (-volume) * P;
-    const LaneVec3<Real8> f1 = load(B[0]) * Q.c0 + load(B[3]) * Q.c1 + load(B[6]) * Q.c2;
-    const LaneVec3<Real8> f2 = load(B[1]) * Q.c0 + load(B[4]) * Q.c1 + load(B[7]) * Q.c2;
-    const LaneVec3<Real8> f3 = load(B[2]) * Q.c0 + load(B[5]) * Q.c1 + load(B[8]) * Q.c2;
-    const LaneVec3<Real8> f0{-(f1.x + f2.x + f3.x), -(f1.y + f2.y + f3.y), -(f1.z + f2.z + f3.z)};
-    Real* out = force[0][0].data();
-    spread(f0.x, f0.y, f0.z, f1.x, out);
-    spread(f1.y, f1.z, f2.x, f2.y, out + 4);
-    spread(f2.z, f3.x, f3.y, f3.z, out + 8);
+/// Corner minus corner 0, lanes side by side.
+[[gnu::always_inline]] inline LaneVec3<Real4> edge(const Corner& corner, const Corner& corner0) {
+    const Real4 d0 = corner.lane[0] - corner0.lane[0], d1 = corner.lane[1] - corner0.lane[1];
+    const Real4 d2 = corner.lane[2] - corner0.lane[2], d3 = corner.lane[3] - corner0.lane[3];
+    const Real4 low01 = __builtin_shufflevector(d0, d1, 0, 4, 2, 6);   // x0 x1 z0 z1
+    const Real4 high01 = __builtin_shufflevector(d0, d1, 1, 5, 3, 7);  // y0 y1 .. ..
+    const Real4 low23 = __builtin_shufflevector(d2, d3, 0, 4, 2, 6);
+    const Real4 high23 = __builtin_shufflevector(d2, d3, 1, 5, 3, 7);
+    return {__builtin_shufflevector(low01, low23, 0, 1, 4, 5), __builtin_shufflevector(high01, high23, 0, 1, 4, 5),
+            __builtin_shufflevector(low01, low23, 2, 3, 6, 7)};
+}
+
+/// x, y and z of the lanes one after the other.
+[[gnu::always_inline]] inline void store_forces(const LaneVec3<Real4>& f, std::size_t part, ElementForces& force) {
+    const Real4 xy = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // x0 y0 x2 y2
+    const Real4 zx = __builtin_shufflevector(f.z, f.x, 0, 5, 2, 7);  // z0 x1 z2 x3
+    const Real4 yz = __builtin_shufflevector(f.y, f.z, 1, 5, 3, 7);  // y1 z1 y3 z3
+    Real* const out = force[4 * part].data();
+    store_half(__builtin_shufflevector(xy, zx, 0, 1, 4, 5), out);
+    store_half(__builtin_shufflevector(yz, xy, 0, 1, 6, 7), out + 4);
+    store_half(__builtin_shufflevector(zx, yz, 2, 3, 6, 7), out + 8);
+}
+#endif
+
+/// All lanes of a block from the parts that the kernel takes at once.
+template <class Part>
+[[gnu::always_inline]] inline LaneMat3<Real8> joined(Part&& part_of_block) {
+    if constexpr (kernel_parts == 1) {
+        return part_of_block(0);
+    } else {
+        Lanes<Real, element_lanes> all[9];
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const LaneMat3<KernelReal> of = part_of_block(part);
+            const KernelReal entry[9] = {of.c0.x, of.c0.y, of.c0.z, of.c1.x, of.c1.y,
+                                         of.c1.z, of.c2.x, of.c2.y, of.c2.z};
+            for (std::size_t i = 0; i < 9; ++i) store_part(entry[i], all[i], part);
+        }
+        return {{load(all[0]), load(all[1]), load(all[2])},
+                {load(all[3]), load(all[4]), load(all[5])},
+                {load(all[6]), load(all[7]), load(all[8])}};
+    }
+}
+
+/// The highest row among the nodes of some rows.
+[[gnu::always_inline]] inline Index highest_of(const NodeLane* node, Index count) {
+    Index highest = 0;
+    for (Index k = 0; k < count; ++k)
+        for (std::size_t l = 0; l < element_lanes; ++l) highest = std::max(highest, node[k][l]);
+    return highest;
+}
+
+/// Whether something follows the position of every node.
+[[gnu::always_inline]] inline bool clear_of_end(const NodeLane* node, Index count, std::span<const Vec3> position) {
+    return static_cast<std::size_t>(highest_of(node, count)) + 1 < position.size();
+}
+
+/// The columns of Ds: corners 1 to 3 minus corner 0.
+template <class Load>
+[[gnu::always_inline]] inline LaneMat3<KernelReal> edges_of_part(const NodeLane* node, std::size_t part,
+                                                                 const Vec3* position, Load&& load_nodes) {
+    const Corner corner0 = load_nodes(node[0], part, position);
+    return {edge(load_nodes(node[1], part, position), corner0), edge(load_nodes(node[2], part, position), corner0),
+            edge(load_nodes(node[3], part, position), corner0)};
+}
+
+/// The same of all lanes of a block of tetrahedra.
+inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3> position) {
+    const bool clear = clear_of_end(node.data(), 4, position);
+    return joined([&](std::size_t part) {
+        return clear ? edges_of_part(node.data(), part, position.data(), load_corner)
+                     : edges_of_part(node.data(), part, position.data(), load_corner_near_end);
+    });
+}
+
+template <class T>
+[[gnu::always_inline]] inline LaneVec3<T> load_gradient(const ElementGradient& gradient, std::size_t part) {
+    return {load_part<T>(gradient[0], part), load_part<T>(gradient[1], part), load_part<T>(gradient[2], part)};
+}
+
+inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
+    return load_gradient<Real8>(gradient, 0);
+}
+
+/// sum_k (x_k - x_0) (x) g_k
+template <class Load>
+[[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
+                                                                    const Vec3* position, Load&& load_nodes) {
+    const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
+    if (block.count == 4) {
+        const LaneMat3<KernelReal> d = edges_of_part(block.node, part, position, load_nodes);
+        const LaneVec3<KernelReal> g1 = gradient(1), g2 = gradient(2), g3 = gradient(3);
+        return {g1.x * d.c0 + g2.x * d.c1 + g3.x * d.c2, g1.y * d.c0 + g2.y * d.c1 + g3.y * d.c2,
+                g1.z * d.c0 + g2.z * d.c1 + g3.z * d.c2};
+    }
+    const Corner anchor = load_nodes(block.node[0], part, position);
+    const auto term = [&](Index k) {
+        const LaneVec3<KernelReal> d = edge(load_nodes(block.node[k], part, position), anchor), g = gradient(k);
+        return LaneMat3<KernelReal>{g.x * d, g.y * d, g.z * d};
+    };
+    LaneMat3<KernelReal> F = term(1);
+    for (Index k = 2; k < block.count; ++k) F = F + term(k);
+    return F;
+}
+
+/// F = sum_k (x_k - x_0) (x) g_k of a part of a block; of velocities: its rate.
+[[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
+                                                                        std::span<const Vec3> position) {
+    if (clear_of_end(block.node, block.count, position)) [[likely]]
+        return gradient_of_part(block, part, position.data(), load_corner);
+    return gradient_of_part(block, part, position.data(), load_corner_near_end);
+}
+
+/// The same of all lanes.
+inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<const Vec3> position) {
+    return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
+}
+
+/// f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...), row by row into `force`, of a part of a block.
+[[gnu::always_inline]] inline void write_forces(const LaneMat3<KernelReal>& P, const BlockNodes& block,
+                                                std::size_t part, const KernelReal& volume, ElementForces* force) {
+    const LaneMat3<KernelReal> Q = (-volume) * P;
+    const auto on_node = [&](Index k) {
+        const LaneVec3<KernelReal> g = load_gradient<KernelReal>(block.gradient[k], part);
+        return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
+    };
+    LaneVec3<KernelReal> sum = on_node(1);
+    store_forces(sum, part, force[1]);
+    const auto add = [&](Index k) {
+        const LaneVec3<KernelReal> f = on_node(k);
+        store_forces(f, part, force[k]);
+        sum = sum + f;
+    };
+    if (block.count == 4) {
+        add(2);
+        add(3);
+    } else {
+        for (Index k = 2; k < block.count; ++k) add(k);
+    }
+    store_forces({-sum.x, -sum.y, -sum.z}, part, force[0]);
 }
 
 }  // namespace skerry

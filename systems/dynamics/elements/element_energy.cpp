@@ -22,9 +22,9 @@ void for_each_block(const ElementInputs& elements, Range blocks, std::span<const
     const Real8 one = Real8{} + 1.0;
     LaneQuaternion<Real8> q{one, {}, {}, {}};
     for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];
+        const MaterialConstants material = elements.material_of(b);
         const Real8 volume = load(elements.volume[b]);
-        const LaneMat3<Real8> F = deformation_gradient(edges(elements.node[b], position), elements.inverse_rest[b]);
+        const LaneMat3<Real8> F = deformation_gradient(elements.nodes_of(b), position);
         if (has_frame(material.model)) extract_rotation(F, volume, q);
         visit(b, material, volume, F, rotation_of(q));
     }
@@ -76,50 +76,34 @@ Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const 
                            P = P + multiply(F, stress(viscous_moduli(material, elements.relaxing_share[b]),
                                                       viscous_stretch(green_strain(F), elements.viscous_strain[b])));
                        const Real8 of_lanes =
-                           volume * inner_product(P, deformation_gradient(edges(elements.node[b], velocity),
-                                                                          elements.inverse_rest[b]));
+                           volume * inner_product(P, deformation_gradient(elements.nodes_of(b), velocity));
                        for (std::size_t l = 0; l < element_lanes; ++l) power += of_lanes[l];
                    });
     return power;
 }
 
-void von_mises_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                      std::span<Real> von_mises) {
-    SKERRY_CHECK(von_mises.size() >= static_cast<std::size_t>(blocks.size()) * element_lanes);
+void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                   std::span<Mat3> stress) {
+    SKERRY_CHECK(stress.size() >= static_cast<std::size_t>(blocks.size()) * element_lanes);
     constexpr Real least_volume_ratio = 1e-6;  // below it the Cauchy stress has no meaning; the cap keeps it finite
     for_each_block(elements, blocks, position,
                    [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                        const LaneMat3<Real8>& R) {
                        const LaneMat3<Real8> P = stress_of(material, F, R);
+                       const std::size_t first = (b - static_cast<std::size_t>(blocks.begin)) * element_lanes;
                        for (std::size_t l = 0; l < element_lanes; ++l) {
                            const Mat3 f = lane_of(F, static_cast<int>(l));
                            const Real ratio =
                                std::max(std::abs(f.col(0).dot(f.col(1).cross(f.col(2)))), least_volume_ratio);
-                           const Mat3 cauchy = lane_of(P, static_cast<int>(l)) * f.transpose() / ratio;
-                           const Mat3 deviator = cauchy - (cauchy.trace() / 3) * Mat3::Identity();
-                           von_mises[(b - static_cast<std::size_t>(blocks.begin)) * element_lanes + l] =
-                               volume[l] > 0 ? std::sqrt(1.5 * deviator.squaredNorm()) : 0;
+                           stress[first + l] = lane_of(P, static_cast<int>(l)) * f.transpose() / ratio;
+                           if (!(volume[l] > 0)) stress[first + l].setZero();
                        }
                    });
 }
 
-VolumeRatios measure_volume_ratios(const ElementInputs& elements, Range blocks, std::span<const Vec3> position) {
-    VolumeRatios worst{std::numeric_limits<Real>::infinity(), no_index};
-    for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        const LaneMat3<Real8> F = deformation_gradient(edges(elements.node[b], position), elements.inverse_rest[b]);
-        const Real8 ratio = dot(F.c0, cross(F.c1, F.c2));
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            if (!(elements.volume[b][l] > 0)) continue;
-            const Index here = static_cast<Index>(b * element_lanes + l);
-            worst.near_inversion += ratio[l] < near_inversion;
-            worst.inverted += ratio[l] < 0;
-            // The first NaN stays: it is the smallest, and nothing compares below it.
-            if (std::isnan(worst.smallest) || ratio[l] >= worst.smallest) continue;
-            worst.smallest = ratio[l];
-            worst.element = here;
-        }
-    }
-    return worst;
+Real von_mises(const Mat3& cauchy) {
+    const Mat3 deviator = cauchy - (cauchy.trace() / 3) * Mat3::Identity();
+    return std::sqrt(1.5 * deviator.squaredNorm());
 }
 
 }  // namespace skerry

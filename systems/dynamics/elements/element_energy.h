@@ -16,19 +16,11 @@ Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const
 Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Vec3> velocity);
 
-/// Von Mises stress (Pa, of the Cauchy stress) of each element of a range of blocks: von_mises[8 (block - blocks.begin)
-/// + lane].
-void von_mises_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                      std::span<Real> von_mises);
+/// Cauchy stress (Pa) of each element of a range of blocks: stress[8 (block - blocks.begin) + lane]. What relaxes has
+/// no part in it.
+void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<Mat3> stress);
 
-/// det F over the elements of a range of blocks: the smallest, which element has it, how many are below near_inversion,
-/// and how many below 0: inverted. A value that is not a number counts as the smallest.
-struct VolumeRatios {
-    Real smallest;
-    Index element;
-    Index near_inversion = 0, inverted = 0;
-};
-inline constexpr Real near_inversion = 0.1;
-VolumeRatios measure_volume_ratios(const ElementInputs& elements, Range blocks, std::span<const Vec3> position);
+/// Pa, of a Cauchy stress.
+Real von_mises(const Mat3& cauchy);
 
 }  // namespace skerry

@@ -11,11 +11,10 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t node_blocks_per_job = 4;
-constexpr int corners_per_block = 4 * element_lanes;
 
 struct Kick {
     const KickInputs& nodes;
-    const Vec3* corner_force;  // a flat list: 4 corners an element
+    const Vec3* corner_force;  // a flat list: element_lanes a row
     std::span<const Vec3> velocity;
     Real h;
     std::span<Vec3> force, velocity_next;
@@ -81,7 +80,7 @@ private:
     Vec3 sum_of_due(std::size_t n, unsigned counts) const {
         Vec3 sum = Vec3::Zero();
         for (const Index corner : nodes.corners[n]) {
-            const unsigned level = nodes.active.level[static_cast<std::size_t>(corner / corners_per_block)];
+            const unsigned level = nodes.active.level[static_cast<std::size_t>(corner / element_lanes)];
             if (counts >> level == 0) break;  // elements are sorted by level: nothing that counts comes after
             if ((counts >> level & 1) != 0) sum += corner_force[corner];
         }
@@ -108,9 +107,8 @@ void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<con
     SKERRY_CHECK(nodes.corners.size() == count && nodes.mass.size() == count && nodes.inverse_mass.size() == count);
     SKERRY_CHECK(velocity.size() == count && force.size() == count &&
                  (nodes.load.empty() || nodes.load.size() == count));
-    const Kick kick{nodes,    nodes.element_force.empty() ? nullptr : &nodes.element_force[0][0][0],
-                    velocity, h,
-                    force,    velocity_next};
+    const Kick kick{
+        nodes, nodes.element_force.empty() ? nullptr : &nodes.element_force[0][0], velocity, h, force, velocity_next};
     parallel_for(executor, nodes.block_begin.size(), node_blocks_per_job, [&](std::size_t first, std::size_t last) {
         for (std::size_t b = first; b < last; ++b) kick.block(b);
     });

@@ -18,12 +18,13 @@ namespace skerry {
 struct ActiveCorners {
     std::span<const LevelMask> body_active = {};  // BodyTable
     std::span<const LevelMask> node_levels = {};  // NodeTable
-    std::span<const std::uint8_t> level = {};     // ElementBlockTable
+    std::span<const std::uint8_t> level = {};     // ElementNodeTable
 };
 
 struct KickInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
-    RaggedView<Index> corners;                                  // by node: 4 * element + corner
+    RaggedView<Index> corners;                                  // by node: element_lanes * row + lane
+    // of ElementNodeTable
     std::span<const ElementForces> element_force;
     ActiveCorners active;
     std::span<const Real> mass, inverse_mass;
@@ -34,7 +35,7 @@ struct KickInputs {
 
     /// `corners`: by node. `loaded`: some node has a load. `any_asleep`: some body rests.
     static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const Ragged<Index>& corners,
-                           const ElementBlockTable& element, const NodeTable& node, const BodyTable& body,
+                           const ElementNodeTable& element, const NodeTable& node, const BodyTable& body,
                            const Vec3& gravity, const bool& loaded, const bool& any_asleep) {
         return {.block_begin = binder.read(block.begin),
                 .block_end = binder.read(block.end),

@@ -22,9 +22,6 @@ struct Search {
         for (Index b = blocks.begin; b < blocks.end; ++b)
             visit(static_cast<std::size_t>(b), static_cast<std::size_t>(b - blocks.begin) * element_lanes);
     }
-    Real& sum_at(std::size_t b, std::size_t a, std::size_t l) const {
-        return stiffness_sum[static_cast<std::size_t>(elements.node[b][a][l])];
-    }
 };
 
 using Bounds = std::vector<Real>;  // 1/s^2, of omega^2 by lane
@@ -43,16 +40,11 @@ Bounds bounds_alone(const Search& search) {
 
 /// Bounds of the elements of at least this level, which share all mass among themselves.
 void share(const Search& search, std::span<const std::uint8_t> level, int least, Bounds& bounds) {
-    search.for_each_block([&](std::size_t b, std::size_t) {
-        for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t l = 0; l < element_lanes; ++l) search.sum_at(b, a, l) = 0;
-    });
+    search.for_each_block(
+        [&](std::size_t b, std::size_t) { clear_stiffness(search.elements, b, search.stiffness_sum); });
     search.for_each_block([&](std::size_t b, std::size_t first) {
-        const std::array<Real8, 4> stiffness =
-            corner_stiffness(search.elements, b, deformation_of(search.elements, b, search.position));
-        for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t l = 0; l < element_lanes; ++l)
-                if (level[first + l] >= least) search.sum_at(b, a, l) += stiffness[a][l];
+        add_stiffness(search.elements, b, deformation_of(search.elements, b, search.position), search.stiffness_sum,
+                      [&](std::size_t l) { return level[first + l] >= least; });
     });
     LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
     search.for_each_block([&](std::size_t b, std::size_t first) {

@@ -144,7 +144,8 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
             law.add_stiffness(material, F, H);
         }
     });
-    if (viscous.moduli.mu > 0 || viscous.moduli.bulk > 0) add_viscous_stiffness(viscous, F, H);
+    if (viscous.moduli.mu > 0 || viscous.moduli.lambda > 0 || viscous.moduli.bulk > 0)
+        add_viscous_stiffness(viscous, F, H);
     const Real8 bound = volume * largest_eigenvalue_bound(H.compressed());
     return volume > 0.0 ? bound : Real8{};
 }

@@ -42,6 +42,19 @@ Real mean_size(std::span<const ElementLane> volume) {
     return count > 0 ? std::cbrt(sum / count) : 0;
 }
 
+/// m, mean place of the nodes of an element.
+Vec3 middle_of(const BlockNodes& nodes, std::size_t lane, std::span<const Vec3> position) {
+    const Index anchor = nodes.node[0][lane];
+    Vec3 sum = position[static_cast<std::size_t>(anchor)];
+    Real count = 1;
+    for (Index k = 1; k < nodes.count; ++k) {
+        if (nodes.node[k][lane] == anchor) continue;  // a row that the element does not have
+        sum += position[static_cast<std::size_t>(nodes.node[k][lane])];
+        ++count;
+    }
+    return sum / count;
+}
+
 /// A number from 0 to 1 for every place. Multiples of these three, less whole numbers, fill an interval evenly, along a
 /// row of elements as well as in a cloud of them (the roots of x^4 = x + 1, Roberts 2018).
 Real share_of_place(const Vec3& place) {
@@ -65,13 +78,11 @@ void find_relaxation(const ElementInputs& elements, Range blocks, std::span<cons
         const Real8 squared =
             frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q);
         for (std::size_t l = 0; l < element_lanes; ++l) {
-            Vec3 place = Vec3::Zero();
-            for (std::size_t a = 0; a < 4; ++a)
-                place += rest_position[static_cast<std::size_t>(elements.node[b][a][l])] / 4;
-            out.relaxation_rate[i][l] = highest * std::pow(span, -share_of_place(place / size));
+            out.relaxation_rate[i][l] =
+                highest * std::pow(span, -share_of_place(middle_of(elements.nodes_of(b), l, rest_position) / size));
             out.own_frequency[i][l] = std::sqrt(squared[l]);
         }
-        const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];
+        const MaterialConstants material = elements.material_of(b);
         out.relaxing_share[i] = relaxing_share(material.loss_factor, span);
     }
 }

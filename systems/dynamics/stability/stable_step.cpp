@@ -1,6 +1,7 @@
 #include "systems/dynamics/stability/stable_step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -23,61 +24,93 @@ int top_level(const ElementInputs& elements, std::size_t first, std::size_t end)
     return top;
 }
 
+/// Calls visit(block, bound of omega^2 by lane, level) for every block, from the coarsest level down: an element shares
+/// masses with those of its level and of coarser ones alone (element_levels.h).
+template <class Visit>
+void for_each_bound(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                    std::span<const Real> mass, std::span<Real> stiffness_sum, Visit&& visit) {
+    SKERRY_CHECK(stiffness_sum.size() == position.size() && mass.size() == position.size());
+    const std::size_t first = static_cast<std::size_t>(blocks.begin), end = static_cast<std::size_t>(blocks.end);
+    const auto level_of = [&](std::size_t b) {
+        return elements.schedule.level.empty() ? 0 : int{elements.schedule.level[b]};
+    };
+    for (std::size_t b = first; b < end; ++b) clear_stiffness(elements, b, stiffness_sum);
+    // The frame of a corotational element starts from the same lane of the block before it: neighbours turn together.
+    const Real8 one = Real8{} + 1.0;
+    LaneQuaternion<Real8> q{one, {}, {}, {}};
+    for (int level = top_level(elements, first, end); level >= 0; --level) {
+        for (std::size_t b = first; b < end; ++b)
+            if (level_of(b) == level)
+                add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
+                              [](std::size_t) { return true; });
+        for (std::size_t b = first; b < end; ++b)
+            if (level_of(b) == level)
+                visit(b,
+                      frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q),
+                      level);
+    }
+}
+
+/// s, of an element whose bound of omega^2 this is.
+Real step_of(Real bound, int level) {
+    return step_of_level(step_times_frequency / std::sqrt(bound), level);
+}
+
 }  // namespace
 
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum) {
-    SKERRY_CHECK(stiffness_sum.size() == position.size() && mass.size() == position.size());
-    const std::size_t first = static_cast<std::size_t>(blocks.begin), end = static_cast<std::size_t>(blocks.end);
-    const auto sum_at = [&](std::size_t b, std::size_t a, std::size_t l) -> Real& {
-        return stiffness_sum[static_cast<std::size_t>(elements.node[b][a][l])];
-    };
-    const auto level_of = [&](std::size_t b) {
-        return elements.schedule.level.empty() ? 0 : int{elements.schedule.level[b]};
-    };
-    for (std::size_t b = first; b < end; ++b)
-        for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t l = 0; l < element_lanes; ++l) sum_at(b, a, l) = 0;
-
-    StableStep found{std::numeric_limits<Real>::infinity(), no_index};
-    // The frame of a corotational element starts from the same lane of the block before it: neighbours turn together.
-    const Real8 one = Real8{} + 1.0;
-    LaneQuaternion<Real8> q{one, {}, {}, {}};
-    // From the coarsest level down: an element shares masses with those of its level and of coarser ones alone
-    // (element_levels.h).
-    for (int level = top_level(elements, first, end); level >= 0; --level) {
-        for (std::size_t b = first; b < end; ++b) {
-            if (level_of(b) != level) continue;
-            const std::array<Real8, 4> stiffness = corner_stiffness(elements, b, deformation_of(elements, b, position));
-            for (std::size_t a = 0; a < 4; ++a)
-                for (std::size_t l = 0; l < element_lanes; ++l) sum_at(b, a, l) += stiffness[a][l];
-        }
-        Real highest = 0;
-        Index element = no_index;
-        for (std::size_t b = first; b < end; ++b) {
-            if (level_of(b) != level) continue;
-            const Real8 bound =
-                frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q);
-            for (std::size_t l = 0; l < element_lanes; ++l) {
-                const Index here = static_cast<Index>(b * element_lanes + l);
-                // a shape that is not finite has no stable step
-                if (!(bound[l] <= std::numeric_limits<Real>::max())) return {0, here};
-                if (bound[l] > highest) {
-                    highest = bound[l];
-                    element = here;
-                }
+    std::array<Real, element_level_count> highest{};
+    std::array<Index, element_level_count> element;
+    element.fill(no_index);
+    Index broken = no_index;
+    for_each_bound(elements, blocks, position, mass, stiffness_sum, [&](std::size_t b, const Real8& bound, int level) {
+        const auto at = static_cast<std::size_t>(level);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const Index here = static_cast<Index>(b * element_lanes + l);
+            // a shape that is not finite has no stable step
+            if (!(bound[l] <= std::numeric_limits<Real>::max()) && broken == no_index) broken = here;
+            if (bound[l] > highest[at]) {
+                highest[at] = bound[l];
+                element[at] = here;
             }
         }
-        if (element == no_index) continue;
-        const Real step = step_of_level(step_times_frequency / std::sqrt(highest), level);
-        if (step < found.step) found = {step, element};
+    });
+    if (broken != no_index) return {0, broken};
+    StableStep found{std::numeric_limits<Real>::infinity(), no_index};
+    for (int level = element_level_count - 1; level >= 0; --level) {
+        const auto at = static_cast<std::size_t>(level);
+        if (element[at] == no_index) continue;
+        if (const Real step = step_of(highest[at], level); step < found.step) found = {step, element[at]};
     }
     return found;
+}
+
+void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                      std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share) {
+    constexpr int rounds = 4;
+    constexpr Real least = 1e-3;  // of the share before: keeps what bounds nothing from giving all away
+    std::vector<ElementLane> step(mass_share.size());
+    for (int round = 0; round < rounds; ++round) {
+        Real shortest = std::numeric_limits<Real>::infinity();
+        for_each_bound(elements, blocks, position, mass, stiffness_sum,
+                       [&](std::size_t b, const Real8& bound, int level) {
+                           for (std::size_t l = 0; l < element_lanes; ++l) {
+                               Real& own = step[b - static_cast<std::size_t>(blocks.begin)][l];
+                               own = bound[l] > 0 ? step_of(bound[l], level) : std::numeric_limits<Real>::infinity();
+                               shortest = std::min(shortest, own);
+                           }
+                       });
+        if (!(shortest > 0) || shortest == std::numeric_limits<Real>::infinity()) return;
+        for (std::size_t b = 0; b < step.size(); ++b)
+            for (std::size_t l = 0; l < element_lanes; ++l) mass_share[b][l] *= std::max(least, shortest / step[b][l]);
+    }
 }
 
 Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> inverse_mass, int iterations) {
     std::vector<Vec3> u(position.size()), next(position.size());
+    std::vector<ElementForces> force;
     // A start that no symmetry of the mesh makes orthogonal to the mode looked for.
     for (std::size_t n = 0; n < u.size(); ++n)
         u[n] = Vec3(std::sin(12.9898 * static_cast<Real>(n + 1)), std::sin(78.233 * static_cast<Real>(n + 1)),
@@ -87,16 +120,17 @@ Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks,
         // Rayleigh quotient of M^-1/2 K M^-1/2 at w = M^1/2 u, and u <- M^-1 K u.
         for (Vec3& x : next) x.setZero();
         for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-            MaterialConstants material = elements.constants[static_cast<std::size_t>(elements.material[b])];
-            const Real8 one = Real8{} + 1.0, zero{};
-            const LaneMat3<Real8> identity{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-            const LaneMat3<Real8> F =
-                identity + deformation_gradient(edges(elements.node[b], u), elements.inverse_rest[b]);
-            ElementForces force;
-            spread_forces(Linear::stress(material, F), elements.inverse_rest[b], load(elements.volume[b]), force);
-            for (std::size_t l = 0; l < element_lanes; ++l)
-                for (std::size_t a = 0; a < 4; ++a)
-                    next[static_cast<std::size_t>(elements.node[b][a][l])] -= force[l][a];
+            const MaterialConstants material = elements.material_of(b);
+            const BlockNodes nodes = elements.nodes_of(b);
+            const KernelReal one = KernelReal{} + 1.0, zero{};
+            const LaneMat3<KernelReal> identity{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+            force.resize(static_cast<std::size_t>(nodes.count));
+            for (std::size_t part = 0; part < kernel_parts; ++part)
+                write_forces(Linear::stress(material, identity + deformation_gradient(nodes, part, u)), nodes, part,
+                             load_part<KernelReal>(elements.volume[b], part), force.data());
+            for (Index k = 0; k < nodes.count; ++k)
+                for (std::size_t l = 0; l < element_lanes; ++l)
+                    next[static_cast<std::size_t>(nodes.node[k][l])] -= force[static_cast<std::size_t>(k)][l];
         }
         Real energy = 0, size = 0, largest = 0;
         for (std::size_t n = 0; n < u.size(); ++n) {

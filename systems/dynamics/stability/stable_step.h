@@ -15,12 +15,19 @@ struct StableStep {
 };
 
 /// Stable step of one body in its present shape: the mass of each node is shared among its elements in proportion to
-/// their stiffness, and omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material Hessian of the
-/// present deformation bounded as docs/methods/stable_step.md 4 gives it. A rigorous bound (never above the exact
-/// limit), sequential, deterministic. Where elements have levels it is the step of level 0 for which every level has
-/// what element_levels.h asks. `stiffness_sum` is scratch, one entry a node.
+/// their stiffness and their mass_share, and omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material
+/// Hessian of the present deformation bounded as docs/methods/stable_step.md 4 gives it. A rigorous bound (never above
+/// the exact limit), sequential, deterministic. Where elements have levels it is the step of level 0 for which every
+/// level has what element_levels.h asks. `stiffness_sum` is scratch, one entry a node.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
+
+/// Makes the bound of stable_step sharper: elements whose own bound is low give mass to those whose is high,
+/// s <- s omega / omega_max, four times over (docs/methods/stable_step.md 2.1). The bound is rigorous with any positive
+/// shares, so that shares of the rest shape serve for every other. `mass_share`: of the blocks, all 1 before.
+/// Sequential, for new bodies.
+void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                      std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share);
 
 /// omega_max^2 of the rest stiffness by power iteration on the assembled linear operator (an estimate from below,
 /// docs/methods/stable_step.md 5): for tests and reports.

@@ -8,33 +8,27 @@ namespace skerry {
 
 namespace {
 
-/// Rest gradients of the four corners: the rows of B, and minus their sum for corner 0.
-struct Gradients {
-    LaneVec3<Real8> g[4];
-};
-
-Gradients gradients_of(const ElementRest& B) {
-    const LaneVec3<Real8> g1{load(B[0]), load(B[3]), load(B[6])}, g2{load(B[1]), load(B[4]), load(B[7])},
-        g3{load(B[2]), load(B[5]), load(B[8])};
-    return {{-1.0 * (g1 + g2 + g3), g1, g2, g3}};
-}
-
-/// Sum over the corners of g_a g_a^T / m_a.
+/// Sum over the nodes of g_k g_k^T / m_k.
 LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                     std::span<const Real> mass, std::span<const Real> stiffness_sum) {
-    const Gradients at = gradients_of(elements.inverse_rest[block]);
-    const std::array<Real8, 4> stiffness = corner_stiffness(elements, block, F);
+    const BlockNodes nodes = elements.nodes_of(block);
+    const Real8 weight = stiffness_weight(elements, block, F);
     LaneMat3<Real8> Q{};
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (Index k = 0; k < nodes.count; ++k) {
+        const LaneVec3<Real8> g = load_gradient(nodes.gradient[k]);
+        const Real8 stiffness = weight * dot(g, g);
         Real8 inverse{};
         for (std::size_t l = 0; l < element_lanes; ++l) {
-            const std::size_t n = static_cast<std::size_t>(elements.node[block][a][l]);
-            // No mass: a node that never moves.
+            const std::size_t n = static_cast<std::size_t>(nodes.node[k][l]);
+            // No mass: a node that never moves. No stiffness: one that is not there, or that the element does not hold.
             if (!(mass[n] > 0 && elements.volume[block][l] > 0)) continue;
-            inverse[l] = stiffness_sum.empty() ? 1 / mass[n] : stiffness_sum[n] / (mass[n] * stiffness[a][l]);
+            if (stiffness_sum.empty())
+                inverse[l] = 1 / mass[n];
+            else if (stiffness[l] > 0 || stiffness[l] != stiffness[l])
+                inverse[l] = stiffness_sum[n] / (mass[n] * stiffness[l]);
         }
-        const LaneVec3<Real8> scaled = inverse * at.g[a];
-        Q = Q + LaneMat3<Real8>{at.g[a].x * scaled, at.g[a].y * scaled, at.g[a].z * scaled};
+        const LaneVec3<Real8> scaled = inverse * g;
+        Q = Q + LaneMat3<Real8>{g.x * scaled, g.y * scaled, g.z * scaled};
     }
     return Q;
 }
@@ -42,23 +36,21 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
 }  // namespace
 
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position) {
-    return deformation_gradient(edges(elements.node[block], position), elements.inverse_rest[block]);
+    return deformation_gradient(elements.nodes_of(block), position);
 }
 
-std::array<Real8, 4> corner_stiffness(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F) {
-    const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[block])];
-    Real8 weight = load(elements.volume[block]);
+Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F) {
+    const MaterialConstants material = elements.material_of(block);
+    Real8 weight = load(elements.mass_share[block]) * load(elements.volume[block]);
     with_law(material.model, [&](auto law) {
         if constexpr (law.stiffness_varies) weight = weight * law.stiffness_bound(material, F);
     });
-    const Gradients at = gradients_of(elements.inverse_rest[block]);
-    return {weight * dot(at.g[0], at.g[0]), weight * dot(at.g[1], at.g[1]), weight * dot(at.g[2], at.g[2]),
-            weight * dot(at.g[3], at.g[3])};
+    return weight;
 }
 
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q) {
-    const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[block])];
+    const MaterialConstants material = elements.material_of(block);
     const LaneMat3<Real8> Q = inverse_mass_tensor(elements, block, F, mass, stiffness_sum);
     const Real8 volume = load(elements.volume[block]);
     // nothing, or no number where F is none: not every bound looks at F

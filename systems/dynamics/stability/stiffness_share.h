@@ -2,7 +2,6 @@
 // bounds each element then (docs/methods/stable_step.md 2).
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "systems/dynamics/elements/compute_element_forces.h"
@@ -17,11 +16,32 @@ inline constexpr Real step_times_frequency = 0.9 * 2;
 /// F of a block of elements.
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position);
 
-/// How stiff each corner is held: V |g_a|^2, times the bound of the material's Hessian where deformation changes it
-/// much.
-std::array<Real8, 4> corner_stiffness(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
+/// What an element weighs when the mass of its nodes is shared: its mass_share times V, times the bound of the
+/// material's Hessian where deformation changes it much. Node k counts with |g_k|^2 times this.
+Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
-/// Bound of omega^2 of each element of a block, 1/s^2, with masses m_a = mass k_a / stiffness_sum; without
+/// stiffness_sum[node] += the stiffness with which each element of the block holds it; of lanes where `counts` says so.
+template <class Counts>
+void add_stiffness(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                   std::span<Real> stiffness_sum, Counts&& counts) {
+    const BlockNodes nodes = elements.nodes_of(block);
+    const Real8 weight = stiffness_weight(elements, block, F);
+    for (Index k = 0; k < nodes.count; ++k) {
+        const LaneVec3<Real8> g = load_gradient(nodes.gradient[k]);
+        const Real8 stiffness = weight * dot(g, g);
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (counts(l)) stiffness_sum[static_cast<std::size_t>(nodes.node[k][l])] += stiffness[l];
+    }
+}
+
+/// stiffness_sum = 0 at the nodes of the block.
+inline void clear_stiffness(const ElementInputs& elements, std::size_t block, std::span<Real> stiffness_sum) {
+    const BlockNodes nodes = elements.nodes_of(block);
+    for (Index k = 0; k < nodes.count; ++k)
+        for (const Index node : nodes.node[k].lane) stiffness_sum[static_cast<std::size_t>(node)] = 0;
+}
+
+/// Bound of omega^2 of each element of a block, 1/s^2, with masses m_k = mass k_k / stiffness_sum; without
 /// stiffness_sum every element has all the mass of its nodes, which is no bound for a body but tells what the element
 /// does alone. Not a number where F is none. `q` is a start of the corotational frame and is left at the frame found.
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

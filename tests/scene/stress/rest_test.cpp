@@ -47,12 +47,13 @@ struct Rest {
     }
 };
 
-void judge_rest(int item, const std::string& scene, const Rest& rest, int steps, Real edge, Real weight_energy) {
+void judge_rest(int item, const std::string& scene, const Rest& rest, int steps, Real edge, Real weight_energy,
+                Real most_rise = 1e-9) {
     judge({item, scene, "every step taken, finite",
            rest.course.ok ? text(rest.course.steps) + " steps" : rest.course.message,
            rest.course.ok && rest.course.finite && rest.course.steps >= steps});
     at_most(item, scene, "drift / edge", rest.drift / edge, 1e-3);
-    at_most(item, scene, "rise of the energy / (weight times edge)", rest.rise / weight_energy, 1e-9);
+    at_most(item, scene, "rise of the energy / (weight times edge)", rest.rise / weight_energy, most_rise);
 }
 
 /// Three boxes of one cell, the third astride the other two.
@@ -166,7 +167,8 @@ TEST_CASE("balls in a bucket rest for a hundred thousand steps", "[scene][stress
     for (const BodyHandle body : world.bodies()) weight += world.mass(body) * standard_gravity;
     const Rest rest(world, 10, 10000);
     judge_rest(0, "resting for long: 4 balls in a bucket, tolerance 1e-8, 1e5 steps", rest, 100000,
-               world.mean_edge(world.bodies()[0]), weight * 0.05);
+               world.mean_edge(world.bodies()[0]), weight * 0.05,
+               1e-8);  // they can roll: a step is known to its tolerance
 }
 
 namespace {

@@ -19,13 +19,13 @@ struct State {
     std::vector<Range> node_blocks{{0, 2}, {2, 4}}, element_blocks{{0, 10}, {10, 20}};
     std::vector<Real> altitude{0.1, 0.1};
     std::vector<Vec3> velocity{600, Vec3::Zero()}, next{600, Vec3(1, 0, 0)}, push{600, Vec3::Zero()};
-    std::vector<ElementNodes> elements;
+    std::vector<TetrahedronNodes> elements;
     std::vector<Real> block_speed = std::vector<Real>(4), body_speed = std::vector<Real>(2);
     bool with_elements = true;
 
     State() {
         for (Index b = 0; b < 20; ++b) {
-            ElementNodes nodes;
+            TetrahedronNodes nodes;
             for (Index l = 0; l < 8; ++l)
                 for (Index a = 0; a < 4; ++a)
                     nodes[static_cast<std::size_t>(a)][static_cast<std::size_t>(l)] =
@@ -37,7 +37,7 @@ struct State {
         const auto executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
         CheckInputs inputs{begin, end, body, node_blocks, altitude, velocity, next, push};
         if (with_elements) {
-            inputs.element_node = elements;
+            inputs.tetrahedron_node = elements;
             inputs.body_blocks = element_blocks;
         }
         return check_state(*executor, inputs, 0.01, 0.2, block_speed, body_speed);
@@ -101,8 +101,8 @@ TEST_CASE("corners that part by more than the limit are too fast, by just less t
         CHECK(verdict.fault == StepFault::too_fast);
         CHECK(verdict.body == 1);
         CHECK(verdict.node == 402);
-        CHECK(verdict.element == (with_elements ? 105 : no_index));  // nodes 400 to 403: lane 1 of block 13
-        CHECK(verdict.value == Approx(0.21).epsilon(0.01));          // 1 %: the mean moves with it
+        CHECK(verdict.tetrahedron == (with_elements ? 105 : no_index));  // nodes 400 to 403: lane 1 of block 13
+        CHECK(verdict.value == Approx(0.21).epsilon(0.01));              // 1 %: the mean moves with it
     }
 }
 

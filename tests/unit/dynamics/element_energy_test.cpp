@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "systems/dynamics/checks/volume_ratios.h"
 #include "tests/support/elastic_body.h"
 #include "tests/support/material_models.h"
 
@@ -37,11 +38,11 @@ TEST_CASE("von Mises stress of uniaxial strain is 2 mu strain", "[unit]") {
         ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
         const Real strain = 1e-6;
         for (Vec3& x : body.position) x.z() *= 1 + strain;
-        std::vector<Real> stress(8, -1);
-        von_mises_stress(body.inputs(), body.blocks, body.position, stress);
+        std::vector<Mat3> stress(8, Mat3::Identity());
+        cauchy_stress(body.inputs(), body.blocks, body.position, stress);
         for (std::size_t e = 0; e < 6; ++e)
-            CHECK(stress[e] == Approx(2 * body.constants[0].shear_modulus * strain).epsilon(1e-5));
-        CHECK(stress[6] == 0);  // a lane that is left over
+            CHECK(von_mises(stress[e]) == Approx(2 * body.constants[0].shear_modulus * strain).epsilon(1e-5));
+        CHECK(stress[6] == Mat3::Zero());  // a lane that is left over
     }
 }
 
@@ -49,21 +50,28 @@ TEST_CASE("von Mises stress is finite for a flat body", "[unit]") {
     for (MaterialModel model : test::material_models) {
         ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), rubber(model));
         for (Vec3& x : body.position) x.z() = 0;
-        std::vector<Real> stress(8);
-        von_mises_stress(body.inputs(), body.blocks, body.position, stress);
-        for (Real s : stress) CHECK(std::isfinite(s));
+        std::vector<Mat3> stress(8);
+        cauchy_stress(body.inputs(), body.blocks, body.position, stress);
+        for (const Mat3& s : stress) CHECK(std::isfinite(von_mises(s)));
     }
 }
 
-TEST_CASE("the worst volume ratio names the element that is pressed most", "[unit]") {
+TEST_CASE("the worst volume ratio names the tetrahedron that is pressed most", "[unit]") {
     ElasticBody body(jittered_box({4, 1, 1}, 0.1, 0, 1), rubber(MaterialModel::linear));
-    CHECK(measure_volume_ratios(body.inputs(), body.blocks, body.position).smallest == Approx(1).epsilon(1e-13));
+    const auto ratios = [&] {
+        return tetrahedron_volume_ratios(body.tetrahedra.node, body.tetrahedra.volume, body.blocks, body.position);
+    };
+    CHECK(ratios().smallest == Approx(1).epsilon(1e-13));
     body.position[0].x() += 0.15;  // through its neighbours
-    const VolumeRatios worst = measure_volume_ratios(body.inputs(), body.blocks, body.position);
+    const VolumeRatios worst = ratios(), of_elements = element_volume_ratios(body.inputs(), body.blocks, body.position);
     CHECK(worst.smallest < 0);
-    REQUIRE(worst.element >= 0);
-    CHECK(body.deformation(static_cast<std::size_t>(worst.element)).determinant() == Approx(worst.smallest));
-    CHECK(measure_volume_ratios(body.inputs(), {0, 0}, body.position).element == no_index);
+    REQUIRE(worst.item >= 0);
+    CHECK(body.deformation(static_cast<std::size_t>(worst.item)).determinant() == Approx(worst.smallest));
+    CHECK(of_elements.item == worst.item);
+    CHECK(of_elements.smallest == Approx(worst.smallest));
+    CHECK(of_elements.inverted == worst.inverted);
+    CHECK(tetrahedron_volume_ratios(body.tetrahedra.node, body.tetrahedra.volume, {0, 0}, body.position).item ==
+          no_index);
     body.position[3].x() = std::numeric_limits<Real>::quiet_NaN();
-    CHECK(std::isnan(measure_volume_ratios(body.inputs(), body.blocks, body.position).smallest));
+    CHECK(std::isnan(ratios().smallest));
 }

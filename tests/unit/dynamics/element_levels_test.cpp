@@ -29,7 +29,7 @@ struct SliverBody : ElasticBody {
     void compute(const ElementInputs& inputs) {
         compute_element_forces(*executor, inputs, position, velocity, 1e-3, elements.rotation,
                                {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
-                               elements.force);
+                               element_nodes.force);
     }
 };
 
@@ -59,22 +59,20 @@ TEST_CASE("every level of a mesh with slivers stands its own step", "[unit]") {
 
 TEST_CASE("blocks that are not due keep their force, those due for four steps get four times as much", "[unit]") {
     SliverBody body;
-    const std::vector<Index> of_body(body.elements.node.size(), 0);
+    const std::vector<Index> of_body(body.elements.first.size(), 0);
     const std::vector<std::uint8_t> body_level{1};
     for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
     ElementInputs inputs = body.inputs();
     body.compute(inputs);
-    const Column<ElementForces> once = body.elements.force;
-    for (auto& forces : body.elements.force)
-        for (auto& lane : forces) lane.fill(Vec3(1, 2, 3));
+    const Column<ElementForces> once = body.element_nodes.force;
+    for (ElementForces& forces : body.element_nodes.force) forces.fill(Vec3(1, 2, 3));
     inputs.schedule = {body.elements.level, of_body, body_level, {}};
     inputs.schedule.active.duration.fill(0);
     inputs.schedule.active.duration[2] = 4;  // level 1 of a body of level 1
     body.compute(inputs);
-    for (std::size_t b = 0; b < once.size(); ++b)
+    for (std::size_t row = 0; row < once.size(); ++row)
         for (std::size_t l = 0; l < element_lanes; ++l)
-            for (std::size_t a = 0; a < 4; ++a)
-                CHECK(body.elements.force[b][l][a] == (b % 2 == 1 ? Vec3(4 * once[b][l][a]) : Vec3(1, 2, 3)));
+            CHECK(body.element_nodes.force[row][l] == (row / 4 % 2 == 1 ? Vec3(4 * once[row][l]) : Vec3(1, 2, 3)));
 }
 
 TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[unit]") {
@@ -85,11 +83,12 @@ TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[uni
     const std::size_t block_count = body.elements.level.size();
     for (std::size_t b = 0; b < block_count; ++b) {
         body.elements.level[b] = static_cast<std::uint8_t>(4 * b / block_count);  // sorted, as a body sorts them
-        for (std::size_t l = 0; l < element_lanes; ++l)
-            for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t a = 0; a < 4; ++a) {
+            body.element_nodes.level[4 * b + a] = body.elements.level[b];
+            for (std::size_t l = 0; l < element_lanes; ++l)
                 if (body.elements.volume[b][l] > 0)
-                    levels[static_cast<std::size_t>(body.elements.node[b][a][l])] |=
-                        static_cast<LevelMask>(1u << body.elements.level[b]);
+                    levels[body.node(8 * b + l, a)] |= static_cast<LevelMask>(1u << body.elements.level[b]);
+        }
     }
     for (Vec3& f : body.load) f = random_vector(body.random);
     const Vec3 gravity = GENERATE(Vec3(0, 0, -9.81), Vec3(0, 0, 0));
@@ -108,8 +107,8 @@ TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[uni
                           end,
                           of_block,
                           body.corners.view(),
-                          body.elements.force,
-                          {due, levels, body.elements.level},
+                          body.element_nodes.force,
+                          {due, levels, body.element_nodes.level},
                           body.mass,
                           body.inverse_mass,
                           gravity};
@@ -119,10 +118,9 @@ TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[uni
         for (std::size_t n = 0; n < nodes; ++n) {
             Vec3 sum = Vec3::Zero();
             for (const Index corner : body.corners[n]) {
-                const auto e = static_cast<std::size_t>(corner / 4);
-                if ((mask >> body.elements.level[e / element_lanes] & 1) != 0)
-                    sum +=
-                        body.elements.force[e / element_lanes][e % element_lanes][static_cast<std::size_t>(corner % 4)];
+                const auto row = static_cast<std::size_t>(corner) / element_lanes;
+                if ((mask >> body.element_nodes.level[row] & 1) != 0)
+                    sum += body.element_nodes.force[row][static_cast<std::size_t>(corner) % element_lanes];
             }
             sum = sum + body.mass[n] * gravity + body.load[n];
             if (body.inverse_mass[n] == 0) CHECK(body.force[n] == sum);
@@ -144,7 +142,7 @@ TEST_CASE("all elements due, the kick has the bits of forces gathered first", "[
     constexpr Real h = 1e-3;
     std::vector<Vec3> next(body.position.size(), Vec3::Zero()), expected = next, held = next;
     KickInputs inputs{
-        begin,   end,      of_block, body.corners.view(), body.elements.force, {}, body.mass, body.inverse_mass,
+        begin,   end,      of_block, body.corners.view(), body.element_nodes.force, {}, body.mass, body.inverse_mass,
         gravity, body.load};
     predict_velocity(*body.executor, inputs, body.velocity, h, held, next);
     body.gather(gravity);
@@ -180,20 +178,19 @@ TEST_CASE("a range of blocks is passed over only if none of them is due", "[unit
 TEST_CASE("viscosity gives no force and no torque as a whole, takes energy, and leaves rigid motion alone", "[unit]") {
     const auto model = GENERATE(MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     SliverBody body(model);
-    const std::vector<Real> time(body.elements.node.size(), 1e-3);
+    const std::vector<Real> time(body.elements.first.size(), 1e-3);
     ElementInputs inputs = body.inputs();
     const auto viscous_part = [&] {
         inputs.viscous_time = {};
         body.compute(inputs);
-        const Column<ElementForces> elastic = body.elements.force;
+        const Column<ElementForces> elastic = body.element_nodes.force;
         inputs.viscous_time = time;
         body.compute(inputs);
-        for (std::size_t b = 0; b < elastic.size(); ++b)
-            for (std::size_t l = 0; l < element_lanes; ++l)
-                for (std::size_t a = 0; a < 4; ++a) body.elements.force[b][l][a] -= elastic[b][l][a];
+        for (std::size_t row = 0; row < elastic.size(); ++row)
+            for (std::size_t l = 0; l < element_lanes; ++l) body.element_nodes.force[row][l] -= elastic[row][l];
         std::vector<Vec3> force(body.position.size(), Vec3::Zero());
         for (std::size_t n = 0; n < force.size(); ++n)
-            for (const Index corner : body.corners[n]) force[n] += (&body.elements.force[0][0][0])[corner];
+            for (const Index corner : body.corners[n]) force[n] += (&body.element_nodes.force[0][0])[corner];
         return force;
     };
     Real size = 0, power = 0;
@@ -222,7 +219,7 @@ TEST_CASE("frames and strains are kept of blocks that were due", "[unit]") {
     for (ElementLane& rate : body.elements.relaxation_rate)
         for (Real& lane : rate.lane) lane = 100;
     for (Real& share : body.elements.relaxing_share) share = 0.1;
-    const std::vector<Index> of_body(body.elements.node.size(), 0);
+    const std::vector<Index> of_body(body.elements.first.size(), 0);
     const std::vector<std::uint8_t> body_level{0};
     for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
     ElementInputs inputs = body.inputs();

@@ -13,7 +13,7 @@ constexpr Real h = 0.01;
 
 /// Bodies of loose tetrahedra, each with corners of its own; lanes that are left over have no volume.
 struct Loose {
-    std::vector<ElementNodes> node;
+    std::vector<TetrahedronNodes> node;
     std::vector<ElementLane> volume;
     std::vector<Range> blocks;
     std::vector<Real> max_speed, travel, displacement, uninverted_until, block_uninverted_until;
@@ -117,7 +117,7 @@ TEST_CASE("what turns inside out is found, as by looking at every element in eve
             const Inversions found = loose.find(workers), expected = loose.by_hand();
             REQUIRE(found.count == expected.count);
             REQUIRE(found.body == expected.body);
-            REQUIRE(found.element == expected.element);
+            REQUIRE(found.tetrahedron == expected.tetrahedron);
             REQUIRE(found.first == expected.first);
             with += found.count > 0;
             for (std::size_t b = 0; b < before.size(); ++b) skipped += before[b] == loose.block_uninverted_until[b];

@@ -96,8 +96,7 @@ TEST_CASE("the element named is the one that bounds the step", "[unit]") {
     REQUIRE(step.element >= 0);
     const std::size_t e = static_cast<std::size_t>(step.element);
     Real right = 0;
-    for (std::size_t a = 0; a < 4; ++a)
-        right = std::max(right, body.position[static_cast<std::size_t>(body.elements.node[e / 8][a][e % 8])].x());
+    for (std::size_t a = 0; a < 4; ++a) right = std::max(right, body.position[body.node(e, a)].x());
     CHECK(right > 0.4);
 }
 

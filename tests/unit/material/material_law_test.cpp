@@ -29,7 +29,7 @@ Mat3 random_gradient(std::mt19937_64& random, int kind) {
     return F;
 }
 
-LaneMat3<Real8> lanes_of(const std::array<Mat3, element_lanes>& F) {
+LaneMat3<Real8> side_by_side(const std::array<Mat3, element_lanes>& F) {
     LaneMat3<Real8> out;
     for (int l = 0; l < element_lanes; ++l) {
         const Mat3& f = F[static_cast<std::size_t>(l)];
@@ -82,7 +82,7 @@ TEST_CASE("stress and energy by lanes agree with the plain twin", "[unit]") {
         for (int trial = 0; trial < 300; ++trial) {
             std::array<Mat3, element_lanes> F;
             for (Mat3& f : F) f = random_gradient(random, trial % 3);
-            const LaneMat3<Real8> lanes = lanes_of(F), P = lane_stress(material, lanes);
+            const LaneMat3<Real8> lanes = side_by_side(F), P = lane_stress(material, lanes);
             const Real8 energy = lane_energy(material, lanes);
             for (int l = 0; l < element_lanes; ++l) {
                 const Mat3& f = F[static_cast<std::size_t>(l)];
@@ -102,7 +102,7 @@ TEST_CASE("a lane has the bits that its element gives alone", "[unit]") {
     std::mt19937_64 random(2);
     std::array<Mat3, element_lanes> F;
     for (Mat3& f : F) f = random_gradient(random, 1);
-    const LaneMat3<Real8> lanes = lanes_of(F);
+    const LaneMat3<Real8> lanes = side_by_side(F);
     for (MaterialModel model : test::material_models) {
         if (has_frame(model)) continue;  // iterated until all lanes are done
         const MaterialConstants material = rubber(model);

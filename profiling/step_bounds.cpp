@@ -1,0 +1,65 @@
+// profile_step_bounds: how long a step the bound allows over how long one would be stable, by kind of element: a table
+// for docs/methods/stable_step.md 2.1. Meshes are given by file; without any, built-in ones.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "skerry/mesh.h"
+#include "systems/dynamics/stability/stable_step.h"
+#include "tests/support/elastic_body.h"
+#include "tests/support/element_kinds.h"
+
+using namespace skerry;
+
+namespace {
+
+constexpr Real safety = 0.9;  // of the bound that stable_step returns
+
+void print_rows(const std::string& name, const Mesh& mesh) {
+    Real of_linear = 0;
+    for (const ElementKind kind : test::element_kinds) {
+        test::ElasticBody body({mesh.nodes, mesh.tetrahedra}, material_constants(MaterialModel::linear, 1e5, 0.3, 1000),
+                               Mat3::Identity(), kind);
+        std::vector<Real> sums(body.position.size());
+        const auto bound = [&] {
+            return stable_step(body.inputs(), body.blocks, body.position, body.mass, sums).step / safety;
+        };
+        constexpr int iterations = 3000;
+        const Real limit = 2 / std::sqrt(estimate_max_frequency_squared(body.inputs(), body.blocks, body.position,
+                                                                        body.inverse_mass, iterations));
+        const Real before = bound();
+        find_mass_shares(body.inputs(), body.blocks, body.position, body.mass, sums, body.elements.mass_share.span());
+        if (of_linear == 0) of_linear = limit;
+        std::printf("| %s, %zu | %s | %.2f | %.2f | %.2f |\n", name.c_str(), mesh.tetrahedra.size(),
+                    std::string(name_of(kind)).c_str(), limit / of_linear, before / limit, bound() / limit);
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"The bound on the stable step over the step that is stable, for meshes at rest."};
+    std::vector<std::string> files;
+    app.add_option("MESH", files, "mesh files; none: built-in meshes")->check(CLI::ExistingFile);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        std::printf(
+            "| mesh, tetrahedra | element | limit over that of linear | bound over limit | shared in 4 rounds |\n");
+        std::printf("|---|---|---:|---:|---:|\n");
+        if (files.empty()) {
+            print_rows("bar", mesh::box({1, 0.1, 0.1}, {20, 2, 2}));
+            print_rows("cube", mesh::box({1, 1, 1}, {8, 8, 8}));
+            print_rows("ball", mesh::ball(1, 10));
+            print_rows("skittle", mesh::skittle(0.38, 4));
+        }
+        for (const std::string& file : files) print_rows(std::filesystem::path(file).stem().string(), mesh::read(file));
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+    return 0;
+}

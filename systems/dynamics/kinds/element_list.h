@@ -1,0 +1,67 @@
+// The elements of a new body, before they are packed into lanes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "components/material_table.h"
+#include "components/options.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Elements with their nodes, gradients and volumes. Nodes and tetrahedra are those of the body, numbered from zero.
+struct ElementList {
+    std::vector<std::size_t> first_node{0};  // of element e in node and gradient; one more than elements
+    std::vector<Index> node;                 // the first of each element is the one that others are compared with
+    std::vector<Vec3> gradient;              // 1/m, sums up to zero in each element
+    std::vector<std::size_t> first_tetrahedron{0};  // of element e in tetrahedron; one more than elements
+    std::vector<Index> tetrahedron;                 // those that the element covers
+    std::vector<Real> volume;                       // m^3, at rest
+    std::vector<ElementPart> part;
+
+    std::size_t size() const { return volume.size(); }
+    std::size_t nodes_of(std::size_t e) const { return first_node[e + 1] - first_node[e]; }
+};
+
+/// Rest volume (m^3) and gradients (1/m) of the shape functions of a tetrahedron.
+struct TetrahedronGradients {
+    std::array<Vec3, 4> g;
+    Real volume;
+};
+
+/// m^3, at rest.
+Real six_volumes(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position);
+
+/// Of a tetrahedron with positive volume whose rest shape is turned by `rotation`.
+TetrahedronGradients tetrahedron_gradients(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position,
+                                           const Mat3& rotation);
+
+/// What elements are made from.
+struct RestMesh {
+    std::span<const std::array<Index, 4>> tetrahedra;
+    std::span<const Vec3> position;  // m
+    Mat3 rotation = Mat3::Identity();
+};
+
+/// The elements of a kind; `smoothed` has been resolved to one of the two that it stands for.
+ElementList elements_of(const RestMesh& mesh, ElementKind kind);
+
+/// Which kind `smoothed` stands for: above a Poisson ratio of 0.45 elements by edges lock where volume hardly changes
+/// (docs/methods/elasticity.md 7.3).
+ElementKind resolved(ElementKind kind, Real poisson_ratio);
+
+/// Every tetrahedron is an element: constant strain, the stiffest there is.
+void add_tetrahedron_elements(const RestMesh& mesh, ElementList& list);
+
+/// Every edge is an element: F is the mean over the tetrahedra around it, each of which gives it a sixth of its volume
+/// (Liu, Nguyen-Thoi, Vu-Do, Lam: An edge-based smoothed finite element method, 2009).
+void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list);
+
+/// The same by nodes, with a quarter of each tetrahedron: too soft for all of the stress, right for its volumetric part
+/// (selective smoothing: Nguyen-Thoi, Liu, Lam, Zhang: A face-based smoothed finite element method, 2009, 5).
+void add_node_elements(const RestMesh& mesh, ElementPart part, ElementList& list);
+
+}  // namespace skerry

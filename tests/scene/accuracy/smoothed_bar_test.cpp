@@ -1,0 +1,69 @@
+// The same coarse mesh with each kind of element (docs/methods/accuracy.md 34).
+#include <catch2/catch.hpp>
+
+#include "tests/support/accuracy.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+using accuracy::Tolerance;
+
+namespace {
+
+constexpr Real modulus = 1e6, length = 1, height = 0.1;  // Pa, m, m
+
+/// s: first period of a bar of 20 x 2 x 2 cells held at one end.
+Real first_period(ElementKind kind, Real nu) {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    const auto material = world.add_material(
+        lossless({.young_modulus = modulus, .poisson_ratio = nu, .model = MaterialModel::corotational}));
+    const Mesh mesh = mesh::box({length, height, height}, {20, 2, 2});
+    const auto bar = world.add_body(mesh, {.material = material, .element = kind});
+    std::vector<Index> held;
+    std::vector<Vec3> velocity(mesh.nodes.size(), Vec3::Zero());
+    std::size_t tip = 0;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+        const Vec3& x = mesh.nodes[n];
+        const Real s = x.x() / length + 0.5;
+        if (s < 1e-9) held.push_back(static_cast<Index>(n));
+        velocity[n].z() = 1e-3 * s * s * (6 - 4 * s + s * s) / 3;  // the shape under its own weight: close to the mode
+        if (s > 1 - 1e-9 && std::abs(x.y()) < 1e-9 && std::abs(x.z()) < 1e-9) tip = n;
+    }
+    world.attach(bar, held);
+    world.set_velocities(bar, velocity);
+    // back through its place after half a period, and again
+    std::vector<Real> crossed;
+    constexpr Real look = 1e-3;
+    Real before = 0;
+    while (crossed.size() < 2) {
+        REQUIRE(world.advance(look).ok());
+        const Real now = world.positions(bar)[tip].z() - mesh.nodes[tip].z();
+        if (before * now < 0) crossed.push_back(world.time() - look * now / (now - before));
+        before = now;
+    }
+    return 2 * (crossed[1] - crossed[0]);
+}
+
+}  // namespace
+
+TEST_CASE("a coarse clamped bar swings too fast, with smoothed elements by a third of that", "[scene][accuracy]") {
+    // s, of a mesh of quadratic elements that is fine enough for four digits (0.6207 s at 1e7 Pa)
+    const Real expected = 0.6207 * std::sqrt(1e7 / modulus);
+    for (const auto& [kind, nu, tolerance] : {std::tuple{ElementKind::linear, 0.3, 0.25},
+                                              {ElementKind::edge_smoothed, 0.3, 0.10},
+                                              {ElementKind::edge_node_smoothed, 0.3, 0.08},
+                                              {ElementKind::linear, 0.45, 0.25},
+                                              {ElementKind::edge_smoothed, 0.45, 0.12},
+                                              {ElementKind::edge_node_smoothed, 0.45, 0.10},
+                                              {ElementKind::linear, 0.49, 0.26},
+                                              {ElementKind::smoothed, 0.49, 0.11}})
+        accuracy::check({.item = 34,
+                         .name = "first period of a coarse clamped bar (s), Poisson ratio " +
+                                 std::to_string(nu).substr(0, 4) + ", " + std::string(name_of(kind)),
+                         .formula = "fine mesh of quadratic elements",
+                         .expected = expected,
+                         .found = first_period(kind, nu),
+                         .tolerance = tolerance});
+}

@@ -1,0 +1,13 @@
+// The kinds of elements that are registered, but for the one that stands for others.
+#pragma once
+
+#include <array>
+
+#include "components/options.h"
+
+namespace skerry::test {
+
+inline constexpr std::array element_kinds{ElementKind::linear, ElementKind::edge_smoothed,
+                                          ElementKind::edge_node_smoothed};
+
+}  // namespace skerry::test
