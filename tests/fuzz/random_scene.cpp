@@ -118,6 +118,10 @@ private:
             material["restitution"] = random_.one_of<Real>({0, 0, 1, random_.within(0, 1)});
             material["damping"] = random_.chance(0.5) ? 0 : random_.by_decade(1e-3, 1e2) / duration_;
             material["model"] = any_name<MaterialModel>();
+            if (random_.chance(0.5)) {
+                material["loss_factor"] = random_.one_of<Real>({0, 0.3, random_.within(0, 0.3)});
+                material["bulk_viscosity"] = random_.one_of<Real>({0, 1, random_.within(0, 1)});
+            }
             all["m" + std::to_string(m)] = material;
         }
         return all;
@@ -221,6 +225,7 @@ private:
         if (random_.chance(0.3))
             body["contact_distance"] = random_.chance(0.3) ? 0 : size * random_.by_decade(1e-4, 0.1);
         if (random_.chance(0.2)) body["self_contact"] = true;
+        if (random_.chance(0.5)) body["element"] = any_name<ElementKind>();
         if (random_.chance(0.2)) {
             Json pin = {{"nodes", Json::array({random_.count(0, 3)})}};
             if (random_.chance(0.3))
