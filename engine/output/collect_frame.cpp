@@ -23,7 +23,9 @@ Frame FrameCollector::collect(const World& world) {
                                 .velocity = world.velocities(body),
                                 .surface = world.surface(body),
                                 .tetrahedra = world.tetrahedra(body),
-                                .von_mises = world.von_mises_stress(body)});
+                                .stress = world.stress(body),
+                                .strain = world.strain(body),
+                                .node_stress = world.node_stress(body)});
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,
                                    .name = world.name(collider),

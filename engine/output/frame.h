@@ -20,7 +20,8 @@ struct BodyFrame {
     std::span<const Vec3> velocity;                    // m/s, by node
     std::span<const std::array<Index, 3>> surface;     // boundary triangles, rows of position
     std::span<const std::array<Index, 4>> tetrahedra;  // rows of position
-    std::vector<Real> von_mises;                       // Pa, by tetrahedron
+    std::vector<Mat3> stress, strain;                  // Cauchy's in Pa and Green's, by tetrahedron
+    std::vector<Mat3> node_stress;                     // Pa, by node
 };
 
 struct ColliderFrame {

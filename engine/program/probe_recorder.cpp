@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "systems/dynamics/elements/element_energy.h"
+
 namespace skerry {
 
 namespace {
@@ -19,6 +21,15 @@ bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& i
         if (ours && inside[static_cast<std::size_t>(contact.node[a])] != 0) return true;
     }
     return false;
+}
+
+/// Pa, of the nodes inside.
+Real largest_von_mises(const World& world, BodyHandle body, const std::vector<char>& inside) {
+    const std::vector<Mat3> stress = world.node_stress(body);
+    Real largest = 0;
+    for (std::size_t n = 0; n < stress.size(); ++n)
+        if (inside[n] != 0) largest = std::max(largest, von_mises(stress[n]));
+    return largest;
 }
 
 }  // namespace
@@ -61,6 +72,8 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         record.sticking.push_back(sample.sticking);
         record.sliding.push_back(sample.sliding);
         record.slip.push_back(sample.slip);
+        record.von_mises.push_back(largest_von_mises(world, tracked.body, tracked.inside));
+        record.max_von_mises = std::max(record.max_von_mises, record.von_mises.back());
     }
     if (std::count(states.begin(), states.end(), State::slide) == 1)
         records_[static_cast<std::size_t>(std::find(states.begin(), states.end(), State::slide) - states.begin())]
@@ -76,8 +89,13 @@ Json to_json(const ProbeRecord& record) {
         {"changes", record.changes},
         {"max_slip", record.max_slip},
         {"slip_distance", record.slip_distance},
+        {"max_von_mises", record.max_von_mises},
         {"series",
-         {{"time", record.time}, {"sticking", record.sticking}, {"sliding", record.sliding}, {"slip", record.slip}}}};
+         {{"time", record.time},
+          {"sticking", record.sticking},
+          {"sliding", record.sliding},
+          {"slip", record.slip},
+          {"von_mises", record.von_mises}}}};
 }
 
 }  // namespace skerry

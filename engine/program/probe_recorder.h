@@ -16,15 +16,17 @@ struct ProbeRecord {
     int changes = 0;                                     // between sticking and sliding
     Real max_slip = 0;                                   // m/s, mean over the probe's closed contacts
     Real slip_distance = 0;                              // m, integral of that mean
+    Real max_von_mises = 0;                              // Pa, of the probe's nodes
     std::vector<Real> time;                              // s, of the samples
     std::vector<int> sticking, sliding;                  // contacts
     std::vector<Real> slip;                              // m/s
+    std::vector<Real> von_mises;                         // Pa, largest of the probe's nodes
 };
 
 class ProbeRecorder {
 public:
     explicit ProbeRecorder(const Scene& scene);
-    /// Counts the contacts of the last step; they stand for the `seconds` since the sample before.
+    /// Counts the contacts of the last step and looks at the stress; they stand for the `seconds` since the sample before.
     void sample(const World& world, Real seconds);
     const std::vector<ProbeRecord>& records() const { return records_; }
 

@@ -78,7 +78,8 @@ std::string probe_lines(const RunResult& result) {
                          with_unit(probe.slide_time, "s") + " (" + with_unit(probe.slide_alone_time, "s") +
                          " of it alone), off " + with_unit(probe.open_time, "s") + ", changes " +
                          std::to_string(probe.changes) + " times, slips " + with_unit(probe.slip_distance, "m") +
-                         ", at most " + with_unit(probe.max_slip, "m/s"));
+                         ", at most " + with_unit(probe.max_slip, "m/s") + "; von Mises stress at most " +
+                         with_unit(probe.max_von_mises, "Pa"));
     return text;
 }
 

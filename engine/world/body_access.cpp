@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "engine/world/world_state.h"
-#include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/geometry/rotation.h"
 
@@ -65,36 +64,6 @@ std::span<const std::array<Index, 3>> World::surface(BodyHandle body) const {
 
 std::span<const std::array<Index, 4>> World::tetrahedra(BodyHandle body) const {
     return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "tetrahedra"))].tetrahedra;
-}
-
-std::vector<Real> World::von_mises_stress(BodyHandle body) const {
-    const auto row = static_cast<std::size_t>(state_->model.row(body, "von_mises_stress"));
-    const Model& model = state_->model;
-    const Range blocks = model.bodies.blocks[row];
-    std::vector<Mat3> of_elements(static_cast<std::size_t>(blocks.size()) * element_lanes);
-    cauchy_stress(model.all_elements(), blocks, model.nodes.position, of_elements);
-    // A tetrahedron has the mean of the elements that cover it, of each part of the stress by itself.
-    constexpr std::size_t parts = 3;
-    std::vector<std::array<Mat3, parts>> sum(static_cast<std::size_t>(model.bodies.tetrahedron_count[row]),
-                                             {Mat3::Zero(), Mat3::Zero(), Mat3::Zero()});
-    std::vector<std::array<int, parts>> count(sum.size());
-    const Ragged<Index>& covered = model.body_records[row].element_tetrahedra;
-    for (std::size_t place = 0; place < covered.size(); ++place) {
-        const auto part = static_cast<std::size_t>(
-            model.elements.part[static_cast<std::size_t>(blocks.begin) + place / element_lanes]);
-        for (const Index t : covered[place]) {
-            sum[static_cast<std::size_t>(t)][part] += of_elements[place];
-            ++count[static_cast<std::size_t>(t)][part];
-        }
-    }
-    std::vector<Real> stress(sum.size());
-    for (std::size_t t = 0; t < sum.size(); ++t) {
-        Mat3 cauchy = Mat3::Zero();
-        for (std::size_t part = 0; part < parts; ++part)
-            if (count[t][part] > 0) cauchy += sum[t][part] / count[t][part];
-        stress[t] = von_mises(cauchy);
-    }
-    return stress;
 }
 
 const std::string& World::name(BodyHandle body) const {

@@ -58,6 +58,15 @@ def time_of(data):
     return data.GetFieldData().GetArray("TimeValue").GetValue(0)
 
 
+def six(matrix):
+    return [matrix[row][column] for row, column in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]]
+
+
+def von_mises(stress):
+    deviator = stress - np.trace(stress) / 3 * np.eye(3)
+    return np.sqrt(1.5 * np.sum(deviator * deviator))
+
+
 def check_bodies(path, frame):
     data = read(vtk.vtkXMLUnstructuredGridReader(), path)
     assert data.GetNumberOfPoints() == len(frame["position"]), "points"
@@ -67,7 +76,11 @@ def check_bodies(path, frame):
     same("position", points(data), frame["position"], 0)
     same("velocity", point_array(data, "velocity"), frame["velocity"], FLOAT)
     same("speed", point_array(data, "speed"), np.linalg.norm(frame["velocity"], axis=1), FLOAT)
-    same("von_mises", cell_array(data, "von_mises"), frame["von_mises"], FLOAT)
+    for name, array, expected in [("stress", cell_array, "stress"), ("strain", cell_array, "strain"),
+                                  ("stress", point_array, "node_stress")]:
+        same(name, array(data, name), [six(m) for m in frame[expected]], FLOAT)
+    for array, expected in [(cell_array, "stress"), (point_array, "node_stress")]:
+        same("von_mises", array(data, "von_mises"), [von_mises(np.array(m)) for m in frame[expected]], FLOAT)
     same("body", cell_array(data, "body"), frame["body"], 0)
     for number, nodes in enumerate(frame["cells"]):
         cell = data.GetCell(number)

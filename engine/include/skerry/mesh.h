@@ -29,8 +29,8 @@ struct SurfaceMesh {
 /// that are not positive and for meshes too large for 32-bit indices.
 namespace mesh {
 
-/// A box of the given edge lengths, cut into cells (i, j, k) of six tetrahedra each; neighbouring cells mirror each
-/// other.
+/// A box of the given edge lengths, cut into cells (i, j, k) of six tetrahedra each: cells alike in each eighth of the
+/// box, eighths that mirror each other where the number of cells is even.
 Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 
 /// A ball: `resolution` elements across the diameter (an odd number counts as the next even one). All boundary nodes

@@ -43,7 +43,7 @@ struct BodySettings {
     Vec3 angular_velocity = Vec3::Zero();    // rad/s, about the centre of mass
     std::optional<Real> contact_distance{};  // m, >= 0; by default 2 % of the mean surface edge
     bool self_contact = false;
-    ElementKind element = ElementKind::linear;
+    ElementKind element = ElementKind::smoothed;
     std::string name{};  // for messages and output
 };
 

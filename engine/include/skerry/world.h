@@ -62,7 +62,13 @@ public:
     void set_loads(BodyHandle body, std::span<const Vec3> load);
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // boundary triangles, local nodes
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // local nodes
-    std::vector<Real> von_mises_stress(BodyHandle body) const;                // Pa, by tetrahedron
+    /// Cauchy stress, Pa, without what relaxes (losses), and Green's strain. A tetrahedron has the mean of the elements
+    /// that cover it, a node the mean of its tetrahedra by volume (docs/methods/elasticity.md 7.5).
+    std::vector<Mat3> stress(BodyHandle body) const;            // by tetrahedron
+    std::vector<Mat3> strain(BodyHandle body) const;            // by tetrahedron
+    std::vector<Mat3> node_stress(BodyHandle body) const;       // by node
+    std::vector<Mat3> node_strain(BodyHandle body) const;       // by node
+    std::vector<Real> von_mises_stress(BodyHandle body) const;  // Pa, by tetrahedron
     const std::string& name(BodyHandle body) const;
     Real mass(BodyHandle body) const;              // kg
     Vec3 center_of_mass(BodyHandle body) const;    // m

@@ -30,16 +30,17 @@ Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>
     constexpr std::array<std::array<std::size_t, 3>, 6> walks{
         {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
     std::array<int, 3> cell;
+    const auto mirrored = [&](std::size_t axis) { return 2 * cell[axis] + 1 >= lines_along(axis); };
     for (cell[2] = 0; cell[2] + 1 < lines_along(2); ++cell[2])
         for (cell[1] = 0; cell[1] + 1 < lines_along(1); ++cell[1])
             for (cell[0] = 0; cell[0] + 1 < lines_along(0); ++cell[0]) {
                 if (!keep(cell)) continue;
                 for (const std::array<std::size_t, 3>& walk : walks) {
-                    std::array<int, 3> corner;  // start and direction mirrored in odd cells
-                    for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] = cell[axis] + cell[axis] % 2;
+                    std::array<int, 3> corner;  // of the cell that is farthest from the middle
+                    for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] = cell[axis] + (mirrored(axis) ? 1 : 0);
                     std::array<Index, 4> nodes{node_at(corner)};
                     for (std::size_t i = 0; i < 3; ++i) {
-                        corner[walk[i]] += cell[walk[i]] % 2 == 0 ? 1 : -1;
+                        corner[walk[i]] += mirrored(walk[i]) ? -1 : 1;
                         nodes[i + 1] = node_at(corner);
                     }
                     add_tetrahedron(mesh, nodes);

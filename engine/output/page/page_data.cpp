@@ -5,6 +5,7 @@
 #include "components/check.h"
 #include "engine/output/page/pack.h"
 #include "engine/output/shape_picture.h"
+#include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
 namespace {
@@ -87,18 +88,9 @@ void PageData::add(const Frame& frame) {
 }
 
 void PageData::pack_body(const BodyFrame& body, std::string& out) {
-    SKERRY_CHECK(body.velocity.size() == body.position.size() && body.von_mises.size() == body.tetrahedra.size());
+    SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size());
     const std::size_t number = body_number(body);
     const std::vector<Index>& node = bodies_[number].node;
-
-    // A node's stress is the mean of the elements around it.
-    node_stress_.assign(body.position.size(), 0);
-    node_elements_.assign(body.position.size(), 0);
-    for (std::size_t element = 0; element < body.tetrahedra.size(); ++element)
-        for (const Index n : body.tetrahedra[element]) {
-            node_stress_[static_cast<std::size_t>(n)] += body.von_mises[element];
-            ++node_elements_[static_cast<std::size_t>(n)];
-        }
 
     std::string codes;
     float top_speed = 0, top_stress = 0;
@@ -106,10 +98,8 @@ void PageData::pack_body(const BodyFrame& body, std::string& out) {
     for (const Index n : node) speed_.add(values_.emplace_back(body.velocity[static_cast<std::size_t>(n)].norm()));
     put_fractions(values_, codes, top_speed);
     values_.clear();
-    for (const Index n : node) {
-        const auto row = static_cast<std::size_t>(n);
-        stress_.add(values_.emplace_back(node_elements_[row] > 0 ? node_stress_[row] / node_elements_[row] : 0));
-    }
+    for (const Index n : node)
+        stress_.add(values_.emplace_back(von_mises(body.node_stress[static_cast<std::size_t>(n)])));
     put_fractions(values_, codes, top_stress);
     points_.clear();
     for (const Index n : node) points_.push_back(body.position[static_cast<std::size_t>(n)]);

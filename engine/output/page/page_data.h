@@ -73,8 +73,7 @@ private:
     Vec3 gravity_ = Vec3::Zero();  // m/s^2, of the first frame
     // Scratch, kept for its memory.
     std::vector<Vec3> points_;
-    std::vector<Real> values_, node_stress_;
-    std::vector<Index> node_elements_;
+    std::vector<Real> values_;
 };
 
 }  // namespace skerry

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <utility>
 
 #include "components/check.h"
 #include "engine/output/escape_markup.h"
@@ -9,6 +10,7 @@
 #include "engine/output/vtk/vtk_file.h"
 #include "engine/output/write_file.h"
 #include "skerry/error.h"
+#include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
 namespace {
@@ -19,6 +21,11 @@ void put_vector(auto& put, const Vec3& v) {
     put(v.x());
     put(v.y());
     put(v.z());
+}
+
+/// In VTK's order, which ParaView shows as XX, YY, ZZ, XY, YZ, XZ.
+void put_symmetric(auto& put, const Mat3& m) {
+    for (const auto& [row, column] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}) put(m(row, column));
 }
 
 /// One value of T per row.
@@ -100,7 +107,8 @@ void VtkSeries::write_frame(const Frame& frame) {
 void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const {
     std::size_t points = 0, cells = 0;
     for (const BodyFrame& body : frame.bodies) {
-        SKERRY_CHECK(body.velocity.size() == body.position.size() && body.von_mises.size() == body.tetrahedra.size());
+        SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size());
+        SKERRY_CHECK(body.stress.size() == body.tetrahedra.size() && body.strain.size() == body.tetrahedra.size());
         points += body.position.size();
         cells += body.tetrahedra.size();
     }
@@ -143,10 +151,20 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.velocity[n]); }));
     file.array<float>("speed", 1, points,
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.velocity[n].norm()); }));
+    file.array<float>("von_mises", 1, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
+                          put(von_mises(b.node_stress[n]));
+                      }));
+    file.array<float>("stress", 6, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
+                          put_symmetric(put, b.node_stress[n]);
+                      }));
     file.close("PointData");
     file.open("CellData");
     file.array<float>("von_mises", 1, cells,
-                      of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put(b.von_mises[c]); }));
+                      of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put(von_mises(b.stress[c])); }));
+    file.array<float>("stress", 6, cells,
+                      of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put_symmetric(put, b.stress[c]); }));
+    file.array<float>("strain", 6, cells,
+                      of_cells([](auto& put, const BodyFrame& b, std::size_t c) { put_symmetric(put, b.strain[c]); }));
     file.array<std::int32_t>("body", 1, cells, of_cells([this](auto& put, const BodyFrame& b, std::size_t) {
                                  put(number_of(body_number_, b.handle));
                              }));

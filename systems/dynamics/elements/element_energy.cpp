@@ -101,6 +101,21 @@ void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const 
                    });
 }
 
+void green_strain(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                  std::span<Mat3> strain) {
+    SKERRY_CHECK(strain.size() >= static_cast<std::size_t>(blocks.size()) * element_lanes);
+    for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        const LaneMat3<Real8> F = deformation_gradient(elements.nodes_of(b), position);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            Mat3& of_lane = strain[(b - static_cast<std::size_t>(blocks.begin)) * element_lanes + l];
+            of_lane.setZero();
+            if (!(elements.volume[b][l] > 0)) continue;
+            const Mat3 f = lane_of(F, static_cast<int>(l));
+            of_lane = (f.transpose() * f - Mat3::Identity()) / 2;
+        }
+    }
+}
+
 Real von_mises(const Mat3& cauchy) {
     const Mat3 deviator = cauchy - (cauchy.trace() / 3) * Mat3::Identity();
     return std::sqrt(1.5 * deviator.squaredNorm());

@@ -5,7 +5,7 @@
 namespace skerry {
 
 ElementKind resolved(ElementKind kind, Real poisson_ratio) {
-    constexpr Real largest_edge_smoothed_ratio = 0.45;
+    constexpr Real largest_edge_smoothed_ratio = 0.25;
     if (kind != ElementKind::smoothed) return kind;
     return poisson_ratio > largest_edge_smoothed_ratio ? ElementKind::edge_node_smoothed : ElementKind::edge_smoothed;
 }

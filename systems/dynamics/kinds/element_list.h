@@ -49,8 +49,8 @@ struct RestMesh {
 /// The elements of a kind; `smoothed` has been resolved to one of the two that it stands for.
 ElementList elements_of(const RestMesh& mesh, ElementKind kind);
 
-/// Which kind `smoothed` stands for: above a Poisson ratio of 0.45 elements by edges lock where volume hardly changes
-/// (docs/methods/elasticity.md 7.3).
+/// Which kind `smoothed` stands for: above a Poisson ratio of 0.25 the volumetric modulus lambda is more than the shear
+/// modulus, and elements by edges alone begin to lock (docs/methods/elasticity.md 7.3).
 ElementKind resolved(ElementKind kind, Real poisson_ratio);
 
 /// Every tetrahedron is an element: constant strain, the stiffest there is.

@@ -4,6 +4,8 @@
 #include <map>
 #include <numbers>
 
+#include "systems/dynamics/elements/recover_fields.h"
+
 namespace skerry {
 namespace {
 
@@ -59,7 +61,8 @@ OutputSample::OutputSample(int ball_count, int level, int frame_count) : frame_c
                           .phase = 0.03 * ball,
                           .position = std::vector<Vec3>(direction_.size()),
                           .velocity = std::vector<Vec3>(direction_.size()),
-                          .von_mises = std::vector<Real>(tetrahedra_.size())});
+                          .stress = std::vector<Mat3>(tetrahedra_.size()),
+                          .strain = std::vector<Mat3>(tetrahedra_.size())});
     }
     // Names that would end the script element, the attribute or the text they stand in.
     balls_[0].name = "</script><script>document.documentElement.dataset.error='escaped'</script>";
@@ -102,7 +105,9 @@ void OutputSample::place_ball(int number, Real time) {
     }
     for (std::size_t element = 0; element < tetrahedra_.size(); ++element) {
         const Vec3& side = direction_[static_cast<std::size_t>(tetrahedra_[element][1])];
-        ball.von_mises[element] = 1e3 + 4e4 * std::abs(squash) * (1.2 - side.z());
+        const Real along = 1e3 + 4e4 * std::abs(squash) * (1.2 - side.z());
+        ball.stress[element] = -along * side * side.transpose();  // uniaxial: von Mises has the same size
+        ball.strain[element] = 1e-5 * ball.stress[element];
     }
     if (height < 0.02) add_contacts(number, time);
 }
@@ -149,9 +154,15 @@ const Frame& OutputSample::frame(int number) {
                                  .velocity = b.velocity,
                                  .surface = surface_,
                                  .tetrahedra = tetrahedra_,
-                                 .von_mises = {}});
+                                 .stress = {},
+                                 .strain = {},
+                                 .node_stress = {}});
         place_ball(ball, time);
-        frame_.bodies.back().von_mises = b.von_mises;
+        BodyFrame& body = frame_.bodies.back();
+        body.stress = b.stress;
+        body.strain = b.strain;
+        body.node_stress = means_of_nodes(tetrahedra_, std::vector<Real>(tetrahedra_.size(), 1), b.stress,
+                                          b.position.size());
     }
     frame_.contacts = contacts_;
     const std::array<MotionKey, 5> pose{{{},

@@ -30,7 +30,7 @@ private:
         Vec3 home;   // m, of the floor under its centre
         Real phase;  // s
         std::vector<Vec3> position, velocity;
-        std::vector<Real> von_mises;
+        std::vector<Mat3> stress, strain;  // by tetrahedron
     };
     int frame_count_;
     std::vector<Vec3> direction_;  // of the nodes of a ball, the centre first

@@ -17,10 +17,15 @@ Json json_of(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
+Json json_of(const Mat3& m) {
+    return {json_of(Vec3(m.row(0))), json_of(Vec3(m.row(1))), json_of(Vec3(m.row(2)))};
+}
+
 Json expected(const Frame& frame) {
     Json json = {{"time", frame.time},        {"points", 0},
                  {"position", Json::array()}, {"velocity", Json::array()},
-                 {"cells", Json::array()},    {"von_mises", Json::array()},
+                 {"cells", Json::array()},    {"stress", Json::array()},
+                 {"strain", Json::array()},   {"node_stress", Json::array()},
                  {"body", Json::array()}};
     Index first = 0;
     for (const BodyFrame& body : frame.bodies) {
@@ -28,10 +33,12 @@ Json expected(const Frame& frame) {
         for (const Vec3& v : body.velocity) json["velocity"].push_back(json_of(v));
         for (const auto& [a, b, c, d] : body.tetrahedra)
             json["cells"].push_back({first + a, first + b, first + c, first + d});
-        for (const Real stress : body.von_mises) {
-            json["von_mises"].push_back(stress);
+        for (const Mat3& stress : body.stress) {
+            json["stress"].push_back(json_of(stress));
             json["body"].push_back(body.handle.slot);
         }
+        for (const Mat3& strain : body.strain) json["strain"].push_back(json_of(strain));
+        for (const Mat3& stress : body.node_stress) json["node_stress"].push_back(json_of(stress));
         first += static_cast<Index>(body.position.size());
     }
     Json& contacts = json["contacts"] = Json::array();

@@ -45,7 +45,9 @@ TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world
     CHECK(frame.bodies[0].handle == box);
     CHECK(frame.bodies[0].name == "box");
     CHECK(frame.bodies[0].position.data() == world.positions(box).data());
-    CHECK(frame.bodies[0].von_mises.size() == world.tetrahedra(box).size());
+    CHECK(frame.bodies[0].stress == world.stress(box));
+    CHECK(frame.bodies[0].strain == world.strain(box));
+    CHECK(frame.bodies[0].node_stress == world.node_stress(box));
     REQUIRE(frame.colliders.size() == 2);
     CHECK(frame.colliders[1].name == "bucket");
     CHECK(frame.colliders[1].pose.position.z() == Approx(-0.5 - world.time()));

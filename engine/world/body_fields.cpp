@@ -1,0 +1,62 @@
+// Stress and strain of bodies.
+#include "engine/world/world_state.h"
+#include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/elements/recover_fields.h"
+
+namespace skerry {
+
+namespace {
+
+using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
+using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
+
+std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfElements of_elements,
+                                    OfTetrahedra of_tetrahedra) {
+    const Range blocks = model.bodies.blocks[row];
+    std::vector<Mat3> values(static_cast<std::size_t>(blocks.size()) * element_lanes);
+    of_elements(model.all_elements(), blocks, model.nodes.position, values);
+    const ElementCover cover{
+        model.elements.part.span().subspan(static_cast<std::size_t>(blocks.begin),
+                                           static_cast<std::size_t>(blocks.size())),
+        model.body_records[row].element_tetrahedra};
+    return of_tetrahedra(cover, values, static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
+}
+
+std::vector<Mat3> node_field(const Model& model, std::size_t row, std::span<const Mat3> of_tetrahedra) {
+    const auto first = static_cast<std::size_t>(model.bodies.tetrahedron_blocks[row].begin);
+    std::vector<Real> volume(of_tetrahedra.size());
+    for (std::size_t t = 0; t < volume.size(); ++t)
+        volume[t] = model.tetrahedra.volume[first + t / element_lanes][t % element_lanes];
+    return means_of_nodes(model.body_records[row].tetrahedra, volume, of_tetrahedra,
+                          static_cast<std::size_t>(model.bodies.nodes[row].size()));
+}
+
+}  // namespace
+
+std::vector<Mat3> World::stress(BodyHandle body) const {
+    return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "stress")), cauchy_stress,
+                             stress_of_tetrahedra);
+}
+
+std::vector<Mat3> World::strain(BodyHandle body) const {
+    return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "strain")), green_strain,
+                             strain_of_tetrahedra);
+}
+
+std::vector<Mat3> World::node_stress(BodyHandle body) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "node_stress"));
+    return node_field(state_->model, row, stress(body));
+}
+
+std::vector<Mat3> World::node_strain(BodyHandle body) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "node_strain"));
+    return node_field(state_->model, row, strain(body));
+}
+
+std::vector<Real> World::von_mises_stress(BodyHandle body) const {
+    std::vector<Real> of_tetrahedra;
+    for (const Mat3& cauchy : stress(body)) of_tetrahedra.push_back(von_mises(cauchy));
+    return of_tetrahedra;
+}
+
+}  // namespace skerry

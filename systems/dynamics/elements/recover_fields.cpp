@@ -1,0 +1,71 @@
+#include "systems/dynamics/elements/recover_fields.h"
+
+#include "components/check.h"
+#include "components/element_table.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t parts = 3;
+
+/// The mean over the covering elements of each part.
+struct Mean {
+    std::array<Mat3, parts> sum{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
+    std::array<int, parts> count{};
+
+    Mat3 of(ElementPart part) const {
+        const auto p = static_cast<std::size_t>(part);
+        return count[p] > 0 ? Mat3(sum[p] / count[p]) : Mat3(Mat3::Zero());
+    }
+};
+
+std::vector<Mean> means_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count) {
+    std::vector<Mean> mean(count);
+    for (std::size_t place = 0; place < cover.tetrahedra.size(); ++place) {
+        const auto part = static_cast<std::size_t>(cover.part[place / element_lanes]);
+        for (const Index t : cover.tetrahedra[place]) {
+            Mean& of = mean[static_cast<std::size_t>(t)];
+            of.sum[part] += of_elements[place];
+            ++of.count[part];
+        }
+    }
+    return mean;
+}
+
+}  // namespace
+
+std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements,
+                                       std::size_t count) {
+    std::vector<Mat3> stress;
+    stress.reserve(count);
+    for (const Mean& mean : means_of_tetrahedra(cover, of_elements, count))
+        stress.push_back(mean.of(ElementPart::whole) + mean.of(ElementPart::shear) + mean.of(ElementPart::volume));
+    return stress;
+}
+
+std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements,
+                                       std::size_t count) {
+    std::vector<Mat3> strain;
+    strain.reserve(count);
+    for (const Mean& mean : means_of_tetrahedra(cover, of_elements, count))
+        strain.push_back(mean.of(ElementPart::whole) + mean.of(ElementPart::shear));
+    return strain;
+}
+
+std::vector<Mat3> means_of_nodes(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> volume,
+                                 std::span<const Mat3> of_tetrahedra, std::size_t node_count) {
+    SKERRY_CHECK(volume.size() >= tetrahedra.size() && of_tetrahedra.size() >= tetrahedra.size());
+    std::vector<Mat3> mean(node_count, Mat3::Zero());
+    std::vector<Real> weight(node_count);
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+        for (const Index n : tetrahedra[t]) {
+            mean[static_cast<std::size_t>(n)] += volume[t] * of_tetrahedra[t];
+            weight[static_cast<std::size_t>(n)] += volume[t];
+        }
+    for (std::size_t n = 0; n < node_count; ++n)
+        if (weight[n] > 0) mean[n] /= weight[n];
+    return mean;
+}
+
+}  // namespace skerry
