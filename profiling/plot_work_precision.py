@@ -103,6 +103,28 @@ def print_time(rows):
     style.print_table(["scene", "engine", "variant", "order", "us/step"], table)
 
 
+def print_mesh(rows):
+    print("Mesh: the smallest error that linear elements and Bullet reach with the finest mesh compared, and the time "
+          "in which smoothed elements reach it (<: their coarsest mesh is better)")
+    table = []
+    for scene in scenes_of(rows):
+        here = [r for r in rows if r["scene"] == scene]
+        own = front([r for r in here if r["variant"] == "smoothed"], "error")
+        floor = here[0]["reference_error"]
+        for (engine, variant), found in curves(here).items():
+            points = front(found, "error")
+            if variant == "smoothed" or not points:
+                continue
+            seconds, error = points[-1]
+            ours = seconds_at(own, error)
+            bound = "<" if own[0][1] < error else ""
+            table.append([scene, f"{engine} {variant}", f"{error:.1e}", style.seconds_text(seconds),
+                          bound + style.seconds_text(ours) if ours < math.inf else "-",
+                          f"{seconds / ours:.1f}" if ours < math.inf else "-", f"{own[-1][1]:.1e}", f"{floor:.1e}"])
+    style.print_table(["scene", "elements", "ends at", "its time", "smoothed", "ratio", "smoothed end at",
+                       "reference +-"], table)
+
+
 def scenes_of(rows):
     return list(dict.fromkeys(r["scene"] for r in rows))
 
@@ -238,6 +260,9 @@ def main():
     steps = [r for r in rows if r["axis"] == "time"]
     if steps:
         print_time(steps)
+    meshes = [r for r in rows if r["axis"] == "mesh"]
+    if meshes:
+        print_mesh(meshes)
     if read["pile"]:
         print_pile(read["pile"])
     if read["creep"]:

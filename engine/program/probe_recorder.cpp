@@ -81,21 +81,20 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
 }
 
 Json to_json(const ProbeRecord& record) {
-    return {
-        {"stick_time", record.stick_time},
-        {"slide_time", record.slide_time},
-        {"open_time", record.open_time},
-        {"slide_alone_time", record.slide_alone_time},
-        {"changes", record.changes},
-        {"max_slip", record.max_slip},
-        {"slip_distance", record.slip_distance},
-        {"max_von_mises", record.max_von_mises},
-        {"series",
-         {{"time", record.time},
-          {"sticking", record.sticking},
-          {"sliding", record.sliding},
-          {"slip", record.slip},
-          {"von_mises", record.von_mises}}}};
+    return {{"stick_time", record.stick_time},
+            {"slide_time", record.slide_time},
+            {"open_time", record.open_time},
+            {"slide_alone_time", record.slide_alone_time},
+            {"changes", record.changes},
+            {"max_slip", record.max_slip},
+            {"slip_distance", record.slip_distance},
+            {"max_von_mises", record.max_von_mises},
+            {"series",
+             {{"time", record.time},
+              {"sticking", record.sticking},
+              {"sliding", record.sliding},
+              {"slip", record.slip},
+              {"von_mises", record.von_mises}}}};
 }
 
 }  // namespace skerry

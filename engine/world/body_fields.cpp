@@ -15,10 +15,9 @@ std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfEleme
     const Range blocks = model.bodies.blocks[row];
     std::vector<Mat3> values(static_cast<std::size_t>(blocks.size()) * element_lanes);
     of_elements(model.all_elements(), blocks, model.nodes.position, values);
-    const ElementCover cover{
-        model.elements.part.span().subspan(static_cast<std::size_t>(blocks.begin),
-                                           static_cast<std::size_t>(blocks.size())),
-        model.body_records[row].element_tetrahedra};
+    const ElementCover cover{model.elements.part.span().subspan(static_cast<std::size_t>(blocks.begin),
+                                                                static_cast<std::size_t>(blocks.size())),
+                             model.body_records[row].element_tetrahedra.view()};
     return of_tetrahedra(cover, values, static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
 }
 

@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
         ->delimiter(',')
         ->check(CLI::IsMember(axes))
         ->capture_default_str();
-    app.add_option("--scenes", options.scenes, "Only these (twist, bounce, slide, stack, skittles, pile, creep)")
+    app.add_option("--scenes", options.scenes,
+                   "Only these (twist, bounce, slide, stack, skittles, finger, pile, creep)")
         ->delimiter(',');
     app.add_option("--out", options.out, "Folder for the tables")->capture_default_str();
     app.add_option("--python", options.python, "Python that may have MuJoCo")->capture_default_str();

@@ -21,8 +21,8 @@ Built build(const PrecisionScene& scene, Settings settings, Real step) {
     World& world = built.world;
     const MaterialHandle material = world.add_material(scene.material);
     for (const PrecisionBody& body : scene.bodies) {
-        const BodyHandle handle =
-            world.add_body(body.mesh, {.material = material, .contact_distance = scene.contact_distance});
+        const BodyHandle handle = world.add_body(
+            body.mesh, {.material = material, .contact_distance = scene.contact_distance, .element = scene.element});
         world.set_velocities(handle, body.velocity);
         if (!body.fixed.empty()) world.attach(handle, body.fixed);
         built.bodies.push_back(handle);

@@ -32,7 +32,8 @@ struct GravityKey {
 
 struct PrecisionScene {
     std::string name;
-    int level = 1;  // of the mesh: elements along an edge grow in proportion
+    int level = 1;                              // of the mesh: elements along an edge grow in proportion
+    ElementKind element = ElementKind::linear;  // what the peers have
     MaterialSettings material{};
     Real stiffness_damping = 0;    // s: what Bullet and MuJoCo have for damping; ours is in the material (1/s)
     Real contact_distance = 1e-3;  // m, between a surface and what it touches
@@ -51,7 +52,10 @@ struct PrecisionScene {
 /// The names of scenes whose trajectories are compared.
 const std::vector<std::string>& trajectory_scenes();
 
-/// A scene of trajectory_scenes(), or "pile". Throws std::invalid_argument for other names.
+/// Those whose meshes are compared, too: with a body that mainly bends.
+const std::vector<std::string>& mesh_scenes();
+
+/// A scene of mesh_scenes(), or "pile". Throws std::invalid_argument for other names.
 PrecisionScene make_scene(std::string_view name, int level);
 
 /// The mesh on which the scene's steps are compared.

@@ -105,6 +105,23 @@ PrecisionScene stack(int level) {
     return scene;
 }
 
+/// A gripper's finger of soft rubber, held at its root, falls under its weight until its tip bends around the floor.
+PrecisionScene finger(int level) {
+    constexpr Real length = 0.1, edge = 0.02, above = 0.03;  // m
+    PrecisionScene scene;
+    scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.45, .density = 1000, .friction = 0.5};
+    PrecisionBody body =
+        make_body(mesh::box({length, edge, edge}, {5 * level, level, level}), Vec3::Zero(), above, Vec3::Zero());
+    for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n)
+        if (body.mesh.nodes[n].x() < -length / 2 + 1e-9) body.fixed.push_back(static_cast<Index>(n));
+    scene.bodies.push_back(std::move(body));
+    scene.planes.push_back({});
+    scene.seconds = 0.3;
+    scene.samples = 30;
+    scene.length = length;
+    return scene;
+}
+
 /// Eight balls fall into a box.
 PrecisionScene pile(int level) {
     constexpr Real radius = 0.05, wall = 0.12;  // m
@@ -159,6 +176,11 @@ const std::vector<std::string>& trajectory_scenes() {
     return names;
 }
 
+const std::vector<std::string>& mesh_scenes() {
+    static const std::vector<std::string> names{"twist", "bounce", "slide", "stack", "skittles", "finger"};
+    return names;
+}
+
 PrecisionScene make_scene(std::string_view name, int level) {
     PrecisionScene scene;
     if (name == "bounce")
@@ -171,6 +193,8 @@ PrecisionScene make_scene(std::string_view name, int level) {
         scene = skittles(level);
     else if (name == "stack")
         scene = stack(level);
+    else if (name == "finger")
+        scene = finger(level);
     else if (name == "pile")
         scene = pile(level);
     else

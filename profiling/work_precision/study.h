@@ -51,7 +51,7 @@ struct Study {
 void study_time(Study& study);
 /// (b) solver and tolerance.
 void study_solver(Study& study);
-/// (c) mesh refinement, with the peers.
+/// (c) mesh refinement, linear and smoothed elements, with the peers.
 void study_mesh(Study& study);
 /// A pile by its statistics: pile.csv.
 void study_pile(Study& study);

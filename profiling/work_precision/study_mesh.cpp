@@ -1,5 +1,5 @@
-// Work against precision as the mesh gets finer: the same material points on every mesh, each at the step that its mesh
-// stands.
+// Work against precision as the mesh gets finer, with either kind of element: the same material points on every mesh,
+// each at the step that its mesh stands.
 #include <cmath>
 #include <limits>
 
@@ -13,46 +13,63 @@ constexpr int points_per_body = 64;
 /// Of the stable step; the error in time is then well below that of the mesh.
 constexpr Real step_fraction = 0.5;
 
+/// A mesh with one kind of element, as far as it is run.
+struct MeshRun {
+    PrecisionScene scene;
+    Record record;
+    std::vector<std::vector<Vec3>> path;  // of the material points
+};
+
+MeshRun run_mesh(const Study& study, const std::string& name, int level, ElementKind element) {
+    MeshRun run{.scene = make_scene(name, level), .record = {}, .path = {}};
+    run.scene.element = element;
+    study.show(name + ": " + std::string(name_of(element)) + ", mesh of level " + std::to_string(level));
+    run.record = study.run(run.scene, time_variants().back(), step_fraction * stable_step_of(run.scene));
+    run.path = Probes(run.scene, points_per_body).follow(run.record);
+    return run;
+}
+
 void study_scene(Study& study, const std::string& name) {
-    const std::vector<int> levels =
-        study.options.quick ? std::vector<int>{1, 2, 3, 4} : std::vector<int>{1, 2, 3, 4, 6, 8, 12};
-    const SkerryVariant variant = time_variants().back();
-    std::vector<PrecisionScene> scenes;
-    std::vector<Record> runs;
-    std::vector<std::vector<std::vector<Vec3>>> paths;
+    // the finest is the reference, with smoothed elements, and what it differs by from the mesh before its error
+    const bool several = make_scene(name, 1).bodies.size() > 1;
+    std::vector<int> levels{1, 2, 3, 4};
+    if (!study.options.quick) levels.insert(levels.end(), {6, 8});
+    if (!study.options.quick && !several) levels.push_back(12);
+    std::vector<MeshRun> smoothed, linear;
     for (const int level : levels) {
-        scenes.push_back(make_scene(name, level));
-        study.show(name + ": mesh of level " + std::to_string(level));
-        runs.push_back(study.run(scenes.back(), variant, step_fraction * stable_step_of(scenes.back())));
-        paths.push_back(Probes(scenes.back(), points_per_body).follow(runs.back()));
+        smoothed.push_back(run_mesh(study, name, level, ElementKind::smoothed));
+        if (level != levels.back()) linear.push_back(run_mesh(study, name, level, ElementKind::linear));
     }
-    const auto& reference = paths.back();
-    const Real length = scenes.back().length;
-    const Real reference_error = mean_distance(reference, paths[paths.size() - 2], length);
-    const auto write = [&](const std::string& engine, const std::string& by, std::size_t k, const Record& run,
-                           Real error) {
-        study.write(scenes[k],
+    const MeshRun reference = std::move(smoothed.back());
+    smoothed.pop_back();
+    const Real length = reference.scene.length;
+    const Real reference_error = mean_distance(reference.path, smoothed.back().path, length);
+    const auto write = [&](const std::string& engine, const std::string& variant, const PrecisionScene& scene,
+                           const Record& run, Real error) {
+        study.write(scene,
                     {.axis = "mesh",
                      .engine = engine,
-                     .variant = by,
-                     .tolerance = engine == "Skerry" ? variant.settings.tolerance : 0,
+                     .variant = variant,
+                     .tolerance = engine == "Skerry" ? time_variants().back().settings.tolerance : 0,
                      .error = error,
                      .error_own = std::nan(""),
                      .reference_error = reference_error,
                      .own_reference_error = std::nan("")},
                     run);
     };
-    for (std::size_t k = 0; k + 1 < levels.size(); ++k)
-        write("Skerry", variant.name, k, runs[k], mean_distance(paths[k], reference, length));
+    for (const auto* runs : {&smoothed, &linear})
+        for (const MeshRun& run : *runs)
+            write("Skerry", std::string(name_of(run.scene.element)), run.scene, run.record,
+                  mean_distance(run.path, reference.path, length));
     for (const Peer& peer : study.peers) {
         if (!peer.explicit_step || peer.engine != "Bullet") continue;  // the others have other laws
-        for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
-            study.show(name + ": " + peer.engine + ", mesh of level " + std::to_string(levels[k]));
-            const Real step = step_fraction * stable_step_of(scenes[k]);
-            const Record run = run_peer(scenes[k], peer, step, 1, 4 * study.options.cap, study.options.out / "runs");
+        for (const MeshRun& ours : linear) {
+            study.show(name + ": " + peer.engine + ", mesh of level " + std::to_string(ours.scene.level));
+            const Record run = run_peer(ours.scene, peer, step_fraction * stable_step_of(ours.scene), 1,
+                                        4 * study.options.cap, study.options.out / "runs");
             if (!run.finished) break;
-            write(peer.engine, peer.variant, k, run,
-                  mean_distance(Probes(scenes[k], points_per_body).follow(run), reference, length));
+            write(peer.engine, peer.variant, ours.scene, run,
+                  mean_distance(Probes(ours.scene, points_per_body).follow(run), reference.path, length));
             if (run.seconds > study.options.cap) break;
         }
     }
@@ -61,7 +78,7 @@ void study_scene(Study& study, const std::string& name) {
 }  // namespace
 
 void study_mesh(Study& study) {
-    for (const char* name : {"twist", "bounce", "slide"})
+    for (const std::string& name : mesh_scenes())
         if (study.options.wants(name)) study_scene(study, name);
 }
 

@@ -151,9 +151,8 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.velocity[n]); }));
     file.array<float>("speed", 1, points,
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.velocity[n].norm()); }));
-    file.array<float>("von_mises", 1, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
-                          put(von_mises(b.node_stress[n]));
-                      }));
+    file.array<float>("von_mises", 1, points,
+                      of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(von_mises(b.node_stress[n])); }));
     file.array<float>("stress", 6, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
                           put_symmetric(put, b.node_stress[n]);
                       }));

@@ -161,8 +161,8 @@ const Frame& OutputSample::frame(int number) {
         BodyFrame& body = frame_.bodies.back();
         body.stress = b.stress;
         body.strain = b.strain;
-        body.node_stress = means_of_nodes(tetrahedra_, std::vector<Real>(tetrahedra_.size(), 1), b.stress,
-                                          b.position.size());
+        body.node_stress =
+            means_of_nodes(tetrahedra_, std::vector<Real>(tetrahedra_.size(), 1), b.stress, b.position.size());
     }
     frame_.contacts = contacts_;
     const std::array<MotionKey, 5> pose{{{},
