@@ -8,10 +8,38 @@ namespace skerry {
 
 namespace {
 
-/// The tetrahedra of one element, and the node that the others are compared with: one that all of them have.
-struct Group {
-    Index anchor;
-    std::vector<Index> tetrahedra;
+using Group = std::vector<Index>;  // the tetrahedra of one element
+
+/// Gradients by node of an element under construction.
+struct Gradients {
+    std::vector<Index> node;
+    std::vector<Vec3> gradient;
+
+    void add(Index n, const Vec3& g) {
+        const auto known = std::find(node.begin(), node.end(), n);
+        if (known != node.end()) {
+            gradient[static_cast<std::size_t>(known - node.begin())] += g;
+        } else {
+            node.push_back(n);
+            gradient.push_back(g);
+        }
+    }
+
+    /// Takes out the nodes whose gradients cancel, as that of an inner node in its own element does. Rounding leaves
+    /// 1e-16 of them, which moves nothing but would count in the bound on the step, whatever its size.
+    void drop_nothings() {
+        constexpr Real nothing = 1e-12;
+        Real largest = 0;
+        for (const Vec3& g : gradient) largest = std::max(largest, g.squaredNorm());
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < node.size(); ++k) {
+            if (gradient[k].squaredNorm() <= nothing * nothing * largest) continue;
+            node[kept] = node[k];
+            gradient[kept++] = gradient[k];
+        }
+        node.resize(kept);
+        gradient.resize(kept);
+    }
 };
 
 void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share, ElementPart part, ElementList& list) {
@@ -19,32 +47,26 @@ void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share,
     rest.reserve(mesh.tetrahedra.size());
     for (const auto& tetrahedron : mesh.tetrahedra)
         rest.push_back(tetrahedron_gradients(tetrahedron, mesh.position, mesh.rotation));
+    Gradients element;
     for (const Group& group : groups) {
         Real volume = 0;
-        for (const Index t : group.tetrahedra) volume += share * rest[static_cast<std::size_t>(t)].volume;
-        const std::size_t first = list.node.size();
-        list.node.push_back(group.anchor);
-        list.gradient.push_back(Vec3::Zero());
-        for (const Index t : group.tetrahedra) {
+        for (const Index t : group) volume += share * rest[static_cast<std::size_t>(t)].volume;
+        element.node.clear();
+        element.gradient.clear();
+        for (const Index t : group) {
             const TetrahedronGradients& of = rest[static_cast<std::size_t>(t)];
-            for (std::size_t a = 0; a < 4; ++a) {
-                const Index node = mesh.tetrahedra[static_cast<std::size_t>(t)][a];
-                const auto known =
-                    std::find(list.node.begin() + static_cast<std::ptrdiff_t>(first), list.node.end(), node);
-                const auto place = static_cast<std::size_t>(known - list.node.begin());
-                if (known == list.node.end()) {
-                    list.node.push_back(node);
-                    list.gradient.push_back(Vec3::Zero());
-                }
-                list.gradient[place] += (share * of.volume / volume) * of.g[a];
-            }
+            for (std::size_t a = 0; a < 4; ++a)
+                element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a], (share * of.volume / volume) * of.g[a]);
         }
+        element.drop_nothings();
         // to the last bit, as the kernel has it
         Vec3 others = Vec3::Zero();
-        for (std::size_t k = first + 1; k < list.gradient.size(); ++k) others += list.gradient[k];
-        list.gradient[first] = -others;
+        for (std::size_t k = 1; k < element.gradient.size(); ++k) others += element.gradient[k];
+        element.gradient.front() = -others;
+        list.node.insert(list.node.end(), element.node.begin(), element.node.end());
+        list.gradient.insert(list.gradient.end(), element.gradient.begin(), element.gradient.end());
         list.first_node.push_back(list.node.size());
-        list.tetrahedron.insert(list.tetrahedron.end(), group.tetrahedra.begin(), group.tetrahedra.end());
+        list.tetrahedron.insert(list.tetrahedron.end(), group.begin(), group.end());
         list.first_tetrahedron.push_back(list.tetrahedron.size());
         list.volume.push_back(volume);
         list.part.push_back(part);
@@ -65,8 +87,8 @@ void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list
                 const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 |
                                           static_cast<std::uint64_t>(static_cast<std::uint32_t>(high));
                 const auto [known, fresh] = group_of.try_emplace(key, groups.size());
-                if (fresh) groups.push_back({low, {}});
-                groups[known->second].tetrahedra.push_back(static_cast<Index>(t));
+                if (fresh) groups.emplace_back();
+                groups[known->second].push_back(static_cast<Index>(t));
             }
     }
     add_groups(mesh, groups, Real{1} / 6, part, list);
@@ -80,9 +102,9 @@ void add_node_elements(const RestMesh& mesh, ElementPart part, ElementList& list
             std::size_t& group = group_of[static_cast<std::size_t>(node)];
             if (group == static_cast<std::size_t>(-1)) {
                 group = groups.size();
-                groups.push_back({node, {}});
+                groups.emplace_back();
             }
-            groups[group].tetrahedra.push_back(static_cast<Index>(t));
+            groups[group].push_back(static_cast<Index>(t));
         }
     add_groups(mesh, groups, Real{1} / 4, part, list);
 }

@@ -17,7 +17,7 @@ Json json_of(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-Json json_of(const Mat3& m) {
+Json json_of_matrix(const Mat3& m) {
     return {json_of(Vec3(m.row(0))), json_of(Vec3(m.row(1))), json_of(Vec3(m.row(2)))};
 }
 
@@ -34,11 +34,11 @@ Json expected(const Frame& frame) {
         for (const auto& [a, b, c, d] : body.tetrahedra)
             json["cells"].push_back({first + a, first + b, first + c, first + d});
         for (const Mat3& stress : body.stress) {
-            json["stress"].push_back(json_of(stress));
+            json["stress"].push_back(json_of_matrix(stress));
             json["body"].push_back(body.handle.slot);
         }
-        for (const Mat3& strain : body.strain) json["strain"].push_back(json_of(strain));
-        for (const Mat3& stress : body.node_stress) json["node_stress"].push_back(json_of(stress));
+        for (const Mat3& strain : body.strain) json["strain"].push_back(json_of_matrix(strain));
+        for (const Mat3& stress : body.node_stress) json["node_stress"].push_back(json_of_matrix(stress));
         first += static_cast<Index>(body.position.size());
     }
     Json& contacts = json["contacts"] = Json::array();

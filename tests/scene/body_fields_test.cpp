@@ -1,0 +1,79 @@
+// Stress and strain of tetrahedra and nodes (docs/methods/elasticity.md 7.5).
+#include <catch2/catch.hpp>
+
+#include "tests/support/element_kinds.h"
+#include "tests/support/jittered_box.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+
+namespace {
+
+Real farthest(std::span<const Mat3> values, const Mat3& expected) {
+    Real most = 0;
+    for (const Mat3& value : values) most = std::max(most, (value - expected).norm());
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("a body whose strain is the same everywhere says so, with every kind of element", "[scene]") {
+    constexpr Real modulus = 1e5, nu = 0.4;  // Pa
+    constexpr Real mu = modulus / (2 * (1 + nu)), lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu));
+    Mat3 rate;  // 1/s
+    rate << 0.8, 0.3, 0, -0.1, -0.5, 0.2, 0.4, 0, 0.6;
+    const auto [nodes, tetrahedra] = test::jittered_box({3, 3, 2}, 0.1, 0.25, 1);
+    for (const ElementKind kind : test::element_kinds) {
+        Settings settings;
+        settings.gravity = Vec3::Zero();
+        World world(settings);
+        const auto material = world.add_material(
+            test::lossless({.young_modulus = modulus, .poisson_ratio = nu, .model = MaterialModel::linear}));
+        const auto body = world.add_body({nodes, tetrahedra}, {.material = material, .element = kind});
+        std::vector<Vec3> velocity;
+        for (const Vec3& x : nodes) velocity.push_back(rate * x);
+        world.set_velocities(body, velocity);
+        // nothing pulls yet: the first step moves every node by h times its velocity
+        const Real h = world.stable_step() / 2;
+        REQUIRE(world.advance(h).steps == 1);
+
+        const Mat3 F = Mat3::Identity() + h * rate, small = h * (rate + rate.transpose()) / 2;
+        const Mat3 strain = (F.transpose() * F - Mat3::Identity()) / 2;
+        const Mat3 stress =
+            (lambda * small.trace() * Mat3::Identity() + 2 * mu * small) * F.transpose() / F.determinant();
+        INFO(name_of(kind));
+        CHECK(world.strain(body).size() == tetrahedra.size());
+        CHECK(farthest(world.strain(body), strain) <= 1e-10 * strain.norm());
+        CHECK(farthest(world.stress(body), stress) <= 1e-10 * stress.norm());
+        CHECK(world.node_strain(body).size() == nodes.size());
+        CHECK(farthest(world.node_strain(body), strain) <= 1e-10 * strain.norm());
+        CHECK(farthest(world.node_stress(body), stress) <= 1e-10 * stress.norm());
+    }
+}
+
+TEST_CASE("a node has the mean stress of its tetrahedra by volume", "[scene]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    const auto [nodes, tetrahedra] = test::jittered_box({2, 2, 2}, 0.1, 0.25, 1);
+    const auto body = world.add_body({nodes, tetrahedra}, {.material = world.add_material(test::lossless({}))});
+    std::vector<Vec3> velocity;
+    for (const Vec3& x : nodes) velocity.push_back(10 * x.squaredNorm() * Vec3(1, -2, 0.5));
+    world.set_velocities(body, velocity);
+    REQUIRE(world.advance(10 * world.stable_step()).ok());
+
+    const std::vector<Mat3> stress = world.stress(body), of_nodes = world.node_stress(body);
+    constexpr Index node = 13;  // the one in the middle
+    Mat3 sum = Mat3::Zero();
+    Real weight = 0;
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+        if (std::ranges::count(tetrahedra[t], node) == 0) continue;
+        const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(tetrahedra[t][k])]; };
+        const Real volume = (at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0)) / 6;
+        sum += volume * stress[t];
+        weight += volume;
+    }
+    REQUIRE(stress.front().norm() > 0);
+    CHECK((of_nodes[node] - sum / weight).norm() <= 1e-12 * of_nodes[node].norm());
+    CHECK((stress.front() - stress.front().transpose()).norm() <= 1e-12 * stress.front().norm());
+}
