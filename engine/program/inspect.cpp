@@ -86,6 +86,7 @@ struct BodyKindReport {
     std::size_t count = 0;
     MeshReport mesh;
     Real stable_step = 0;  // s
+    ElementKind element{};
 };
 
 /// Each kind of body in a world of its own: that is the step it would allow.
@@ -101,8 +102,9 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan) {
             World alone(settings);
             BodySettings settings_of_body = body.settings;
             settings_of_body.material = alone.add_material(plan.materials[body.material].second);
-            alone.add_body(plan.meshes[body.mesh], settings_of_body);
-            kinds.push_back({body.settings.name, 0, inspect(plan.meshes[body.mesh]), alone.stable_step()});
+            const BodyHandle added = alone.add_body(plan.meshes[body.mesh], settings_of_body);
+            kinds.push_back(
+                {body.settings.name, 0, inspect(plan.meshes[body.mesh]), alone.stable_step(), alone.element(added)});
         }
         ++kinds[at->second].count;
     }
@@ -162,6 +164,7 @@ int inspect_scene(const InspectOptions& options) {
             bodies.push_back({{"name", kind.first_name},
                               {"count", kind.count},
                               {"stable_dt", kind.stable_step},
+                              {"element", name_of(kind.element)},
                               {"mesh", mesh_json(kind.mesh)}});
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
@@ -193,8 +196,9 @@ int inspect_scene(const InspectOptions& options) {
     for (const BodyKindReport& kind : kinds)
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
-                  << grouped(kind.mesh.tetrahedra) << " tetrahedra, mean edge " << with_unit(kind.mesh.mean_edge, "m")
-                  << ", stable step " << with_unit(kind.stable_step, "s") << "\n";
+                  << grouped(kind.mesh.tetrahedra) << " tetrahedra (" << name_of(kind.element) << "), mean edge "
+                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.stable_step, "s")
+                  << "\n";
     print_problems(problems);
     return exit_ok;
 }

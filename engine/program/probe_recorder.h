@@ -26,7 +26,8 @@ struct ProbeRecord {
 class ProbeRecorder {
 public:
     explicit ProbeRecorder(const Scene& scene);
-    /// Counts the contacts of the last step and looks at the stress; they stand for the `seconds` since the sample before.
+    /// Counts the contacts of the last step, which stand for the `seconds` since the sample before, and looks at the
+    /// stress.
     void sample(const World& world, Real seconds);
     const std::vector<ProbeRecord>& records() const { return records_; }
 

@@ -70,6 +70,10 @@ const std::string& World::name(BodyHandle body) const {
     return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "name"))].name;
 }
 
+ElementKind World::element(BodyHandle body) const {
+    return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "element"))].element;
+}
+
 Real World::mass(BodyHandle body) const {
     Real sum = 0;
     for (Real m : rows_of(state_->model.nodes.mass,

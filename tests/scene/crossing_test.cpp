@@ -42,7 +42,7 @@ TEST_CASE("a scene without fast pairs never looks at the motion of a feature", "
         world.add_body(ball, {.material = rubber,
                               .position = {0.103 * (i % 3), 0.0, 0.052 + 0.104 * (i / 3)},
                               .contact_distance = 0.002});
-    REQUIRE(world.advance(1.0).ok());
+    REQUIRE(world.advance(0.8).ok());  // later the upper ones roll down
     const WorldReport report = world.report();
     CHECK(report.max_contacts > 20);
     CHECK(report.crossing_tests == 0);

@@ -39,7 +39,7 @@ World sliver_world(bool multirate, MaterialModel model = MaterialModel::stable_n
     World world(settings);
     const auto material =
         world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3, .model = model}));
-    stir(world, world.add_body(sliver_mesh(), {.material = material}), sliver_mesh());
+    stir(world, world.add_body(sliver_mesh(), {.material = material, .element = ElementKind::linear}), sliver_mesh());
     return world;
 }
 
@@ -57,9 +57,12 @@ World stiff_on_soft(bool multirate, Backend backend = Backend::automatic, int th
         world.add_material(test::lossless({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
     world.add_collider(Plane{});
     world.add_body(mesh::box({0.2, 0.2, 0.1}, {6, 6, 3}),
-                   {.material = soft, .position = {0, 0, 0.052}, .name = "soft"});
-    world.add_body(mesh::ball(0.04, 4),
-                   {.material = stiff, .position = {0.01, 0, 0.15}, .velocity = {0.2, 0, -0.5}, .name = "stiff"});
+                   {.material = soft, .position = {0, 0, 0.052}, .element = ElementKind::linear, .name = "soft"});
+    world.add_body(mesh::ball(0.04, 4), {.material = stiff,
+                                         .position = {0.01, 0, 0.15},
+                                         .velocity = {0.2, 0, -0.5},
+                                         .element = ElementKind::linear,
+                                         .name = "stiff"});
     return world;
 }
 
@@ -124,7 +127,8 @@ TEST_CASE("without slivers to care for, multirate changes no bit", "[scene]") {
             test::lossless({.young_modulus = 1e5, .friction = 0.5, .model = MaterialModel::corotational}));
         world.add_collider(Plane{});
         const auto body =
-            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = material, .position = {0, 0, 0.06}});
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}),
+                           {.material = material, .position = {0, 0, 0.06}, .element = ElementKind::linear});
         REQUIRE(world.advance(0.15).ok());
         REQUIRE(world.report().max_contacts > 0);
         if (multirate) REQUIRE(world.report().level_elements.size() == 1);
@@ -135,7 +139,7 @@ TEST_CASE("without slivers to care for, multirate changes no bit", "[scene]") {
 }
 
 TEST_CASE("multirate on slivers converges with order 2, with the error of a mesh that has none", "[scene]") {
-    const Mesh regular = mesh::box({box_size, box_size, box_size}, {box_cells, box_cells, box_cells});
+    const Mesh regular = mirrored_box(box_size, box_cells);
     const auto positions = [&](const Mesh& mesh, bool multirate, Real safety, Integrator integrator) {
         Settings settings;
         settings.gravity = Vec3::Zero();
@@ -144,7 +148,7 @@ TEST_CASE("multirate on slivers converges with order 2, with the error of a mesh
         settings.integrator = integrator;
         World world(settings);
         const auto material = world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3}));
-        const auto body = world.add_body(mesh, {.material = material});
+        const auto body = world.add_body(mesh, {.material = material, .element = ElementKind::linear});
         stir(world, body, mesh);
         REQUIRE(world.advance(0.02).ok());
         return std::vector<Vec3>(world.positions(body).begin(), world.positions(body).end());
@@ -186,21 +190,22 @@ TEST_CASE("a soft block under a stiff ball is looked at seldom and moves as it s
     const WorldReport report = multirate.report();
     CHECK(report.element_impulses < report.element_steps / 2);
     CHECK(report.max_penetration <= single.report().max_penetration + 1e-5);
-    CHECK(total_energy(multirate) == Approx(total_energy(single)).epsilon(0.05));
-    // Where the ball has bounced to differs by what the two make of the impact; with half the step by a quarter.
     const auto apart = [](const World& a, const World& b) {
         Real most = 0;
         for (const BodyHandle body : a.bodies())
             most = std::max(most, (a.center_of_mass(body) - b.center_of_mass(body)).norm());
         return most;
     };
+    // What the two make of the impact differs; with a quarter of the step by little.
     const Real coarse = apart(multirate, single);
+    CHECK(total_energy(multirate) == Approx(total_energy(single)).epsilon(0.15));
     CHECK(coarse < 1.5e-3);
-    World fine_multirate = stiff_on_soft(true, Backend::automatic, 0, 0.5),
-          fine_single = stiff_on_soft(false, Backend::automatic, 0, 0.5);
+    World fine_multirate = stiff_on_soft(true, Backend::automatic, 0, 0.25),
+          fine_single = stiff_on_soft(false, Backend::automatic, 0, 0.25);
     REQUIRE(fine_multirate.advance(seconds).ok());
     REQUIRE(fine_single.advance(seconds).ok());
-    CHECK(apart(fine_multirate, fine_single) < std::min(0.4 * coarse, 5e-4));
+    CHECK(total_energy(fine_multirate) == Approx(total_energy(fine_single)).epsilon(0.01));
+    CHECK(apart(fine_multirate, fine_single) < std::min(0.5 * coarse, 5e-4));
 }
 
 TEST_CASE("multirate steps have the same bits for 1, 2 and 4 workers", "[scene][determinism]") {

@@ -10,12 +10,44 @@
 
 namespace skerry::test {
 
-/// The box mesh of cubic cells with `share` of its tetrahedra made flat: a node inside is moved close to the middle of
+/// A box of cubic cells, each the mirror image of its neighbours: unlike in mesh::box a node can move to the middle of
+/// a face opposite to it without turning another tetrahedron inside out.
+inline Mesh mirrored_box(Real size, int cells) {
+    Mesh mesh;
+    for (int z = 0; z <= cells; ++z)
+        for (int y = 0; y <= cells; ++y)
+            for (int x = 0; x <= cells; ++x)
+                mesh.nodes.push_back(size * (Vec3(x, y, z) / cells - Vec3::Constant(0.5)));
+    const auto node_at = [&](const std::array<int, 3>& p) {
+        return static_cast<Index>((p[2] * (cells + 1) + p[1]) * (cells + 1) + p[0]);
+    };
+    constexpr std::array<std::array<std::size_t, 3>, 6> walks{
+        {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+    for (int cell = 0; cell < cells * cells * cells; ++cell) {
+        const std::array<int, 3> at{cell % cells, cell / cells % cells, cell / (cells * cells)};
+        for (const auto& walk : walks) {
+            std::array<int, 3> corner{at[0] + at[0] % 2, at[1] + at[1] % 2, at[2] + at[2] % 2};
+            std::array<Index, 4> t{node_at(corner)};
+            for (std::size_t i = 0; i < 3; ++i) {
+                corner[walk[i]] += at[walk[i]] % 2 == 0 ? 1 : -1;
+                t[i + 1] = node_at(corner);
+            }
+            const auto from_first = [&](std::size_t k) -> Vec3 {
+                return mesh.nodes[static_cast<std::size_t>(t[k])] - mesh.nodes[static_cast<std::size_t>(t[0])];
+            };
+            if (from_first(1).cross(from_first(2)).dot(from_first(3)) < 0) std::swap(t[2], t[3]);
+            mesh.tetrahedra.push_back(t);
+        }
+    }
+    return mesh;
+}
+
+/// Such a box with `share` of its tetrahedra made flat: a node inside is moved close to the middle of
 /// the opposite face of one of its tetrahedra, to `flatness` of the altitude. Faces lie in common planes, so that some
 /// four to eight tetrahedra become flat at once. No two nodes of a tetrahedron are moved. Fewer than asked for where
 /// there is no room.
 inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uint64_t seed = 1) {
-    Mesh mesh = mesh::box({size, size, size}, {cells, cells, cells});
+    Mesh mesh = mirrored_box(size, cells);
     std::vector<std::vector<std::size_t>> around(mesh.nodes.size());
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (Index n : mesh.tetrahedra[t]) around[static_cast<std::size_t>(n)].push_back(t);

@@ -10,8 +10,9 @@
 namespace skerry {
 
 /// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (velocity, speed, stress, strain, body number) and
-/// one .vtp of the contacts (impulse, force, normal, gap, slip, state, region) a frame. Stress is Cauchy's in Pa by
-/// tetrahedron and by node, strain Green's; their components in VTK's order. Files appear complete or not at all. Throws SceneError when the folder cannot be written.
+/// one .vtp of the contacts (impulse, force, normal, gap, slip, state, region) a frame. Stress is Cauchy's in Pa, by
+/// tetrahedron and by node, strain Green's, by tetrahedron; components as VTK has them: XX, YY, ZZ, XY, YZ, XZ. Files
+/// appear complete or not at all. Throws SceneError when the folder cannot be written.
 class VtkWriter {
 public:
     VtkWriter(const std::filesystem::path& folder, const std::string& name);

@@ -70,6 +70,7 @@ public:
     std::vector<Mat3> node_strain(BodyHandle body) const;       // by node
     std::vector<Real> von_mises_stress(BodyHandle body) const;  // Pa, by tetrahedron
     const std::string& name(BodyHandle body) const;
+    ElementKind element(BodyHandle body) const;    // what it has; `smoothed` is told as what it stands for
     Real mass(BodyHandle body) const;              // kg
     Vec3 center_of_mass(BodyHandle body) const;    // m
     Real contact_distance(BodyHandle body) const;  // m

@@ -266,10 +266,12 @@ Index append_body(Model& model, const NewBody& body) {
     BodyRows rows{row, nodes, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
     ElementList list;
-    if (!body.tetrahedra.empty())
-        list =
-            elements_of({body.tetrahedra, body.nodes, body.rotation},
-                        resolved(body.element, model.materials.poisson_ratio[static_cast<std::size_t>(body.material)]));
+    ElementKind element = body.element;
+    if (!body.tetrahedra.empty()) {
+        element = resolved(element, model.materials.poisson_ratio[static_cast<std::size_t>(body.material)],
+                           model.settings.multirate);
+        list = elements_of({body.tetrahedra, body.nodes, body.rotation}, element);
+    }
     rows.elements = append_elements(list, {}, nodes.begin, row, body.material, model.elements, model.element_nodes);
     if (model.settings.multirate && !body.tetrahedra.empty()) sort_by_level(model, body, list, rows);
     const Range blocks = rows.elements.blocks;
@@ -289,6 +291,7 @@ Index append_body(Model& model, const NewBody& body) {
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(model.elements, blocks);
     model.body_records.push_back({.name = {},
+                                  .element = element,
                                   .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
                                   .surface = outline(body),
                                   .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});

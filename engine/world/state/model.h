@@ -29,6 +29,7 @@ inline constexpr std::uint32_t no_slot = 0xffffffffu;
 /// What only a person or a file reads of a body.
 struct BodyRecord {
     std::string name;
+    ElementKind element;                           // never `smoothed`: one of the two that it stands for
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
     // the tetrahedra that the element at each place of its blocks covers; none in a lane that is left over

@@ -4,9 +4,10 @@
 
 namespace skerry {
 
-ElementKind resolved(ElementKind kind, Real poisson_ratio) {
+ElementKind resolved(ElementKind kind, Real poisson_ratio, bool multirate) {
     constexpr Real largest_edge_smoothed_ratio = 0.25;
     if (kind != ElementKind::smoothed) return kind;
+    if (multirate) return ElementKind::linear;
     return poisson_ratio > largest_edge_smoothed_ratio ? ElementKind::edge_node_smoothed : ElementKind::edge_smoothed;
 }
 

@@ -122,12 +122,15 @@ Impact collide(int n, bool wall) {
     bars.push_back(world.add_body(mesh, {.material = material,
                                          .position = {0, 0, length / 2 + (wall ? shell / 2 : shell) + start},
                                          .velocity = {0, 0, -v0},
-                                         .contact_distance = shell}));
+                                         .contact_distance = shell,
+                                         .element = ElementKind::linear}));
     if (wall)
         world.add_collider(Plane{});
     else
-        bars.push_back(
-            world.add_body(mesh, {.material = material, .position = {0, 0, -length / 2}, .contact_distance = shell}));
+        bars.push_back(world.add_body(mesh, {.material = material,
+                                             .position = {0, 0, -length / 2},
+                                             .contact_distance = shell,
+                                             .element = ElementKind::linear}));
     Impact impact{};
     while (world.time() < start / v0 + 4 * length / c) {
         const Real h = world.advance(world.stable_step() / 2).step_size;

@@ -39,7 +39,7 @@ Real swing(int n, bool held, Real expected, Shape shape) {
     World world(settings);
     const auto material = world.add_material(bar_material());
     const Mesh mesh = column(width, length, n);
-    const auto bar = world.add_body(mesh, {.material = material});
+    const auto bar = world.add_body(mesh, {.material = material, .element = ElementKind::linear});
     if (held) world.attach(bar, bottom);
     const std::vector<Real> mass = node_masses(world, bar, mesh, density);
     std::vector<Real> part;
@@ -72,7 +72,7 @@ struct HangingColumn {
     HangingColumn(int n, bool even) : world(settings()), mesh(column(width, length, n)) {
         // 1/s, about critical for bending, which is the slowest
         const auto material = world.add_material(bar_material(6));
-        bar = world.add_body(mesh, {.material = material});
+        bar = world.add_body(mesh, {.material = material, .element = ElementKind::linear});
         world.attach(bar, bottom);
         if (even) {
             const std::vector<Real> mass = node_masses(world, bar, mesh, density);

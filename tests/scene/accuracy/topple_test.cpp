@@ -22,7 +22,7 @@ Fate fate(Real degrees, Real mu) {
     constexpr Real b = 0.1, h = 0.2;
     Settings settings = accurate();
     settings.gravity = tilted_gravity(degrees);
-    BlockOnPlane scene(settings, {.young_modulus = 5e6, .poisson_ratio = 0.3, .friction = mu, .damping = 500},
+    BlockOnPlane scene(settings, {.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = mu, .damping = 500},
                        {b, b, h}, {2, 2, 4});
     scene.settle(0.2, 0.5);
     const Vec3 start = scene.world.center_of_mass(scene.block);
