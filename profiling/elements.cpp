@@ -24,21 +24,32 @@ namespace {
 
 using namespace skerry;
 
-/// What one tetrahedron costs, counted in the source. Bytes: B 72, volume 8, nodes 16, material 0.5, positions 4 (0.18
-/// nodes a tetrahedron), forces 96 stored and 96 fetched before; with a frame 32 + 32 + 32 for the quaternions. Flops:
-/// edges 9, F 45, forces 63, and the law; a frame 172 in each of two passes (division and root count as one) and 24.
+/// Elements and their nodes, a tetrahedron.
+struct Density {
+    double elements, nodes;
+};
+
+/// What one tetrahedron costs, counted in the source. Bytes: of a node of an element its gradient (but for the first)
+/// 24, number 4, force 24 stored and 24 fetched before; of an element volume 8, material 0.5, with a frame 32 + 32 + 32
+/// for the quaternions; positions 4 (0.18 nodes a tetrahedron). Flops: of a node but the first edge 3, F 18, force 15;
+/// of an element 9, and the law; a frame 172 in each of two passes (division and root count as one) and 24.
 struct Cost {
     double bytes, flops;
 };
-Cost element_cost(MaterialModel model) {
-    constexpr double shared_bytes = 292.5, shared_flops = 117;
-    return with_law(model, [](auto law) -> Cost {
-        if constexpr (law.has_frame) return {shared_bytes + 96, shared_flops + 2 * 172 + 24 + law.stress_flops};
-        return {shared_bytes, shared_flops + law.stress_flops};
+Cost element_cost(MaterialModel model, const Density& of) {
+    const double others = of.nodes - of.elements;
+    const Cost shared{24 * others + 52 * of.nodes + 8.5 * of.elements + 4, 36 * others + 9 * of.elements};
+    return with_law(model, [&](auto law) -> Cost {
+        if constexpr (law.has_frame)
+            return {shared.bytes + 96 * of.elements, shared.flops + (2 * 172 + 24 + law.stress_flops) * of.elements};
+        return {shared.bytes, shared.flops + law.stress_flops * of.elements};
     });
 }
-/// The gather with its kick: forces 96, corners 16, and 0.18 nodes of 92 bytes; 12 additions and 0.18 nodes of 15.
-constexpr Cost gather_cost{129, 15};
+/// The gather with its kick: of a node of an element its force 24 and corner 4 bytes, 3 additions; 0.18 nodes of 92
+/// bytes and 15 flops.
+Cost gather_cost(const Density& of) {
+    return {28 * of.nodes + 17, 3 * of.nodes + 3};
+}
 
 template <class Work>
 double median_seconds(int repeats, Work&& work) {
@@ -107,7 +118,7 @@ struct Machine {
 };
 
 struct Row {
-    std::string mesh, model, pass;
+    std::string mesh, element, model, pass;
     double nanoseconds, bound;  // a tetrahedron
 };
 
@@ -126,12 +137,19 @@ void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_
         body.velocity, 1e-6, body.force, velocity_next);
 }
 
+/// Linear elements with every law, smoothed ones with the default law.
 void measure(Executor& executor, const test::TetMesh& mesh, const std::string& name, double bandwidth, double flops,
              int repeats, std::vector<Row>& rows) {
     const double count = static_cast<double>(mesh.tetrahedra.size());
     const auto bound = [&](const Cost& cost) { return 1e9 * std::max(cost.bytes / bandwidth, cost.flops / flops); };
-    for (const auto& [model, model_name] : EnumNames<MaterialModel>::table) {
-        test::ElasticBody body(mesh, material_constants(model, 1e5, 0.4, 1000));
+    const auto measure_one = [&](ElementKind element, MaterialModel model) {
+        test::ElasticBody body(mesh, material_constants(model, 1e5, 0.4, 1000), Mat3::Identity(), element);
+        Density density{};
+        for (std::size_t b = 0; b < body.elements.volume.size(); ++b)
+            for (const Real v : body.elements.volume[b].lane) {
+                density.elements += v > 0 ? 1 / count : 0;
+                density.nodes += v > 0 ? body.elements.count[b] / count : 0;
+            }
         // Two shapes in turn, deformed by a tenth and 1e-4 rad apart, as a quick step would have it: two passes of the
         // frame.
         std::vector<Vec3> shape[2] = {body.position, body.position};
@@ -147,9 +165,14 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
             swap(body.elements.rotation, body.elements.rotation_next);
         });
         const double gather = median_seconds(repeats, [&](int) { kick(executor, body, velocity_next); });
-        rows.push_back({name, std::string(model_name), "elements", 1e9 * elements / count, bound(element_cost(model))});
-        rows.push_back({name, std::string(model_name), "gather", 1e9 * gather / count, bound(gather_cost)});
-    }
+        const std::string of_element(name_of(element)), of_model(name_of(model));
+        rows.push_back(
+            {name, of_element, of_model, "elements", 1e9 * elements / count, bound(element_cost(model, density))});
+        rows.push_back({name, of_element, of_model, "gather", 1e9 * gather / count, bound(gather_cost(density))});
+    };
+    for (const auto& [model, model_name] : EnumNames<MaterialModel>::table) measure_one(ElementKind::linear, model);
+    for (const ElementKind element : {ElementKind::edge_smoothed, ElementKind::edge_node_smoothed})
+        measure_one(element, MaterialModel::stable_neo_hookean);
 }
 
 void print(const Machine& machine, const std::vector<Row>& rows, int threads) {
@@ -158,10 +181,11 @@ void print(const Machine& machine, const std::vector<Row>& rows, int threads) {
                 machine.triad_large / 1e9);
     std::printf("multiply and add     %8.1f GF/s\nfused multiply-add   %8.1f GF/s (not used: no contraction)\n\n",
                 machine.flops / 1e9, machine.flops_fused / 1e9);
-    std::printf("%-9s %-20s %-9s %10s %10s %10s\n", "mesh", "model", "pass", "ns/tet", "bound", "of bound");
+    std::printf("%-7s %-19s %-19s %-9s %10s %10s %10s\n", "mesh", "elements", "model", "pass", "ns/tet", "bound",
+                "of bound");
     for (const Row& row : rows)
-        std::printf("%-9s %-20s %-9s %10.2f %10.2f %9.0f%%\n", row.mesh.c_str(), row.model.c_str(), row.pass.c_str(),
-                    row.nanoseconds, row.bound, 100 * row.bound / row.nanoseconds);
+        std::printf("%-7s %-19s %-19s %-9s %10.2f %10.2f %9.0f%%\n", row.mesh.c_str(), row.element.c_str(),
+                    row.model.c_str(), row.pass.c_str(), row.nanoseconds, row.bound, 100 * row.bound / row.nanoseconds);
 }
 
 void write_json(const std::string& file, const Machine& machine, const std::vector<Row>& rows, int threads) {
@@ -173,6 +197,7 @@ void write_json(const std::string& file, const Machine& machine, const std::vect
                         {"rows", nlohmann::json::array()}};
     for (const Row& row : rows)
         json["rows"].push_back({{"mesh", row.mesh},
+                                {"elements", row.element},
                                 {"model", row.model},
                                 {"pass", row.pass},
                                 {"ns_per_tetrahedron", row.nanoseconds},
