@@ -83,7 +83,13 @@ std::vector<std::string> doubts_of(const RunResult& result) {
 
 Json statistics_of(const RunResult& result) {
     const WorldReport& r = result.report;
-    Json stages = Json::object(), probes = Json::object();
+    Json stages = Json::object(), probes = Json::object(), limits = Json::array();
+    for (const StepLimitReport& of : r.step_limits)
+        limits.push_back({{"limit", name_of(of.limit)},
+                          {"body", of.body_name},
+                          {"steps", of.steps},
+                          {"given_up", of.tries},
+                          {"seconds", of.seconds}});
     for (const StageReport& stage : r.stages)
         stages[stage.name] = {{"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}};
     for (const ProbeRecord& probe : result.probes) probes[probe.name] = to_json(probe);
@@ -98,6 +104,7 @@ Json statistics_of(const RunResult& result) {
         {"shortened_steps", r.shortened},
         {"retried_steps", r.retried},
         {"limited_steps", r.limited},
+        {"step_limits", limits},
         {"seconds_wall", wall},
         {"seconds_load", result.seconds_load},
         {"seconds_output", result.seconds_output},

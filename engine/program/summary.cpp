@@ -70,6 +70,36 @@ std::string stage_table(const RunResult& result) {
     return text;
 }
 
+/// What kept steps from being longer, down to a hundredth of them.
+std::string limit_lines(const WorldReport& r) {
+    const auto why = [](const StepLimitReport& of) -> std::string {
+        switch (of.limit) {
+            case StepLimit::setting:
+                return "as step_size says";
+            case StepLimit::rest:
+                return of.body_name + " as it is at rest";
+            case StepLimit::strain:
+                return of.body_name + " as it is deformed";
+            case StepLimit::speed:
+                return of.body_name + " deforms too quickly";
+            case StepLimit::inversion:
+                return of.body_name + " would turn elements inside out";
+            case StepLimit::crossing:
+                return "surfaces would cross";
+        }
+        return {};
+    };
+    std::string text;
+    for (const StepLimitReport& of : r.step_limits) {
+        const double share = static_cast<double>(of.steps) / static_cast<double>(std::max<std::uint64_t>(r.steps, 1));
+        if (share < 0.01 || of.limit == StepLimit::setting) continue;
+        text += line(text.empty() ? "step limits" : "",
+                     percent(share) + " of steps, " + with_unit(of.seconds / static_cast<double>(of.steps), "s") +
+                         " each: " + why(of) + (of.tries > 0 ? " (" + grouped(of.tries) + " tries given up)" : ""));
+    }
+    return text;
+}
+
 std::string probe_lines(const RunResult& result) {
     std::string text;
     for (const ProbeRecord& probe : result.probes)
@@ -114,10 +144,11 @@ std::string summary_of(const RunResult& result) {
             line("steps",
                  grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                      ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
-                     (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times for fast bodies" : "") +
+                     (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times" : "") +
                      (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : "") +
                      (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long"
                                     : ""));
+    text += limit_lines(r);
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " +

@@ -112,6 +112,7 @@ WorldReport World::report() const {
     report.stable_step = skerry::stable_step(world.model.bodies, &stiffest);
     if (stiffest != no_index)
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;
+    report.step_limits = world.record.limits.report();
     for (const StageStats& stage : world.graph.stats())
         report.stages.push_back({stage.name, stage.seconds, stage.runs, stage.skipped});
     const auto mean = [](std::uint64_t sum, std::uint64_t count) {

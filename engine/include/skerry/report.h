@@ -8,12 +8,30 @@
 #include <vector>
 
 #include "components/handle.h"
+#include "components/options.h"
 #include "components/types.h"
 
 namespace skerry {
 
 enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff };
 enum class ContactMotion { open, stick, slide };
+/// What keeps a step from being longer (docs/step_length.md). setting: step_size. rest: the stable step of a body as it
+/// is at rest; strain: that of a body as it is deformed. speed: a body would deform by more than max_strain_step in a
+/// step; inversion: an element would turn inside out; crossing: surfaces would cross. The last three are found in tries
+/// that are given up; steps grow back from half their length by a tenth each.
+enum class StepLimit { setting, rest, strain, speed, inversion, crossing };
+
+template <>
+struct EnumNames<StepLimit> {
+    static constexpr std::array<std::pair<StepLimit, std::string_view>, 6> table{{
+        {StepLimit::setting, "setting"},
+        {StepLimit::rest, "rest"},
+        {StepLimit::strain, "strain"},
+        {StepLimit::speed, "speed"},
+        {StepLimit::inversion, "inversion"},
+        {StepLimit::crossing, "crossing"},
+    }};
+};
 
 /// One contact of the last step.
 struct Contact {
@@ -94,6 +112,16 @@ public:
     std::string body_name;        // when not ok
 };
 
+/// Steps that one thing kept from being longer, since the world was made.
+struct StepLimitReport {
+    StepLimit limit = StepLimit::rest;
+    BodyHandle body{};      // stale where no body is to blame: a setting, surfaces that cross
+    std::string body_name;  // as it was then
+    std::uint64_t steps = 0;
+    std::uint64_t tries = 0;  // given up for it
+    Real seconds = 0;         // s, simulated in these steps
+};
+
 /// Sums, and largest values, over all steps since the world was made. Each step adds to them.
 struct RunCounters {
     std::uint64_t steps = 0;
@@ -129,6 +157,7 @@ struct WorldReport : RunCounters {
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
     Real stable_step = 0;                                             // s, of the stiffest body, now
     std::string stable_step_body;                                     // which body that is
+    std::vector<StepLimitReport> step_limits;                         // most steps first
     std::vector<StageReport> stages;                                  // in the order of the step
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;

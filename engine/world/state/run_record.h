@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/world/state/step_limits.h"
 #include "engine/world/step/balance.h"
 #include "jobs/trace.h"
 #include "skerry/problem.h"
@@ -22,6 +23,7 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
+    StepLimits limits;
     Balance balance;
     Trace trace;
     bool tracing = false;

@@ -52,7 +52,7 @@ void begin_cycle(Model& model, StepCycle& cycle, Real h, Real steps) {
 StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit) {
     const bool between = cycle.index == 0;
     StepPlan plan;
-    plan.stable = trusted_step(model);
+    plan.stable = trusted_step(model, &plan.stiffest);
     const Real longest = std::min(between ? plan.stable : cycle.h, fast_limit);
     // A remainder of rounding size joins the last step.
     plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;

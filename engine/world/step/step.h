@@ -27,9 +27,10 @@ Real lag_between_steps(const WorldState& world);
 
 // plan_step.cpp
 struct StepPlan {
-    Real h = 0;       // s
-    Real steps = 1;   // of this length to the end of what was asked for
-    Real stable = 0;  // s, the longest step that stability or the settings allow
+    Real h = 0;                 // s
+    Real steps = 1;             // of this length to the end of what was asked for
+    Real stable = 0;            // s, the longest step that stability or the settings allow
+    Index stiffest = no_index;  // row of BodyTable: whose stable step is the shortest
 };
 /// The next step of a call that has `left` seconds to go, where no step may be longer than `fast_limit`. Begins a cycle
 /// between two.

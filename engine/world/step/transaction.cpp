@@ -85,6 +85,53 @@ void commit(WorldState& world) {
     world.clock.time += parameters.h;
 }
 
+/// A strained body stands less than this part of its step at rest.
+constexpr Real as_at_rest = 0.9;
+
+struct Blamed {
+    BodyHandle body;
+    const std::string& name;
+};
+
+Blamed blamed(const Model& model, Index body) {
+    static const std::string nobody;
+    if (body == no_index) return {{}, nobody};
+    const auto b = static_cast<std::size_t>(body);
+    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;  // others belong to a collider
+    return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
+            model.body_records[b].name};
+}
+
+/// Of a step that is taken: the last tries, the settings or the stiffest body.
+void note_step(const Model& model, const StepPlan& plan, const Tries& tries, StepLimits& limits) {
+    StepLimit limit = tries.limit;
+    Index body = tries.body;
+    if (!(tries.longest < plan.stable)) {
+        const auto b = static_cast<std::size_t>(plan.stiffest);
+        const bool set =
+            plan.stiffest == no_index || plan.stable < model.bodies.stable_step[b] * model.settings.step_safety;
+        limit = set ? StepLimit::setting
+                    : (model.bodies.stable_step[b] < as_at_rest * model.bodies.rest_step[b] ? StepLimit::strain
+                                                                                            : StepLimit::rest);
+        body = set ? no_index : plan.stiffest;
+    }
+    const auto [handle, name] = blamed(model, body);
+    limits.count_step(limit, handle, name, plan.h);
+}
+
+/// Of a try that is given up for one half as long.
+void note_try(const Model& model, const StepScratch& scratch, Tries& tries, StepLimits& limits) {
+    const StepFindings& found = scratch.findings;
+    tries.limit = found.crossings > 0                          ? StepLimit::crossing
+                  : found.verdict.fault == StepFault::too_fast ? StepLimit::speed
+                                                               : StepLimit::inversion;
+    tries.body = tries.limit == StepLimit::crossing ? no_index
+                 : tries.limit == StepLimit::speed  ? found.verdict.body
+                                                    : found.inversions.body;
+    const auto [handle, name] = blamed(model, tries.body);
+    limits.count_try(tries.limit, handle, name);
+}
+
 /// The table of StepOutcome.
 StepOutcome judge(const StepScratch& scratch, const StepPlan& plan, Tries& tries) {
     const StepFindings& found = scratch.findings;
@@ -113,14 +160,16 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);
-            tries = {.longest = tries.longest * step_growth};
+            note_step(world.model, plan, tries, world.record.limits);
+            tries = {.longest = tries.longest * step_growth, .limit = tries.limit, .body = tries.body};
             return outcome;
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
             // an inversion says nothing of what crossed in the tries before
             if (!scratch.inverts()) world.cache.crossings.row.clear();
-            tries = {.longest = plan.h / 2};
+            note_try(world.model, scratch, tries, world.record.limits);
+            tries = {.longest = plan.h / 2, .limit = tries.limit, .body = tries.body};
             break;
         case StepOutcome::again_letting_through:
             tries.letting_through = true;

@@ -36,6 +36,9 @@ struct Tries {
     Real longest = std::numeric_limits<Real>::infinity();  // s; grows again step by step
     int with_crossings = 0;                                // tries of this step at its present length
     bool letting_through = false;                          // the next is the last
+    // why `longest` is what it is: of the last try that was given up for a shorter one
+    StepLimit limit = StepLimit::speed;
+    Index body = no_index;  // row of BodyTable
 };
 
 /// Takes the step that is planned as far as the tries allow, and says what became of it.

@@ -1,0 +1,27 @@
+// What kept the steps of a run from being longer.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "skerry/report.h"
+
+namespace skerry {
+
+/// Counts by cause and body. A pair of them that was seen before costs no allocation.
+class StepLimits {
+public:
+    /// A committed step of `h` seconds.
+    void count_step(StepLimit limit, BodyHandle body, const std::string& name, Real h);
+    /// A try that was given up.
+    void count_try(StepLimit limit, BodyHandle body, const std::string& name);
+    /// Most steps first.
+    std::vector<StepLimitReport> report() const;
+
+private:
+    StepLimitReport& entry(StepLimit limit, BodyHandle body, const std::string& name);
+
+    std::vector<StepLimitReport> entries_;
+};
+
+}  // namespace skerry

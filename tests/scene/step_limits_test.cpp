@@ -1,0 +1,85 @@
+// What keeps steps from being longer (docs/step_length.md).
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+
+namespace {
+
+/// Every step and every try that was shortened is counted under one cause.
+void check_sums(const WorldReport& report) {
+    std::uint64_t steps = 0, tries = 0;
+    Real seconds = 0;
+    for (const StepLimitReport& of : report.step_limits) {
+        steps += of.steps;
+        tries += of.tries;
+        seconds += of.seconds;
+    }
+    CHECK(steps == report.steps);
+    CHECK(tries == report.shortened);
+    CHECK(seconds == Approx(report.time).epsilon(1e-9));
+}
+
+const StepLimitReport* find(const WorldReport& report, StepLimit limit) {
+    for (const StepLimitReport& of : report.step_limits)
+        if (of.limit == limit) return &of;
+    return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("steps are counted under the body that stands the shortest", "[scene]") {
+    World world;
+    const auto soft = world.add_material({.young_modulus = 1e4}), stiff = world.add_material({.young_modulus = 1e6});
+    world.add_body(mesh::ball(0.1, 4), {.material = soft, .name = "soft"});
+    const auto body = world.add_body(mesh::ball(0.1, 4), {.material = stiff, .position = {1, 0, 0}, .name = "stiff"});
+    REQUIRE(world.advance(0.05).ok());
+    const WorldReport report = world.report();
+    check_sums(report);
+    REQUIRE(report.step_limits.size() == 1);
+    CHECK(report.step_limits[0].limit == StepLimit::rest);
+    CHECK(report.step_limits[0].body == body);
+    CHECK(report.step_limits[0].body_name == "stiff");
+}
+
+TEST_CASE("steps that the settings keep short are counted under them", "[scene]") {
+    Settings settings;
+    settings.step_size = 1e-5;
+    World world(settings);
+    world.add_body(mesh::ball(0.1, 4), {.material = world.add_material({.young_modulus = 1e4})});
+    REQUIRE(world.advance(1e-3).ok());
+    const WorldReport report = world.report();
+    check_sums(report);
+    REQUIRE(report.step_limits.size() == 1);
+    CHECK(report.step_limits[0].limit == StepLimit::setting);
+    CHECK(report.step_limits[0].body_name.empty());
+}
+
+TEST_CASE("a body that is thrown hard counts for what it makes of the steps", "[scene]") {
+    // At 1.4 times its speed of sound: elements are crushed and turn over, and steps grow back.
+    World world;
+    world.add_collider(Plane{});
+    const auto body =
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {5, 5, 5}),
+                       {.material = world.add_material({.young_modulus = 5e4, .poisson_ratio = 0.3, .friction = 0.4}),
+                        .position = {0, 0, 0.08},
+                        .rotation = {0.3, 0.5, 0.1},
+                        .velocity = {0, 0, -10},
+                        .name = "thrown"});
+    REQUIRE(world.advance(0.1).ok());
+    const WorldReport report = world.report();
+    REQUIRE(report.shortened > 0);
+    check_sums(report);
+    std::uint64_t shortened_steps = 0;
+    for (const StepLimit limit : {StepLimit::speed, StepLimit::inversion, StepLimit::crossing})
+        if (const StepLimitReport* of = find(report, limit)) {
+            shortened_steps += of->steps;
+            CHECK(of->tries > 0);
+            if (limit != StepLimit::crossing) CHECK(of->body == body);
+        }
+    CHECK(shortened_steps >= report.shortened);
+    CHECK(std::ranges::is_sorted(report.step_limits, std::greater{}, &StepLimitReport::steps));
+}
