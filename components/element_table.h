@@ -25,7 +25,8 @@ using ElementStrain = std::array<ElementLane, 7>;
 /// Tetrahedron t of the table is lane t % element_lanes of block t / element_lanes.
 struct TetrahedronBlockTable {
     Column<TetrahedronNodes> node;
-    Column<ElementLane> volume;  // m^3, at rest; 0 in a lane that is left over
+    Column<ElementLane> volume;    // m^3, at rest; 0 in a lane that is left over
+    Column<ElementLane> altitude;  // m, the smallest at rest; infinite in a lane that is left over
     // m: none of the block turns inside out, or back, while the body's travel is below this
     Column<Real> uninverted_until;
 
@@ -34,6 +35,7 @@ struct TetrahedronBlockTable {
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::link);
         visit("volume", volume, ColumnRole::state);
+        visit("altitude", altitude, ColumnRole::state);
         visit("uninverted_until", uninverted_until, ColumnRole::derived);
     }
 };

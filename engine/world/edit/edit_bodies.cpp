@@ -74,17 +74,11 @@ Real mean_edge_length(const Model& model, Range edges) {
 }
 
 /// Smallest altitude of the tetrahedra: three times the volume over the largest face.
+/// m, of all tetrahedra; 0 without any.
 Real smallest_altitude(const NewBody& body) {
     Real smallest = std::numeric_limits<Real>::infinity();
-    for (const auto& t : body.tetrahedra) {
-        std::array<Vec3, 4> x;
-        for (std::size_t a = 0; a < 4; ++a) x[a] = body.nodes[static_cast<std::size_t>(t[a])];
-        const Real six_volumes = (x[1] - x[0]).dot((x[2] - x[0]).cross(x[3] - x[0]));
-        for (std::size_t a = 0; a < 4; ++a) {
-            const Vec3 &p = x[(a + 1) % 4], &q = x[(a + 2) % 4], &r = x[(a + 3) % 4];
-            smallest = std::min(smallest, six_volumes / (q - p).cross(r - p).norm());
-        }
-    }
+    for (const auto& tetrahedron : body.tetrahedra)
+        smallest = std::min(smallest, skerry::smallest_altitude(tetrahedron, body.nodes));
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 

@@ -54,41 +54,44 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 }
 
 struct Fastest {
-    Real speed_squared = 0;  // m^2/s^2
+    Real rate_squared = 0;  // 1/s^2: of the square of a speed over an altitude
     Index node = no_index;
     Index element = no_index;  // row: lane of a block
 
     void look_at(const Fastest& other) {
-        if (other.speed_squared > speed_squared) *this = other;
+        if (other.rate_squared > rate_squared) *this = other;
     }
 };
 
-/// Largest speed of a corner relative to corner 0 of its element, over one block of elements.
+/// Largest speed of a corner relative to corner 0 of its element, over its altitude, in one block of elements.
 Fastest fastest_corner(const CheckInputs& state, std::size_t block) {
     Fastest fastest;
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Vec3 base = motion(state, static_cast<std::size_t>(state.tetrahedron_node[block][0][l]));
         for (std::size_t a = 1; a < 4; ++a) {
             const Index node = state.tetrahedron_node[block][a][l];
-            fastest.look_at({(motion(state, static_cast<std::size_t>(node)) - base).squaredNorm(), node,
-                             static_cast<Index>(block * element_lanes + l)});
+            const Real altitude = state.tetrahedron_altitude[block][l];
+            fastest.look_at(
+                {(motion(state, static_cast<std::size_t>(node)) - base).squaredNorm() / (altitude * altitude), node,
+                 static_cast<Index>(block * element_lanes + l)});
         }
     }
     return fastest;
 }
 
-/// Whether any corner of a block of elements is faster than that: all elements side by side, and nothing is said of
-/// which.
-bool any_corner_faster(const CheckInputs& state, std::size_t block, Real limit_squared) {
+/// Whether any corner of a block of elements is faster than `rate` (1/s) times the altitude: all elements side by side,
+/// and nothing is said of which.
+bool any_corner_faster(const CheckInputs& state, std::size_t block, Real rate) {
     LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
     if (!state.push_out.empty()) parting = parting + edges(state.tetrahedron_node[block], state.push_out);
     const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
                 third = dot(parting.c2, parting.c2);
+    const Real8 limit = rate * load(state.tetrahedron_altitude[block]), limit_squared = limit * limit;
     return !all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared));
 }
 
 /// Relative to the mean velocity of the body: a coarser measure, for a body whose elements are not given.
-Fastest fastest_from_mean(const CheckInputs& state, Range blocks) {
+Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude) {
     Vec3 sum = Vec3::Zero();
     const std::size_t begin = static_cast<std::size_t>(state.block_begin[static_cast<std::size_t>(blocks.begin)]);
     const std::size_t end = static_cast<std::size_t>(state.block_end[static_cast<std::size_t>(blocks.end - 1)]);
@@ -96,14 +99,15 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks) {
     const Vec3 mean = sum / static_cast<Real>(end - begin);
     Fastest fastest;
     for (std::size_t n = begin; n < end; ++n)
-        fastest.look_at({(motion(state, n) - mean).squaredNorm(), static_cast<Index>(n), no_index});
+        fastest.look_at(
+            {(motion(state, n) - mean).squaredNorm() / (altitude * altitude), static_cast<Index>(n), no_index});
     return fastest;
 }
 
-/// The fastest node of a body in the measure that counts, when it exceeds `limit` (m/s); else none. Each test is a
-/// superset of the next.
-Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t body, Real max_speed, Real limit) {
-    const Real limit_squared = limit * limit;
+/// The fastest node of a body in the measure that counts, when it exceeds `rate` (1/s) times the altitude of its
+/// element; else none. Each test is a superset of the next.
+Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t body, Real max_speed, Real rate) {
+    const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     if (!(4 * max_speed * max_speed > limit_squared)) return {};  // two nodes part at most at twice the highest speed
     const Range blocks = state.body_node_blocks[body];
     const Vec3 first =
@@ -119,17 +123,17 @@ Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t 
     if (!parting) return {};
     Fastest fastest;
     if (state.body_blocks.empty()) {
-        fastest = fastest_from_mean(state, blocks);
+        fastest = fastest_from_mean(state, blocks, altitude);
     } else {
         const Range elements = state.body_blocks[body];
         const std::size_t begin = static_cast<std::size_t>(elements.begin),
                           count = static_cast<std::size_t>(elements.size());
         if (!any_exceeds(executor, count, element_blocks_per_job,
-                         [&](std::size_t row) { return any_corner_faster(state, begin + row, limit_squared); }))
+                         [&](std::size_t row) { return any_corner_faster(state, begin + row, rate); }))
             return {};
         for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_corner(state, begin + row));
     }
-    return fastest.speed_squared > limit_squared ? fastest : Fastest{};
+    return fastest.rate_squared > rate * rate ? fastest : Fastest{};
 }
 
 }  // namespace
@@ -156,11 +160,10 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         if (!finite) {
             verdict = {StepFault::not_finite, static_cast<Index>(body), first_not_finite(state, blocks), 0};
         } else if (altitude > 0 && blocks.size() > 0) {
-            const Fastest fastest =
-                too_fast_node(executor, state, body, body_max_speed[body], max_strain_step * altitude / h);
+            const Fastest fastest = too_fast_node(executor, state, body, body_max_speed[body], max_strain_step / h);
             if (fastest.node != no_index)
                 verdict = {StepFault::too_fast, static_cast<Index>(body), fastest.node,
-                           std::sqrt(fastest.speed_squared) * h / altitude, fastest.element};
+                           std::sqrt(fastest.rate_squared) * h, fastest.element};
         }
     }
     return verdict;

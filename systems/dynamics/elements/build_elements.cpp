@@ -43,6 +43,16 @@ std::vector<Index> places_of(const ElementList& list, std::span<const std::uint8
 
 }  // namespace
 
+Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position) {
+    const auto at = [&](std::size_t a) -> const Vec3& {
+        return rest_position[static_cast<std::size_t>(tetrahedron[a % 4])];
+    };
+    Real largest_face = 0;  // twice its area
+    for (std::size_t a = 0; a < 4; ++a)
+        largest_face = std::max(largest_face, (at(a + 1) - at(a)).cross(at(a + 2) - at(a)).norm());
+    return six_volumes(tetrahedron, rest_position) / largest_face;
+}
+
 Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                         Index first_node, TetrahedronBlockTable& table) {
     const Index first_block = static_cast<Index>(table.node.size());
@@ -50,13 +60,16 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
         TetrahedronNodes node;
         for (NodeLane& corner : node)
             for (Index& n : corner.lane) n = first_node;
-        ElementLane volume{};
+        ElementLane volume{}, altitude;
+        for (Real& left_over : altitude.lane) left_over = std::numeric_limits<Real>::infinity();
         for (std::size_t l = 0; l < element_lanes && first + l < tetrahedra.size(); ++l) {
             for (std::size_t a = 0; a < 4; ++a) node[a][l] = first_node + tetrahedra[first + l][a];
             volume[l] = six_volumes(tetrahedra[first + l], rest_position) / 6;
+            altitude[l] = smallest_altitude(tetrahedra[first + l], rest_position);
         }
         table.node.push_back(node);
         table.volume.push_back(volume);
+        table.altitude.push_back(altitude);
         table.uninverted_until.push_back(-std::numeric_limits<Real>::infinity());
     }
     return {first_block, static_cast<Index>(table.node.size())};

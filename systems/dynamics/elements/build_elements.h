@@ -12,6 +12,9 @@
 
 namespace skerry {
 
+/// m, of one tetrahedron.
+Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position);
+
 /// Appends the blocks of a new body's tetrahedra, in the order of the mesh. `tetrahedra` index the body's own nodes;
 /// `first_node` is the row of its first node.
 Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,

@@ -20,6 +20,7 @@ struct State {
     std::vector<Real> altitude{0.1, 0.1};
     std::vector<Vec3> velocity{600, Vec3::Zero()}, next{600, Vec3(1, 0, 0)}, push{600, Vec3::Zero()};
     std::vector<TetrahedronNodes> elements;
+    std::vector<ElementLane> element_altitude;
     std::vector<Real> block_speed = std::vector<Real>(4), body_speed = std::vector<Real>(2);
     bool with_elements = true;
 
@@ -31,6 +32,8 @@ struct State {
                     nodes[static_cast<std::size_t>(a)][static_cast<std::size_t>(l)] =
                         (b / 10) * 300 + std::min((b % 10) * 32 + 4 * l + a, 299);
             elements.push_back(nodes);
+            element_altitude.emplace_back();
+            for (Real& of_lane : element_altitude.back().lane) of_lane = 0.1;
         }
     }
     StepVerdict check(int workers = 1) {
@@ -38,6 +41,7 @@ struct State {
         CheckInputs inputs{begin, end, body, node_blocks, altitude, velocity, next, push};
         if (with_elements) {
             inputs.tetrahedron_node = elements;
+            inputs.tetrahedron_altitude = element_altitude;
             inputs.body_blocks = element_blocks;
         }
         return check_state(*executor, inputs, 0.01, 0.2, block_speed, body_speed);
@@ -104,6 +108,20 @@ TEST_CASE("corners that part by more than the limit are too fast, by just less t
         CHECK(verdict.tetrahedron == (with_elements ? 105 : no_index));  // nodes 400 to 403: lane 1 of block 13
         CHECK(verdict.value == Approx(0.21).epsilon(0.01));              // 1 %: the mean moves with it
     }
+}
+
+TEST_CASE("each element is judged by its own altitude, and not by that of a sliver elsewhere", "[unit]") {
+    State state;
+    state.altitude = {0.001, 0.001};
+    state.element_altitude[2][3] = 0.001;  // nodes 76 to 79
+    state.next[402] = Vec3(1, 1.9, 0);
+    CHECK(state.check().fault == StepFault::none);
+    state.next[78] = Vec3(1, 0.021, 0);
+    const StepVerdict verdict = state.check();
+    CHECK(verdict.fault == StepFault::too_fast);
+    CHECK(verdict.node == 78);
+    CHECK(verdict.tetrahedron == 19);
+    CHECK(verdict.value == Approx(0.21));
 }
 
 TEST_CASE("common motion does no harm, however fast", "[unit]") {
