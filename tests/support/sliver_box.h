@@ -16,8 +16,7 @@ inline Mesh mirrored_box(Real size, int cells) {
     Mesh mesh;
     for (int z = 0; z <= cells; ++z)
         for (int y = 0; y <= cells; ++y)
-            for (int x = 0; x <= cells; ++x)
-                mesh.nodes.push_back(size * (Vec3(x, y, z) / cells - Vec3::Constant(0.5)));
+            for (int x = 0; x <= cells; ++x) mesh.nodes.push_back(size * (Vec3(x, y, z) / cells - Vec3::Constant(0.5)));
     const auto node_at = [&](const std::array<int, 3>& p) {
         return static_cast<Index>((p[2] * (cells + 1) + p[1]) * (cells + 1) + p[0]);
     };

@@ -1,5 +1,6 @@
 #include "systems/dynamics/elements/build_elements.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <numeric>
