@@ -63,10 +63,8 @@ std::string StepReport::message() const {
             return "the step was not taken: " + who + where +
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
         case StepStatus::too_fast:
-            return "the step was not taken: " + who + where + " would move by " + short_text(value) +
-                   " of its smallest element altitude in one step; in a sixty-fourth of the stable step, too; lower "
-                   "its velocities and "
-                   "loads, or raise "
+            return "the step was not taken: " + who + where + " would deform by " + short_text(value) +
+                   " in one step, in a sixty-fourth of the stable step, too; lower its velocities and loads, or raise "
                    "max_strain_step";
         case StepStatus::too_far:
             return "the step was not taken: " + who + " is so far from the origin that neighbouring positions are " +

@@ -54,7 +54,7 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 }
 
 struct Fastest {
-    Real rate_squared = 0;  // 1/s^2: of the square of a speed over an altitude
+    Real rate_squared = 0;  // 1/s^2: |F'|^2
     Index node = no_index;
     Index element = no_index;  // row: lane of a block
 
@@ -63,31 +63,53 @@ struct Fastest {
     }
 };
 
-/// Largest speed of a corner relative to corner 0 of its element, over its altitude, in one block of elements.
-Fastest fastest_corner(const CheckInputs& state, std::size_t block) {
-    Fastest fastest;
-    for (std::size_t l = 0; l < element_lanes; ++l) {
-        const Vec3 base = motion(state, static_cast<std::size_t>(state.tetrahedron_node[block][0][l]));
-        for (std::size_t a = 1; a < 4; ++a) {
-            const Index node = state.tetrahedron_node[block][a][l];
-            const Real altitude = state.tetrahedron_altitude[block][l];
-            fastest.look_at(
-                {(motion(state, static_cast<std::size_t>(node)) - base).squaredNorm() / (altitude * altitude), node,
-                 static_cast<Index>(block * element_lanes + l)});
-        }
-    }
-    return fastest;
+/// Columns: corners 1 to 3 less corner 0.
+LaneMat3<Real8> parting_of(const CheckInputs& state, std::size_t block) {
+    const LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
+    return state.push_out.empty() ? parting : parting + edges(state.tetrahedron_node[block], state.push_out);
 }
 
-/// Whether any corner of a block of elements is faster than `rate` (1/s) times the altitude: all elements side by side,
-/// and nothing is said of which.
-bool any_corner_faster(const CheckInputs& state, std::size_t block, Real rate) {
-    LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
-    if (!state.push_out.empty()) parting = parting + edges(state.tetrahedron_node[block], state.push_out);
+/// |F'|^2, F' = [v_k - v_0] [X_k - X_0]^-1, of each element of a block; 0 in a lane that is left over.
+Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& parting) {
+    const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
+    const Real8 det = dot(rest.c0, cof.c0);
+    const auto column = [&](const Real8& a, const Real8& b, const Real8& c) {
+        return a * parting.c0 + b * parting.c1 + c * parting.c2;
+    };
+    const LaneVec3<Real8> x = column(cof.c0.x, cof.c1.x, cof.c2.x), y = column(cof.c0.y, cof.c1.y, cof.c2.y),
+                          z = column(cof.c0.z, cof.c1.z, cof.c2.z);
+    const Real8 scaled = dot(x, x) + dot(y, y) + dot(z, z);
+    return det > 0.0 ? scaled / (det * det) : Real8{};
+}
+
+/// Whether any element of a block deforms faster than `rate` (1/s): all side by side, and nothing is said of which. In
+/// most corners do not even part by that times the altitude.
+bool any_deforms_faster(const CheckInputs& state, std::size_t block, Real rate) {
+    const LaneMat3<Real8> parting = parting_of(state, block);
     const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
                 third = dot(parting.c2, parting.c2);
     const Real8 limit = rate * load(state.tetrahedron_altitude[block]), limit_squared = limit * limit;
-    return !all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared));
+    if (all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared))) return false;
+    return !all(rate_squared_of(state, block, parting) <= rate * rate);
+}
+
+/// The element of a block that deforms fastest, and its corner that parts fastest from corner 0.
+Fastest fastest_element(const CheckInputs& state, std::size_t block) {
+    const Real8 rate_squared = rate_squared_of(state, block, parting_of(state, block));
+    Fastest fastest;
+    for (std::size_t l = 0; l < element_lanes; ++l) {
+        if (!(rate_squared[l] > fastest.rate_squared)) continue;
+        fastest = {rate_squared[l], no_index, static_cast<Index>(block * element_lanes + l)};
+        const Vec3 base = motion(state, static_cast<std::size_t>(state.tetrahedron_node[block][0][l]));
+        Real most = -1;
+        for (std::size_t a = 1; a < 4; ++a) {
+            const Index node = state.tetrahedron_node[block][a][l];
+            const Real parting = (motion(state, static_cast<std::size_t>(node)) - base).squaredNorm();
+            if (parting > most) fastest.node = node;
+            most = std::max(most, parting);
+        }
+    }
+    return fastest;
 }
 
 /// Relative to the mean velocity of the body: a coarser measure, for a body whose elements are not given.
@@ -104,8 +126,8 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     return fastest;
 }
 
-/// The fastest node of a body in the measure that counts, when it exceeds `rate` (1/s) times the altitude of its
-/// element; else none. Each test is a superset of the next.
+/// The element of a body that deforms fastest, when faster than `rate` (1/s), and a node of it; else none. Each test is
+/// a superset of the next.
 Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t body, Real max_speed, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     if (!(4 * max_speed * max_speed > limit_squared)) return {};  // two nodes part at most at twice the highest speed
@@ -129,9 +151,9 @@ Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t 
         const std::size_t begin = static_cast<std::size_t>(elements.begin),
                           count = static_cast<std::size_t>(elements.size());
         if (!any_exceeds(executor, count, element_blocks_per_job,
-                         [&](std::size_t row) { return any_corner_faster(state, begin + row, rate); }))
+                         [&](std::size_t row) { return any_deforms_faster(state, begin + row, rate); }))
             return {};
-        for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_corner(state, begin + row));
+        for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_element(state, begin + row));
     }
     return fastest.rate_squared > rate * rate ? fastest : Fastest{};
 }

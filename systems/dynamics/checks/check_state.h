@@ -17,10 +17,10 @@ enum class StepFault { none, not_finite, too_fast, too_far, too_stiff };
 /// Why a step must not be committed.
 struct StepVerdict {
     StepFault fault = StepFault::none;
-    Index body = no_index;  // row of BodyTable
-    Index node = no_index;  // row of NodeTable, when one node is to blame
-    Real value = 0;         // not_finite: -; too_fast: displacement of this step over the smallest altitude there;
-                            // too_far: distance between neighbouring numbers there, over the mean edge
+    Index body = no_index;         // row of BodyTable
+    Index node = no_index;         // row of NodeTable, when one node is to blame
+    Real value = 0;                // not_finite: -; too_fast: norm of what F changes by in this step there;
+                                   // too_far: distance between neighbouring numbers there, over the mean edge
     Index tetrahedron = no_index;  // place: lane of a block, when one tetrahedron is to blame
 };
 
@@ -31,6 +31,7 @@ struct CheckInputs {
     std::span<const Vec3> velocity;           // m/s, at the start of the step
     std::span<const Vec3> velocity_next;
     std::span<const Vec3> push_out;                           // m/s; empty: no contact pushes
+    std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_altitude = {};   // m
     std::span<const Range> body_blocks = {};  // BodyTable; empty: bodies are judged as one tetrahedron each
@@ -46,6 +47,7 @@ struct CheckInputs {
                 .velocity = binder.read(node.velocity),
                 .velocity_next = binder.read(node.velocity_next),
                 .push_out = binder.read_if(binder.read(pushed), node.push_out),
+                .rest_position = binder.read(node.rest_position),
                 .tetrahedron_node = binder.read(tetrahedron.node),
                 .tetrahedron_altitude = binder.read(tetrahedron.altitude),
                 .body_blocks = binder.read(body.tetrahedron_blocks)};
@@ -53,10 +55,11 @@ struct CheckInputs {
 };
 
 /// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is
-/// not finite, or two corners of one tetrahedron that move apart by more than `max_strain_step` (fraction of its
-/// smallest altitude) in this step. Common motion and slow turns of a large body do no harm and are not
-/// counted. Without `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the
-/// smallest altitude of the body, which refuses a quick turn of a large body, too. Parallel over node blocks.
+/// not finite, or a tetrahedron whose F would change by more than `max_strain_step` (Frobenius norm) in this step,
+/// which is looked at where two of its corners move apart by more than this fraction of its smallest altitude. Common
+/// motion and slow turns of a large body do no harm and are not counted. Without `body_blocks` a node is compared with
+/// the mean velocity of its body instead, and its way with the smallest altitude of the body, which refuses a quick
+/// turn of a large body, too. Parallel over node blocks.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
                         std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
 

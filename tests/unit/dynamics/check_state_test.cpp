@@ -18,7 +18,8 @@ struct State {
     std::vector<Index> begin{0, 256, 300, 556}, end{256, 300, 556, 600}, body{0, 0, 1, 1};
     std::vector<Range> node_blocks{{0, 2}, {2, 4}}, element_blocks{{0, 10}, {10, 20}};
     std::vector<Real> altitude{0.1, 0.1};
-    std::vector<Vec3> velocity{600, Vec3::Zero()}, next{600, Vec3(1, 0, 0)}, push{600, Vec3::Zero()};
+    std::vector<Vec3> rest{600, Vec3::Zero()}, velocity{600, Vec3::Zero()}, next{600, Vec3(1, 0, 0)},
+        push{600, Vec3::Zero()};
     std::vector<TetrahedronNodes> elements;
     std::vector<ElementLane> element_altitude;
     std::vector<Real> block_speed = std::vector<Real>(4), body_speed = std::vector<Real>(2);
@@ -35,11 +36,18 @@ struct State {
             element_altitude.emplace_back();
             for (Real& of_lane : element_altitude.back().lane) of_lane = 0.1;
         }
+        for (std::size_t first = 0; first < 600; first += 4) put_corner(first, 0.1);
+    }
+    /// Three edges of that length at right angles, m.
+    void put_corner(std::size_t first, Real edge) {
+        for (std::size_t a = 1; a < 4; ++a)
+            rest[first + a] = rest[first] + edge * Vec3::Unit(static_cast<Index>(a) - 1);
     }
     StepVerdict check(int workers = 1) {
         const auto executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
         CheckInputs inputs{begin, end, body, node_blocks, altitude, velocity, next, push};
         if (with_elements) {
+            inputs.rest_position = rest;
             inputs.tetrahedron_node = elements;
             inputs.tetrahedron_altitude = element_altitude;
             inputs.body_blocks = element_blocks;
@@ -114,6 +122,7 @@ TEST_CASE("each element is judged by its own altitude, and not by that of a sliv
     State state;
     state.altitude = {0.001, 0.001};
     state.element_altitude[2][3] = 0.001;  // nodes 76 to 79
+    state.put_corner(76, 0.001);
     state.next[402] = Vec3(1, 1.9, 0);
     CHECK(state.check().fault == StepFault::none);
     state.next[78] = Vec3(1, 0.021, 0);
@@ -122,6 +131,20 @@ TEST_CASE("each element is judged by its own altitude, and not by that of a sliv
     CHECK(verdict.node == 78);
     CHECK(verdict.tetrahedron == 19);
     CHECK(verdict.value == Approx(0.21));
+}
+
+TEST_CASE("corners of a sliver that slide along its flat side strain nothing", "[unit]") {
+    State state;
+    state.altitude[0] = 0.001;
+    state.element_altitude[2][3] = 0.001;  // nodes 76 to 79: three corners in a plane, one a millimetre above it
+    state.rest[79] = state.rest[76] + Vec3(0.03, 0.03, 0.001);
+    for (std::size_t n = 76; n < 80; ++n) state.next[n] = Vec3(1 + 5 * (state.rest[n] - state.rest[76]).y(), 0, 0);
+    CHECK(state.check().fault == StepFault::none);
+    state.next[79].z() = 0.03;  // 3e-4 m in the step
+    const StepVerdict verdict = state.check();
+    CHECK(verdict.fault == StepFault::too_fast);
+    CHECK(verdict.tetrahedron == 19);
+    CHECK(verdict.value == Approx(0.3).epsilon(0.05));
 }
 
 TEST_CASE("common motion does no harm, however fast", "[unit]") {
