@@ -16,9 +16,9 @@ namespace skerry {
 enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff };
 enum class ContactMotion { open, stick, slide };
 /// What keeps a step from being longer (docs/step_length.md). setting: step_size. rest: the stable step of a body as it
-/// is at rest; strain: that of a body as it is deformed. speed: a tetrahedron would deform by more than max_strain_step in a
-/// step; inversion: an element would turn inside out; crossing: surfaces would cross. The last three are found in tries
-/// that are given up; steps grow back from half their length by a tenth each.
+/// is at rest; strain: that of a body as it is deformed. speed: a tetrahedron would deform by more than max_strain_step
+/// in a step; inversion: an element would turn inside out; crossing: surfaces would cross. The last three are found in
+/// tries that are given up; steps grow back from half their length by a tenth each.
 enum class StepLimit { setting, rest, strain, speed, inversion, crossing };
 
 template <>
@@ -83,8 +83,8 @@ public:
     BodyHandle body;     // to blame, when not ok
     Index node = -1;     // local, when one node is to blame
     Index element = -1;  // local, when one element is: the node is a corner of it
-    // too_fast: norm of what F of the element changes by; too_far: rounding of positions over mean edge; too_stiff: stable
-    // step, s
+    // too_fast: norm of what F of the element changes by; too_far: rounding of positions over mean edge; too_stiff:
+    // stable step, s
     Real value = 0;
     Real step_size = 0;  // s, of the steps taken
     int steps = 0;       // committed
