@@ -1,6 +1,7 @@
 // Bodies that touch themselves under strong deformation.
 #include <catch2/catch.hpp>
 
+#include "tests/support/mapped_box.h"
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
 
@@ -10,13 +11,6 @@ using namespace skerry::test;
 namespace {
 
 constexpr Real pi = std::numbers::pi;
-
-std::vector<Index> nodes_where(const Mesh& mesh, auto&& condition) {
-    std::vector<Index> nodes;
-    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-        if (condition(mesh.nodes[n])) nodes.push_back(static_cast<Index>(n));
-    return nodes;
-}
 
 struct Driven {
     World world;

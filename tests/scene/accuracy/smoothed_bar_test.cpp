@@ -59,7 +59,10 @@ TEST_CASE("a coarse clamped bar swings as a fine one does with smoothed elements
                                               {ElementKind::edge_smoothed, 0.45, 0.12},
                                               {ElementKind::smoothed, 0.45, 0.04},
                                               {ElementKind::linear, 0.49, 0.7},
+                                              {ElementKind::edge_smoothed, 0.49, 0.34},
                                               {ElementKind::smoothed, 0.49, 0.07},
+                                              {ElementKind::linear, 0.499, 0.8},
+                                              {ElementKind::edge_smoothed, 0.499, 0.67},
                                               {ElementKind::smoothed, 0.499, 0.09}})
         accuracy::check({.item = 34,
                          .name = "first period of a coarse clamped bar (s), Poisson ratio " +
