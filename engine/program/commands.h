@@ -45,6 +45,10 @@ int run(const RunOptions& options);
 struct InspectOptions {
     std::filesystem::path file;
     bool json = false;
+    std::filesystem::path repair;  // where a better mesh goes; empty: none is made
+    Real tolerance = 2e-3;         // of the bounding box's diagonal: how far its surface may be from the old one
+    std::string body;              // of a scene, whose mesh is mended; empty: that which bounds the step
+    bool overwrite = false;        // the repaired mesh may take the place of the file it comes from
 };
 int inspect(const InspectOptions& options);
 

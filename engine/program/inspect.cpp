@@ -3,6 +3,7 @@
 #include <map>
 
 #include "engine/program/commands.h"
+#include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/scene/scene_plan.h"
@@ -16,6 +17,7 @@ using Problems = std::vector<std::string>;
 constexpr Real poor_quality = 0.1;        // below it a tetrahedron is a sliver that costs steps and accuracy
 constexpr Real expensive_step_ratio = 4;  // a body that bounds the step this much below the next one is worth a word
 constexpr int timed_steps = 20;
+constexpr std::size_t longest_list = 300;  // characters of names in a message
 
 Json vector_json(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
@@ -54,12 +56,58 @@ void print_problems(const Problems& problems) {
     for (const std::string& problem : problems) std::cout << "  problem       " << problem << "\n";
 }
 
+Json bound_json(const StepBound& bound) {
+    Json worst = Json::array(), without = Json::array();
+    for (const CostlyTetrahedron& t : bound.worst)
+        worst.push_back({{"tetrahedron", t.tetrahedron},
+                         {"place", vector_json(t.place)},
+                         {"altitude", t.altitude},
+                         {"mean_edge", t.mean_edge},
+                         {"dt", t.step}});
+    for (const StepWithout& w : bound.without)
+        without.push_back({{"share", w.share}, {"tetrahedra", w.count}, {"stable_dt", w.step}});
+    return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
+}
+
+/// Which tetrahedra bound the step, and what it would be without the worst.
+void print_bound(const StepBound& bound, const char* indent) {
+    for (const CostlyTetrahedron& t : bound.worst)
+        std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
+                  << short_number(t.place.y()) << ", " << short_number(t.place.z()) << ") m allows "
+                  << with_unit(t.step, "s") << ": altitude " << with_unit(t.altitude, "m") << ", mean edge "
+                  << with_unit(t.mean_edge, "m") << "\n";
+    for (const StepWithout& w : bound.without)
+        std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
+                  << short_number(100 * w.share) << " %): " << with_unit(w.step, "s") << ", "
+                  << short_number(w.step / bound.step) << " times as long\n";
+}
+
 int inspect_mesh(const InspectOptions& options) {
-    const MeshReport report = inspect(mesh::read(options.file.string()));
+    if (!options.body.empty())
+        Complaint{.file = options.file.string(),
+                  .object = "--body",
+                  .field = {},
+                  .found = "a mesh",
+                  .expected = "a scene, which has bodies",
+                  .hint = {}}
+            .raise();
+    const Mesh mesh = mesh::read(options.file.string());
+    if (!options.repair.empty())
+        return inspect_repair({.mesh = mesh,
+                               .what = options.file.string(),
+                               .of = {},
+                               .step_of = "the default material, 1e5 Pa and 1000 kg/m^3",
+                               .scaled = false},
+                              options);
+    const MeshReport report = inspect(mesh);
     const Problems problems = problems_of(report);
+    // A mesh that no world takes has no step.
+    const bool is_body = report.tetrahedra > 0 && report.inverted + report.flat == 0;
+    const StepBound bound = is_body ? step_bound(mesh, {}, true) : StepBound{};
     if (options.json) {
         Json json = {{"schema", "skerry.mesh/1"}, {"file", options.file.string()}};
         json.update(mesh_json(report));
+        if (is_body) json["step_bound"] = bound_json(bound);
         json["problems"] = problems;
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
@@ -76,6 +124,11 @@ int inspect_mesh(const InspectOptions& options) {
               << short_number(report.min_quality) << " (1 is regular)\n"
               << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
               << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
+    if (is_body) {
+        std::cout << "  step          " << with_unit(bound.step, "s")
+                  << " of the default material, 1e5 Pa and 1000 kg/m^3 (" << name_of(bound.element) << ")\n";
+        print_bound(bound, "                ");
+    }
     print_problems(problems);
     return exit_ok;
 }
@@ -84,28 +137,25 @@ int inspect_mesh(const InspectOptions& options) {
 struct BodyKindReport {
     std::string first_name;
     std::size_t count = 0;
+    std::size_t body = 0;  // of ScenePlan::bodies: the first
     MeshReport mesh;
-    Real stable_step = 0;  // s
-    ElementKind element{};
+    StepBound bound;
 };
 
+StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
+    return {.settings = plan.settings, .material = plan.materials[body.material].second, .body = body.settings};
+}
+
 /// Each kind of body in a world of its own: that is the step it would allow.
-std::vector<BodyKindReport> body_kinds(const ScenePlan& plan) {
+std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details) {
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> row;
     std::vector<BodyKindReport> kinds;
-    for (const BodyPlan& body : plan.bodies) {
+    for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
+        const BodyPlan& body = plan.bodies[b];
         const auto [at, is_new] = row.try_emplace({body.mesh, body.material}, kinds.size());
-        if (is_new) {
-            Settings settings = plan.settings;
-            settings.step_size.reset();
-            settings.backend = Backend::serial;
-            World alone(settings);
-            BodySettings settings_of_body = body.settings;
-            settings_of_body.material = alone.add_material(plan.materials[body.material].second);
-            const BodyHandle added = alone.add_body(plan.meshes[body.mesh], settings_of_body);
-            kinds.push_back(
-                {body.settings.name, 0, inspect(plan.meshes[body.mesh]), alone.stable_step(), alone.element(added)});
-        }
+        if (is_new)
+            kinds.push_back({body.settings.name, 0, b, inspect(plan.meshes[body.mesh]),
+                             step_bound(plan.meshes[body.mesh], step_case(plan, body), details)});
         ++kinds[at->second].count;
     }
     return kinds;
@@ -139,21 +189,52 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneCost& 
         for (const std::string& problem : problems_of(kind.mesh))
             problems.push_back("body \"" + kind.first_name + "\": " + problem);
     std::vector<BodyKindReport> by_step = kinds;
-    std::sort(by_step.begin(), by_step.end(),
-              [](const auto& a, const auto& b) { return a.stable_step < b.stable_step; });
-    if (by_step.size() > 1 && by_step[1].stable_step > expensive_step_ratio * by_step[0].stable_step)
+    std::sort(by_step.begin(), by_step.end(), [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
+    if (by_step.size() > 1 && by_step[1].bound.step > expensive_step_ratio * by_step[0].bound.step)
         problems.push_back("body \"" + by_step[0].first_name + "\" makes all steps " +
-                           short_number(by_step[1].stable_step / by_step[0].stable_step) +
+                           short_number(by_step[1].bound.step / by_step[0].bound.step) +
                            " times shorter than the others need");
     if (cost.overlap > 0) problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " at the start");
     if (!cost.failure.empty()) problems.push_back("the first steps fail: " + cost.failure);
     return problems;
 }
 
+/// The body whose mesh is to be mended: that of the given name, or of the kind that bounds the step.
+const BodyPlan& body_to_mend(const ScenePlan& plan, const InspectOptions& options) {
+    const auto refuse = [&](const std::string& object, const std::string& found, const std::string& expected) {
+        Complaint{options.file.string(), object, {}, found, expected, {}}.raise();
+    };
+    if (plan.bodies.empty()) refuse("bodies", "none", "a body whose mesh is to be mended");
+    if (options.body.empty()) {
+        const std::vector<BodyKindReport> kinds = body_kinds(plan, false);
+        const auto least = std::min_element(kinds.begin(), kinds.end(),
+                                            [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
+        return plan.bodies[least->body];
+    }
+    const auto named = std::find_if(plan.bodies.begin(), plan.bodies.end(),
+                                    [&](const BodyPlan& body) { return body.settings.name == options.body; });
+    if (named == plan.bodies.end()) {
+        std::string names;
+        for (const BodyPlan& body : plan.bodies)
+            if (names.size() < longest_list) names += (names.empty() ? "\"" : ", \"") + body.settings.name + "\"";
+        refuse("--body", "\"" + options.body + "\"", "one of the bodies " + names);
+    }
+    return *named;
+}
+
 int inspect_scene(const InspectOptions& options) {
     const ScenePlan plan = plan_scene(options.file);
+    if (!options.repair.empty()) {
+        const BodyPlan& body = body_to_mend(plan, options);
+        return inspect_repair({.mesh = plan.meshes[body.mesh],
+                               .what = options.file.string() + ": body \"" + body.settings.name + "\"",
+                               .of = step_case(plan, body),
+                               .step_of = "material \"" + plan.materials[body.material].first + "\"",
+                               .scaled = true},
+                              options);
+    }
     Scene scene = build_scene(plan);
-    const std::vector<BodyKindReport> kinds = body_kinds(plan);
+    const std::vector<BodyKindReport> kinds = body_kinds(plan, true);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
     const SceneCost cost = try_steps(scene.world);
@@ -163,9 +244,10 @@ int inspect_scene(const InspectOptions& options) {
         for (const BodyKindReport& kind : kinds)
             bodies.push_back({{"name", kind.first_name},
                               {"count", kind.count},
-                              {"stable_dt", kind.stable_step},
-                              {"element", name_of(kind.element)},
-                              {"mesh", mesh_json(kind.mesh)}});
+                              {"stable_dt", kind.bound.step},
+                              {"element", name_of(kind.bound.element)},
+                              {"mesh", mesh_json(kind.mesh)},
+                              {"step_bound", bound_json(kind.bound)}});
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
                            {"description", scene.description},
@@ -193,12 +275,13 @@ int inspect_scene(const InspectOptions& options) {
               << "  cost          about " << with_unit(cost.seconds_per_second, "s")
               << " a simulated second, as it starts\n"
               << "  contacts      " << cost.contacts << " at the start\n";
-    for (const BodyKindReport& kind : kinds)
+    for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
-                  << grouped(kind.mesh.tetrahedra) << " tetrahedra (" << name_of(kind.element) << "), mean edge "
-                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.stable_step, "s")
-                  << "\n";
+                  << grouped(kind.mesh.tetrahedra) << " tetrahedra (" << name_of(kind.bound.element) << "), mean edge "
+                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.bound.step, "s") << "\n";
+        print_bound(kind.bound, "                ");
+    }
     print_problems(problems);
     return exit_ok;
 }
@@ -206,6 +289,7 @@ int inspect_scene(const InspectOptions& options) {
 }  // namespace
 
 int inspect(const InspectOptions& options) {
+    if (!options.repair.empty()) check_repair(options);
     return options.file.extension() == ".json" ? inspect_scene(options) : inspect_mesh(options);
 }
 

@@ -30,6 +30,17 @@ const char* const run_examples = R"(Examples:
   skerry run scenes/bucket.json --export-problems problems --export-every 100    then: skerry solve problems/FILE
   skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      figures alone)";
 
+const char* const inspect_examples = R"(Examples:
+  skerry inspect bunny.msh                                 sizes, quality, faults, and which tetrahedra bound the step
+  skerry inspect bunny.msh --repair better.msh             the same body with a longer step, if there is one
+  skerry inspect bunny.msh --repair better.msh --tolerance 0      new tetrahedra inside, the surface as it is
+  skerry inspect scene.json --repair arm.msh --body arm    the mesh of one body, judged with its own material
+  skerry inspect scenes/skittles.json --json
+
+--repair fills the surface anew (Netgen), once as it is and once without its needles and caps, and writes what has the
+longer step. It ends with 1, and writes nothing, when no step is 5 % longer or the surface moves by more than the
+tolerance.)";
+
 /// Numbers that make sense as a length, a time or a tolerance.
 const CLI::Validator positive_number(
     [](std::string& text) {
@@ -39,6 +50,15 @@ const CLI::Validator positive_number(
                    : "found " + text + ", expected a number above 0";
     },
     "NUMBER > 0");
+
+const CLI::Validator share(
+    [](std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value >= 0 && value < 1
+                   ? std::string()
+                   : "found " + text + ", expected a share from 0 to below 1";
+    },
+    "0 <= NUMBER < 1");
 
 template <class Enum>
 std::vector<std::string> names_of_all() {
@@ -127,9 +147,22 @@ void add_solve(CLI::App& app, SolveOptions& options) {
 
 void add_inspect(CLI::App& app, InspectOptions& options) {
     CLI::App& command = *app.add_subcommand("inspect", "Say what is in a mesh or a scene, and what looks wrong");
-    command.footer("Examples:\n  skerry inspect bunny.msh\n  skerry inspect scenes/skittles.json --json");
+    command.footer(inspect_examples);
     command.add_option("FILE", options.file, "a mesh (.msh, .vtk, .node, .ele) or a scene (.json)")->required();
     command.add_flag("--json", options.json, "print JSON");
+    CLI::Option* repair =
+        command.add_option("--repair", options.repair, "write a mesh (.msh) of the same body whose step is longer");
+    command
+        .add_option("--tolerance", options.tolerance,
+                    "how far the surface may move, as a share of the bounding box's diagonal; 0: not at all")
+        ->check(share)
+        ->capture_default_str()
+        ->needs(repair);
+    command
+        .add_option("--body", options.body,
+                    "of a scene, the body whose mesh is mended; by default the one that bounds the step")
+        ->needs(repair);
+    command.add_flag("--overwrite", options.overwrite, "--repair may replace the file that is read")->needs(repair);
 }
 
 int run_command_line(int argc, char** argv) {

@@ -1,7 +1,11 @@
-// Stress and strain of bodies.
+// Stress, strain and steps of bodies, by tetrahedron or node.
+#include <algorithm>
+#include <limits>
+
 #include "engine/world/world_state.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
+#include "systems/dynamics/stability/stable_step.h"
 
 namespace skerry {
 
@@ -50,6 +54,24 @@ std::vector<Mat3> World::node_stress(BodyHandle body) const {
 std::vector<Mat3> World::node_strain(BodyHandle body) const {
     const auto row = static_cast<std::size_t>(state_->model.row(body, "node_strain"));
     return node_field(state_->model, row, strain(body));
+}
+
+std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
+    const Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "tetrahedron_steps"));
+    const Range blocks = model.bodies.blocks[row];
+    std::vector<Real> stiffness_sum(model.nodes.position.size());
+    std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
+    element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
+    const RaggedView<Index> covered = model.body_records[row].element_tetrahedra.view();
+    std::vector<Real> of_tetrahedra(static_cast<std::size_t>(model.bodies.tetrahedron_count[row]),
+                                    std::numeric_limits<Real>::infinity());
+    for (std::size_t place = 0; place < covered.size(); ++place)
+        for (const Index t : covered[place]) {
+            Real& shortest = of_tetrahedra[static_cast<std::size_t>(t)];
+            shortest = std::min(shortest, step[place / element_lanes][place % element_lanes]);
+        }
+    return of_tetrahedra;
 }
 
 std::vector<Real> World::von_mises_stress(BodyHandle body) const {

@@ -73,6 +73,10 @@ Mesh read(const std::string& path);
 /// boundary. Polygons fan out into triangles. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path);
 
+/// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` gives the same mesh back: the whole file or none. The
+/// name ends in .msh. Throws SceneError.
+void write(const std::string& path, const Mesh& mesh);
+
 /// The boundary of a tetrahedral mesh. Throws SceneError when a tetrahedron names nodes that do not exist or one twice,
 /// or a node is not finite; so does `inspect`.
 SurfaceMesh boundary(const Mesh& mesh);

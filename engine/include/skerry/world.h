@@ -69,6 +69,9 @@ public:
     std::vector<Mat3> node_stress(BodyHandle body) const;       // by node
     std::vector<Mat3> node_strain(BodyHandle body) const;       // by node
     std::vector<Real> von_mises_stress(BodyHandle body) const;  // Pa, by tetrahedron
+    /// The step that each tetrahedron allows as the body is now, s: that of the stiffest element that covers it. The
+    /// shortest is the body's stable step, the tetrahedra that have it are those to mend.
+    std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     const std::string& name(BodyHandle body) const;
     ElementKind element(BodyHandle body) const;    // what it has; `smoothed` is told as what it stands for
     Real mass(BodyHandle body) const;              // kg

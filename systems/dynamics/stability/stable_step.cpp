@@ -86,21 +86,26 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
     return found;
 }
 
+void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step) {
+    SKERRY_CHECK(step.size() == static_cast<std::size_t>(blocks.size()));
+    for_each_bound(elements, blocks, position, mass, stiffness_sum, [&](std::size_t b, const Real8& bound, int level) {
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            step[b - static_cast<std::size_t>(blocks.begin)][l] =
+                bound[l] > 0 ? step_of(bound[l], level) : std::numeric_limits<Real>::infinity();
+    });
+}
+
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share) {
     constexpr int rounds = 4;
     constexpr Real least = 1e-3;  // of the share before: keeps what bounds nothing from giving all away
     std::vector<ElementLane> step(mass_share.size());
     for (int round = 0; round < rounds; ++round) {
+        element_steps(elements, blocks, position, mass, stiffness_sum, step);
         Real shortest = std::numeric_limits<Real>::infinity();
-        for_each_bound(elements, blocks, position, mass, stiffness_sum,
-                       [&](std::size_t b, const Real8& bound, int level) {
-                           for (std::size_t l = 0; l < element_lanes; ++l) {
-                               Real& own = step[b - static_cast<std::size_t>(blocks.begin)][l];
-                               own = bound[l] > 0 ? step_of(bound[l], level) : std::numeric_limits<Real>::infinity();
-                               shortest = std::min(shortest, own);
-                           }
-                       });
+        for (const ElementLane& lanes : step)
+            for (const Real own : lanes.lane) shortest = std::min(shortest, own);
         if (!(shortest > 0) || shortest == std::numeric_limits<Real>::infinity()) return;
         for (std::size_t b = 0; b < step.size(); ++b)
             for (std::size_t l = 0; l < element_lanes; ++l) mass_share[b][l] *= std::max(least, shortest / step[b][l]);

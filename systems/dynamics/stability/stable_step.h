@@ -22,6 +22,11 @@ struct StableStep {
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
+/// The step that each element of these blocks allows by itself (s), with the shares of masses that it has: the shortest
+/// is that of stable_step. Infinity where nothing bounds a step, and in lanes left over.
+void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
+
 /// Makes the bound of stable_step sharper: elements whose own bound is low give mass to those whose is high,
 /// s <- s omega / omega_max, four times over (docs/methods/stable_step.md 2.1). The bound is rigorous with any positive
 /// shares, so that shares of the rest shape serve for every other. `mass_share`: of the blocks, all 1 before.

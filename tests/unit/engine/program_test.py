@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -181,6 +182,116 @@ class ProgramTest(unittest.TestCase):
         self.assertGreater(scene["stable_dt"], 0)
         self.assertAlmostEqual(scene["body_kinds"][0]["stable_dt"], scene["stable_dt"], delta=1e-9 * scene["stable_dt"])
         self.assertIn("stable step", self.skerry("inspect", self.scene).stdout)
+
+    def test_inspect_says_which_tetrahedra_bound_the_step(self):
+        mesh = self.bad_box("bad.msh", cells=6)
+        found = json.loads(self.skerry("inspect", mesh, "--json").stdout)["step_bound"]
+        worst = found["worst"][0]
+        self.assertLess(worst["altitude"], 0.1 * worst["mean_edge"])
+        self.assertLess(max(abs(x) for x in worst["place"]), 0.5)
+        self.assertAlmostEqual(worst["dt"], found["stable_dt"], delta=0.1 * found["stable_dt"])
+        self.assertGreater(found["without"][-1]["stable_dt"], 1.5 * found["stable_dt"])
+        said = self.skerry("inspect", mesh).stdout
+        self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", said)
+        self.assertIn("without the worst", said)
+        scene = self.write("bad.json", {**SCENE, "probes": [], "bodies": [
+            {"name": "bad", "mesh": {"file": "bad.msh", "scale": 0.2}, "material": "rubber", "position": [0, 0, 1]}]})
+        of_body = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"][0]["step_bound"]
+        self.assertAlmostEqual(of_body["worst"][0]["altitude"], 0.2 * worst["altitude"], places=9)
+        self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", self.skerry("inspect", scene).stdout)
+
+    def bad_box(self, name, cells=4, flat=1e-3, needle=False):
+        """A unit box with an inner node close to another one; with `needle` the same on its surface."""
+        side = cells + 1
+        nodes = [[x / cells - 0.5, y / cells - 0.5, z / cells - 0.5]
+                 for z in range(side) for y in range(side) for x in range(side)]
+        number = lambda p: (p[2] * side + p[1]) * side + p[0]
+        tetrahedra = []
+        for cell in range(cells ** 3):
+            at = [cell % cells, cell // cells % cells, cell // cells ** 2]
+            for walk in ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)):
+                corner = [at[i] + at[i] % 2 for i in range(3)]
+                t = [number(corner)]
+                for axis in walk:
+                    corner[axis] += 1 if at[axis] % 2 == 0 else -1
+                    t.append(number(corner))
+                a, b, c = ([nodes[t[k]][i] - nodes[t[0]][i] for i in range(3)] for k in (1, 2, 3))
+                if sum(a[i] * (b[(i + 1) % 3] * c[(i + 2) % 3] - b[(i + 2) % 3] * c[(i + 1) % 3])
+                       for i in range(3)) < 0:
+                    t[2], t[3] = t[3], t[2]
+                tetrahedra.append(t)
+        for moved, towards in ((number([2, 2, 2]), number([3, 2, 2])),
+                               *([(number([0, 2, 2]), number([0, 3, 2]))] if needle else [])):
+            nodes[moved] = [flat * a + (1 - flat) * b for a, b in zip(nodes[moved], nodes[towards])]
+        lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", len(nodes)]
+        lines += [" ".join(map(str, [i + 1, *x])) for i, x in enumerate(nodes)]
+        lines += ["$EndNodes", "$Elements", len(tetrahedra)]
+        lines += [" ".join(map(str, [i + 1, 4, 2, 1, 1, *(n + 1 for n in t)])) for i, t in enumerate(tetrahedra)]
+        return self.write(name, "\n".join(map(str, [*lines, "$EndElements", ""])))
+
+    def test_a_repair_is_refused_before_any_work(self):
+        mesh = self.bad_box("bad.msh")
+        self.assert_refused("inspect", mesh, "--repair", self.folder / "out.vtk", said=["out.vtk", ".msh"])
+        self.assert_refused("inspect", mesh, "--repair", mesh, said=["--overwrite"])
+        self.assert_refused("inspect", mesh, "--repair", mesh / "x.msh", said=["no folder"])
+        for arguments in (["--tolerance", 0.1], ["--repair", "x.msh", "--tolerance", -1], ["--overwrite"]):
+            self.skerry("inspect", mesh, *arguments, code=2)
+        # A copy of the program has no skerry-fill beside it.
+        alone = pathlib.Path(shutil.copy(PROGRAM, self.folder / "skerry"))
+        done = subprocess.run([alone, "inspect", mesh, "--repair", self.folder / "out.msh"], capture_output=True,
+                              text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("apt-get install libnglib-dev", done.stderr)
+
+    def need_fill(self):
+        if not (pathlib.Path(PROGRAM).parent / "skerry-fill").exists():
+            self.skipTest("skerry-fill is not built: it needs libnglib-dev")
+
+    def test_a_repaired_mesh_has_a_longer_step_and_the_same_surface(self):
+        self.need_fill()
+        better = self.folder / "deep" / "better.msh"
+        for tolerance in (0, 0.01):
+            mesh = self.bad_box("bad.msh", needle=tolerance > 0)
+            found = json.loads(self.skerry("inspect", mesh, "--repair", better, "--tolerance", tolerance,
+                                           "--json").stdout)
+            before, after = found["before"], found["after"]
+            self.assertTrue(found["written"])
+            self.assertGreater(after["stable_dt"], 1.3 * before["stable_dt"])
+            self.assertAlmostEqual(after["volume"], 1, delta=0.01)
+            self.assertLessEqual(max(found["distance"].values()), max(found["tolerance"], 1e-12))
+            again = json.loads(self.skerry("inspect", better, "--json").stdout)
+            self.assertEqual(again["tetrahedra"], after["tetrahedra"])
+            self.assertEqual(again["step_bound"]["stable_dt"], after["stable_dt"])
+            if tolerance == 0:
+                self.assertEqual(found["edges_collapsed"] + found["edges_flipped"], 0)
+                self.assertAlmostEqual(after["volume"], before["volume"], places=12)
+            else:
+                self.assertGreater(found["edges_collapsed"], 0)
+        said = self.skerry("inspect", mesh, "--repair", mesh, "--overwrite").stdout
+        for part in ("before", "after", "stable step", "worst altitude", "volume", "surface", "written"):
+            self.assertIn(part, said)
+
+    def test_a_body_of_a_scene_is_repaired_for_its_material(self):
+        self.need_fill()
+        self.bad_box("bad.msh")
+        scene = self.write("two.json", {**SCENE, "bodies": SCENE["bodies"] + [
+            {"name": "bad", "mesh": {"file": "bad.msh", "scale": 0.2}, "material": "rubber", "position": [1, 0, 1]}]})
+        better = self.folder / "better.msh"
+        found = json.loads(self.skerry("inspect", scene, "--repair", better, "--json").stdout)
+        self.assertIn('body "bad"', found["mesh"])
+        self.assertAlmostEqual(found["after"]["volume"], 0.008, delta=0.0001)
+        kinds = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"]
+        self.assertAlmostEqual(found["before"]["stable_dt"], kinds[1]["stable_dt"], places=12)
+        self.skerry("inspect", scene, "--repair", better, "--body", "bda", code=2)
+
+    def test_what_is_not_better_is_not_written(self):
+        self.need_fill()
+        good = self.bad_box("good.msh", flat=1)
+        out = self.folder / "out.msh"
+        done = self.skerry("inspect", good, "--repair", out, "--tolerance", 0, code=1)
+        self.assertIn("nothing was written", done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertFalse(out.exists())
 
     def test_inspect_finds_an_overlap(self):
         sunk = json.loads(json.dumps(SCENE))

@@ -1,0 +1,281 @@
+#include "engine/mesh/repair/thin_knots.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "engine/mesh/repair/surface_distance.h"
+#include "engine/mesh/repair/triangle_tree.h"
+#include "systems/geometry/closest_points.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+using Triangle = std::array<Index, 3>;
+using Corners = std::array<Vec3, 3>;
+
+constexpr Real least_gain = 1.1;          // of the smallest altitude: smaller gains would be bought with distance
+constexpr Real share_of_tolerance = 0.8;  // the rest is for what lies between the points that are looked at
+constexpr Real least_turn = 0.5;          // cosine: a triangle turns by at most 60 degrees
+constexpr Real least_turn_of_flat = 0.2;  // of one whose own normal is noise, to the mean around it
+constexpr int parts = 4;                  // of a triangle's edges: 15 points look for the distance
+
+Vec3 area_vector(const Corners& x) {
+    return (x[1] - x[0]).cross(x[2] - x[0]);
+}
+
+/// m, smallest: twice the area over the longest edge.
+Real altitude_of(const Corners& x) {
+    const Real longest =
+        std::max({(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(), (x[0] - x[2]).squaredNorm()});
+    return longest > 0 ? area_vector(x).norm() / std::sqrt(longest) : 0;
+}
+
+/// Triangles that go and those that come in their place.
+struct Change {
+    std::vector<Index> gone;
+    std::vector<Triangle> made;
+    std::vector<Index> made_from;             // the triangle of `gone` that each stands for
+    Index moved = no_index, lost = no_index;  // nodes: where to and into which, of a collapse
+    Vec3 position = Vec3::Zero();             // m, of `moved` afterwards
+    Real altitude = 0;                        // m, smallest of those made
+};
+
+class Thinner {
+public:
+    Thinner(const SurfaceMesh& surface, const KnotSettings& settings)
+        : settings_(settings), original_(surface), nodes_(surface.nodes), around_(surface.nodes.size()) {
+        for (const Triangle& t : surface.triangles) {
+            add(t);
+            sample_triangle(corners(t), parts, samples_.back());
+        }
+    }
+
+    ThinnedSurface run() {
+        ThinnedSurface result;
+        for (std::size_t t = 0; t < triangles_.size(); ++t) ask(static_cast<Index>(t));
+        while (!flat_.empty()) {
+            const Index worst = flat_.begin()->second;
+            flat_.erase(flat_.begin());
+            const std::optional<Change> best = best_change(worst);
+            if (!best) continue;
+            ++(best->lost == no_index ? result.flipped : result.collapsed);
+            apply(*best);
+        }
+        result.surface = compact();
+        return result;
+    }
+
+private:
+    const Triangle& triangle(Index t) const { return triangles_[static_cast<std::size_t>(t)]; }
+    const Vec3& node(Index n) const { return nodes_[static_cast<std::size_t>(n)]; }
+    std::vector<Index>& around(Index n) { return around_[static_cast<std::size_t>(n)]; }
+    const std::vector<Index>& around(Index n) const { return around_[static_cast<std::size_t>(n)]; }
+    Corners corners(const Triangle& t) const { return {node(t[0]), node(t[1]), node(t[2])}; }
+    Corners corners(const Triangle& t, const Change& change) const {
+        Corners x = corners(t);
+        for (std::size_t a = 0; a < 3; ++a)
+            if (t[a] == change.moved) x[a] = change.position;
+        return x;
+    }
+
+    void add(const Triangle& t) {
+        for (const Index n : t) around(n).push_back(static_cast<Index>(triangles_.size()));
+        triangles_.push_back(t);
+        alive_.push_back(true);
+        samples_.emplace_back();
+    }
+
+    /// Puts a triangle on the list if it is flat.
+    void ask(Index t) {
+        const Real altitude = altitude_of(corners(triangle(t)));
+        if (alive_[static_cast<std::size_t>(t)] && altitude < settings_.altitude) flat_.emplace(altitude, t);
+    }
+
+    std::vector<Index> neighbours(Index n) const {
+        std::vector<Index> found;
+        for (const Index t : around(n))
+            for (const Index other : triangle(t))
+                if (other != n) found.push_back(other);
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+
+    std::vector<Index> triangles_with(Index a, Index b) const {
+        std::vector<Index> both;
+        for (const Index t : around(a))
+            if (std::find(triangle(t).begin(), triangle(t).end(), b) != triangle(t).end()) both.push_back(t);
+        return both;
+    }
+
+    std::optional<Change> best_change(Index worst) const {
+        std::optional<Change> best;
+        const auto offer = [&](std::optional<Change> change) {
+            if (change && (!best || change->altitude > best->altitude) && judge(*change)) best = std::move(change);
+        };
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Index from = triangle(worst)[a], to = triangle(worst)[(a + 1) % 3];
+            for (const Real place : {0.0, 0.5, 1.0}) offer(collapse(from, to, place));
+            offer(flip(from, to));
+        }
+        return best;
+    }
+
+    /// Both ends come to lie at `place` of the way from a to b; the lower one stays.
+    std::optional<Change> collapse(Index a, Index b, Real place) const {
+        const std::vector<Index> sides = triangles_with(a, b), near_a = neighbours(a), near_b = neighbours(b);
+        std::vector<Index> common;
+        std::set_intersection(near_a.begin(), near_a.end(), near_b.begin(), near_b.end(), std::back_inserter(common));
+        // The link condition; and a tetrahedron is as small as a closed surface gets.
+        if (sides.size() != 2 || common.size() != 2 || near_a.size() + near_b.size() <= 6) return std::nullopt;
+        Change change;
+        change.position = (1 - place) * node(a) + place * node(b);
+        change.moved = std::min(a, b);
+        change.lost = std::max(a, b);
+        change.gone = around(a);
+        for (const Index t : around(b))
+            if (std::find(sides.begin(), sides.end(), t) == sides.end()) change.gone.push_back(t);
+        for (const Index t : change.gone) {
+            if (std::find(sides.begin(), sides.end(), t) != sides.end()) continue;
+            Triangle made = triangle(t);
+            std::replace(made.begin(), made.end(), change.lost, change.moved);
+            change.made.push_back(made);
+            change.made_from.push_back(t);
+        }
+        return finished(std::move(change));
+    }
+
+    std::optional<Change> flip(Index a, Index b) const {
+        const std::vector<Index> sides = triangles_with(a, b);
+        if (sides.size() != 2) return std::nullopt;
+        Change change;
+        change.gone = change.made_from = sides;
+        std::array<Index, 2> apex{};
+        for (std::size_t s = 0; s < 2; ++s)
+            apex[s] = *std::find_if(triangle(sides[s]).begin(), triangle(sides[s]).end(),
+                                    [&](Index n) { return n != a && n != b; });
+        if (apex[0] == apex[1] || !triangles_with(apex[0], apex[1]).empty()) return std::nullopt;
+        // Each keeps one end of the edge, and takes the apex of the other in place of the other end.
+        for (std::size_t s = 0; s < 2; ++s) {
+            Triangle made = triangle(sides[s]);
+            std::replace(made.begin(), made.end(), next_after(made, apex[s]), apex[1 - s]);
+            change.made.push_back(made);
+        }
+        return finished(std::move(change));
+    }
+
+    static Index next_after(const Triangle& t, Index n) {
+        for (std::size_t a = 0; a < 3; ++a)
+            if (t[a] == n) return t[(a + 1) % 3];
+        return no_index;
+    }
+
+    /// With its altitude, if that is a gain.
+    std::optional<Change> finished(Change change) const {
+        Real before = std::numeric_limits<Real>::infinity();
+        for (const Index t : change.gone) before = std::min(before, altitude_of(corners(triangle(t))));
+        change.altitude = std::numeric_limits<Real>::infinity();
+        for (const Triangle& t : change.made)
+            change.altitude = std::min(change.altitude, altitude_of(corners(t, change)));
+        if (!(change.altitude > least_gain * before)) return std::nullopt;
+        return change;
+    }
+
+    bool judge(const Change& change) const { return keeps_sides(change) && keeps_distance(change); }
+
+    bool keeps_sides(const Change& change) const {
+        Vec3 mean = Vec3::Zero();
+        for (const Index t : change.gone) mean += area_vector(corners(triangle(t)));
+        for (std::size_t i = 0; i < change.made.size(); ++i) {
+            const Corners before = corners(triangle(change.made_from[i])), after = corners(change.made[i], change);
+            const bool flat = altitude_of(before) < settings_.altitude;
+            const Vec3 towards = flat ? mean : area_vector(before), normal = area_vector(after);
+            if (!(normal.dot(towards) > (flat ? least_turn_of_flat : least_turn) * normal.norm() * towards.norm()))
+                return false;
+        }
+        return true;
+    }
+
+    bool keeps_distance(const Change& change) const {
+        const Real limit = std::pow(share_of_tolerance * settings_.tolerance, 2);
+        for (const Index t : change.gone)
+            for (const Vec3& point : samples_[static_cast<std::size_t>(t)])
+                if (nearest_made(change, point).second > limit) return false;
+        std::vector<Vec3> points;
+        for (const Triangle& t : change.made) sample_triangle(corners(t, change), parts, points);
+        return std::all_of(points.begin(), points.end(),
+                           [&](const Vec3& point) { return original_.distance_squared(point, 2 * limit) <= limit; });
+    }
+
+    /// Which of the triangles that are made is nearest, and how near (m^2).
+    std::pair<std::size_t, Real> nearest_made(const Change& change, const Vec3& point) const {
+        std::pair<std::size_t, Real> nearest{0, std::numeric_limits<Real>::infinity()};
+        for (std::size_t i = 0; i < change.made.size(); ++i) {
+            const Corners x = corners(change.made[i], change);
+            const Real distance = closest_point_on_triangle(point, x[0], x[1], x[2]).distance_squared;
+            if (distance < nearest.second) nearest = {i, distance};
+        }
+        return nearest;
+    }
+
+    void apply(const Change& change) {
+        std::vector<std::vector<Vec3>> samples(change.made.size());
+        for (const Index t : change.gone) {
+            for (const Vec3& point : samples_[static_cast<std::size_t>(t)])
+                samples[nearest_made(change, point).first].push_back(point);
+            flat_.erase({altitude_of(corners(triangle(t))), t});
+            samples_[static_cast<std::size_t>(t)].clear();
+            alive_[static_cast<std::size_t>(t)] = false;
+            for (const Index n : triangle(t)) std::erase(around(n), t);
+        }
+        if (change.moved != no_index) nodes_[static_cast<std::size_t>(change.moved)] = change.position;
+        const auto first = static_cast<Index>(triangles_.size());
+        for (std::size_t i = 0; i < change.made.size(); ++i) {
+            add(change.made[i]);
+            samples_.back() = std::move(samples[i]);
+        }
+        // What was given up may be possible beside the new ones.
+        for (auto t = first; t < static_cast<Index>(triangles_.size()); ++t)
+            for (const Index n : triangle(t))
+                for (const Index beside : around(n)) ask(beside);
+    }
+
+    SurfaceMesh compact() const {
+        SurfaceMesh surface;
+        std::vector<Index> row(nodes_.size(), no_index);
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            if (around_[n].empty()) continue;
+            row[n] = static_cast<Index>(surface.nodes.size());
+            surface.nodes.push_back(nodes_[n]);
+        }
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            if (!alive_[t]) continue;
+            Triangle renumbered = triangles_[t];
+            for (Index& n : renumbered) n = row[static_cast<std::size_t>(n)];
+            surface.triangles.push_back(renumbered);
+        }
+        return surface;
+    }
+
+    KnotSettings settings_;
+    TriangleTree original_;
+    std::vector<Vec3> nodes_;
+    std::vector<Triangle> triangles_;  // those that are gone, too
+    std::vector<bool> alive_;
+    std::vector<std::vector<Vec3>> samples_;  // points of the old surface, by the triangle that stands for them
+    std::vector<std::vector<Index>> around_;  // triangles at each node
+    std::set<std::pair<Real, Index>> flat_;   // altitude and triangle: the flattest first, ties by number
+};
+
+}  // namespace
+
+ThinnedSurface thin_knots(const SurfaceMesh& surface, const KnotSettings& settings) {
+    return Thinner(surface, settings).run();
+}
+
+}  // namespace skerry::mesh

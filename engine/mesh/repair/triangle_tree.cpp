@@ -1,0 +1,44 @@
+#include "engine/mesh/repair/triangle_tree.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "systems/collision/tree/box.h"
+#include "systems/collision/tree/bvh.h"
+#include "systems/geometry/closest_points.h"
+
+namespace skerry::mesh {
+
+TriangleTree::TriangleTree(SurfaceMesh surface) : surface_(std::move(surface)) {
+    append_bvh({0, static_cast<Index>(surface_.triangles.size())}, surface_.triangles, surface_.nodes, bvh_, leaves_);
+}
+
+Real TriangleTree::distance_squared(const Vec3& point, Real limit) const {
+    Real nearest = limit;
+    search(0, point, nearest);
+    return nearest;
+}
+
+void TriangleTree::search(Index row, const Vec3& point, Real& nearest) const {
+    const BvhNode& node = bvh_.node[static_cast<std::size_t>(row)];
+    if (node.leaf != no_index) {
+        for (const Index t : leaves_.triangle[static_cast<std::size_t>(node.leaf)]) {
+            if (t == no_index) break;
+            const auto [a, b, c] = surface_.triangles[static_cast<std::size_t>(t)];
+            const PointTriangle found = closest_point_on_triangle(point, surface_.nodes[static_cast<std::size_t>(a)],
+                                                                  surface_.nodes[static_cast<std::size_t>(b)],
+                                                                  surface_.nodes[static_cast<std::size_t>(c)]);
+            nearest = std::min(nearest, found.distance_squared);
+        }
+        return;
+    }
+    // The nearer child first: what it finds often rules the other one out.
+    Index child[2] = {row + 1, node.right};
+    Real gap[2];
+    for (int i = 0; i < 2; ++i) gap[i] = skerry::distance_squared(bvh_.box[static_cast<std::size_t>(child[i])], point);
+    const int first = gap[1] < gap[0];
+    for (const int i : {first, 1 - first})
+        if (gap[i] < nearest) search(child[i], point, nearest);
+}
+
+}  // namespace skerry::mesh

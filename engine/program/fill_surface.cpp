@@ -1,0 +1,128 @@
+#include "engine/program/fill_surface.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+
+#include "skerry/error.h"
+
+extern char** environ;
+
+namespace skerry {
+
+namespace {
+
+constexpr useconds_t poll_interval = 20000;  // us
+
+/// Has no name: nothing stays of it, however this program ends.
+using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+NamelessFile nameless_file() {
+    NamelessFile file(std::tmpfile(), std::fclose);
+    if (!file) throw std::runtime_error("no room for a temporary file: " + std::generic_category().message(errno));
+    return file;
+}
+
+/// Beside this program, where the build and an installation put it.
+std::filesystem::path fill_program() {
+    std::error_code ignored;
+    return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "skerry-fill";
+}
+
+void write_surface(std::FILE* out, const SurfaceMesh& surface, Real largest_edge) {
+    std::fprintf(out, "%zu %zu %.17g\n", surface.nodes.size(), surface.triangles.size(), largest_edge);
+    for (const Vec3& x : surface.nodes) std::fprintf(out, "%.17g %.17g %.17g\n", x.x(), x.y(), x.z());
+    for (const auto& t : surface.triangles) std::fprintf(out, "%d %d %d\n", t[0], t[1], t[2]);
+    if (std::fflush(out) != 0) throw std::runtime_error("no room for a temporary file");
+    std::rewind(out);
+}
+
+Mesh read_mesh(std::FILE* in) {
+    std::rewind(in);
+    std::size_t nodes = 0, tetrahedra = 0;
+    Mesh mesh;
+    if (std::fscanf(in, "%zu %zu", &nodes, &tetrahedra) != 2) return {};
+    for (std::size_t n = 0; n < nodes; ++n) {
+        Vec3 x;
+        if (std::fscanf(in, "%lf %lf %lf", &x[0], &x[1], &x[2]) != 3) return {};
+        mesh.nodes.push_back(x);
+    }
+    for (std::size_t e = 0; e < tetrahedra; ++e) {
+        std::array<Index, 4> t{};
+        if (std::fscanf(in, "%d %d %d %d", &t[0], &t[1], &t[2], &t[3]) != 4) return {};
+        mesh.tetrahedra.push_back(t);
+    }
+    return mesh;
+}
+
+/// Which of its files a child gets as what.
+struct FileActions {
+    posix_spawn_file_actions_t actions;
+
+    FileActions(int in, int out) {
+        posix_spawn_file_actions_init(&actions);
+        // By way of high numbers: one of the two may be the number that the other one is to have.
+        posix_spawn_file_actions_adddup2(&actions, in, 100);
+        posix_spawn_file_actions_adddup2(&actions, out, 101);
+        posix_spawn_file_actions_adddup2(&actions, 100, STDIN_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, 101, 3);
+        posix_spawn_file_actions_addclose(&actions, 100);
+        posix_spawn_file_actions_addclose(&actions, 101);
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+        posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    }
+    ~FileActions() { posix_spawn_file_actions_destroy(&actions); }
+    FileActions(const FileActions&) = delete;
+    FileActions& operator=(const FileActions&) = delete;
+};
+
+/// The child's exit status.
+int run_fill(std::FILE* in, std::FILE* out, const std::function<void()>& wait) {
+    const std::string program = fill_program().string();
+    char* arguments[] = {const_cast<char*>(program.c_str()), nullptr};
+    FileActions files(fileno(in), fileno(out));
+    pid_t child = 0;
+    if (const int error = posix_spawn(&child, program.c_str(), &files.actions, nullptr, arguments, environ); error != 0)
+        throw std::runtime_error(program + " does not start: " + std::generic_category().message(error));
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        wait();
+        usleep(poll_interval);
+    }
+    return status;
+}
+
+}  // namespace
+
+void require_fill() {
+    if (access(fill_program().c_str(), X_OK) == 0) return;
+    Complaint{.file = fill_program().string(),
+              .object = "mesh repair",
+              .field = {},
+              .found = "no such program",
+              .expected = "skerry-fill, which is built beside skerry when Netgen's library is there",
+              .hint = "apt-get install libnglib-dev, then configure and build again"}
+        .raise();
+}
+
+Mesh fill_surface(const SurfaceMesh& surface, Real largest_edge, const std::function<void()>& wait) {
+    const NamelessFile in = nameless_file(), out = nameless_file();
+    write_surface(in.get(), surface, largest_edge);
+    const int status = run_fill(in.get(), out.get(), wait);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return {};
+    Mesh mesh = read_mesh(out.get());
+    // Netgen numbers corners the other way round.
+    if (!mesh.tetrahedra.empty() && inspect(mesh).volume < 0)
+        for (auto& t : mesh.tetrahedra) std::swap(t[2], t[3]);
+    return mesh;
+}
+
+}  // namespace skerry

@@ -1,0 +1,155 @@
+#include "engine/program/inspect_repair.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+#include "engine/program/fill_surface.h"
+#include "engine/program/number_text.h"
+#include "engine/program/progress.h"
+#include "engine/program/repair.h"
+#include "engine/program/require_writable.h"
+#include "engine/scene/place.h"
+
+namespace skerry {
+
+namespace {
+
+/// One line on a terminal, with the seconds; nothing anywhere else.
+class DoingLine {
+public:
+    explicit DoingLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
+    ~DoingLine() {
+        if (shown_) std::fputs("\r\033[K", stderr);
+    }
+    DoingLine(const DoingLine&) = delete;
+    DoingLine& operator=(const DoingLine&) = delete;
+
+    void say(const std::string& doing) const {
+        if (!shown_) return;
+        std::fprintf(stderr, "\r\033[K%s, %.1f s", doing.c_str(), watch_.seconds());
+        std::fflush(stderr);
+    }
+
+private:
+    bool shown_;
+    Stopwatch watch_;
+};
+
+Json figures_json(const MeshFigures& figures) {
+    return {{"nodes", figures.mesh.nodes},
+            {"tetrahedra", figures.mesh.tetrahedra},
+            {"volume", figures.mesh.volume},
+            {"surface_area", figures.surface_area},
+            {"min_altitude", figures.mesh.min_altitude},
+            {"min_quality", figures.mesh.min_quality},
+            {"mean_quality", figures.mesh.mean_quality},
+            {"stable_dt", figures.step}};
+}
+
+std::string change(Real before, Real after) {
+    if (!(before > 0)) return "";
+    const Real ratio = after / before;
+    if (ratio > 2) return short_number(ratio) + " times";
+    const Real percent = 100 * (ratio - 1);
+    if (percent > -1e-6 && percent < 1e-6) return "same";
+    return (percent > 0 ? "+" : "") + short_number(percent) + " %";
+}
+
+void print_row(const char* name, const std::string& before, const std::string& after, const std::string& remark = {}) {
+    std::printf("  %-16s %14s %14s   %s\n", name, before.c_str(), after.c_str(), remark.c_str());
+}
+
+void print_table(const RepairedMesh& repaired, const RepairTask& task) {
+    const MeshFigures &a = repaired.before, &b = repaired.after;
+    const auto real_row = [](const char* name, Real before, Real after, const char* unit) {
+        print_row(name, with_unit(before, unit), with_unit(after, unit), change(before, after));
+    };
+    const auto count_row = [](const char* name, std::size_t before, std::size_t after) {
+        print_row(name, grouped(before), grouped(after), change(static_cast<Real>(before), static_cast<Real>(after)));
+    };
+    std::printf("%s\n", task.what.c_str());
+    print_row("", "before", "after");
+    count_row("nodes", a.mesh.nodes, b.mesh.nodes);
+    count_row("tetrahedra", a.mesh.tetrahedra, b.mesh.tetrahedra);
+    print_row("volume [m^3]", short_number(a.mesh.volume, 6), short_number(b.mesh.volume, 6),
+              change(a.mesh.volume, b.mesh.volume));
+    print_row("surface [m^2]", short_number(a.surface_area, 6), short_number(b.surface_area, 6),
+              change(a.surface_area, b.surface_area));
+    real_row("worst altitude", a.mesh.min_altitude, b.mesh.min_altitude, "m");
+    print_row("worst quality", short_number(a.mesh.min_quality), short_number(b.mesh.min_quality), "1 is regular");
+    print_row("mean quality", short_number(a.mesh.mean_quality), short_number(b.mesh.mean_quality));
+    real_row("stable step", a.step, b.step, "s");
+    std::printf("  steps are those of %s; %s edges of the surface collapsed, %s flipped\n", task.step_of.c_str(),
+                grouped(repaired.collapsed).c_str(), grouped(repaired.flipped).c_str());
+    if (repaired.collapsed + repaired.flipped == 0) {
+        std::printf("  the surface is the same\n");
+        return;
+    }
+    std::printf("  the surface moved by %s at most (new from old %s, old from new %s; tolerance %s)\n",
+                with_unit(repaired.distance.greatest(), "m").c_str(),
+                with_unit(repaired.distance.from_second, "m").c_str(),
+                with_unit(repaired.distance.from_first, "m").c_str(), with_unit(repaired.tolerance, "m").c_str());
+}
+
+void print_json(const RepairedMesh& repaired, const RepairTask& task, const InspectOptions& options) {
+    const Json json = {
+        {"schema", "skerry.mesh_repair/1"},
+        {"mesh", task.what},
+        {"output", options.repair.string()},
+        {"written", repaired.refusal.empty()},
+        {"refusal", repaired.refusal},
+        {"before", figures_json(repaired.before)},
+        {"after", figures_json(repaired.after)},
+        {"edges_collapsed", repaired.collapsed},
+        {"edges_flipped", repaired.flipped},
+        {"tolerance", repaired.tolerance},
+        {"distance",
+         {{"old_from_new", repaired.distance.from_first}, {"new_from_old", repaired.distance.from_second}}}};
+    std::cout << json.dump(1) << std::endl;
+}
+
+}  // namespace
+
+void check_repair(const InspectOptions& options) {
+    const auto refuse = [&](const std::string& field, const std::string& found, const std::string& expected) {
+        Complaint{.file = options.repair.string(),
+                  .object = "--repair",
+                  .field = field,
+                  .found = found,
+                  .expected = expected,
+                  .hint = {}}
+            .raise();
+    };
+    if (options.repair.extension() != ".msh")
+        refuse("file name",
+               options.repair.has_extension() ? options.repair.extension().string() : std::string("no ending"), ".msh");
+    require_writable_file(options.repair);
+    std::error_code none;
+    if (!options.overwrite && std::filesystem::equivalent(options.repair, options.file, none))
+        refuse("file name", "the file that is read", "another file, or --overwrite");
+    require_fill();
+}
+
+int inspect_repair(const RepairTask& task, const InspectOptions& options) {
+    RepairedMesh repaired;
+    {
+        const DoingLine line(!options.json);
+        repaired = repair(task.mesh, task.what, task.of, options.tolerance,
+                          [&](const std::string& doing) { line.say(doing); });
+        if (repaired.refusal.empty()) mesh::write(options.repair.string(), repaired.mesh);
+    }
+    if (options.json) print_json(repaired, task, options);
+    if (!repaired.refusal.empty()) {
+        std::cerr << "skerry: " << task.what << ": " << repaired.refusal << "; nothing was written\n";
+        return exit_failed;
+    }
+    if (options.json) return exit_ok;
+    print_table(repaired, task);
+    std::cout << "  written       " << options.repair.string()
+              << (task.scaled ? ", in metres as the scene has it: without its `scale`" : "") << std::endl;
+    return exit_ok;
+}
+
+}  // namespace skerry

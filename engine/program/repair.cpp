@@ -1,0 +1,185 @@
+#include "engine/program/repair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/mesh/repair/thin_knots.h"
+#include "engine/program/fill_surface.h"
+#include "engine/program/number_text.h"
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real least_gain = 1.05;                // of the step: below it a new mesh is not worth having
+constexpr Real knot_altitude = 0.4;              // of the surface's mean edge (measured: docs/decisions/0012)
+constexpr Real least_count = 0.7;                // of the tetrahedra: fewer would be a coarser body, not a better mesh
+constexpr Real largest_edges[] = {1.5, 1, 0.7};  // of the mesh's mean edge, where the surface does not ask for less
+constexpr Real volume_rounding = 1e-6;           // of the volume: between a surface and what it was filled with
+
+using Corners = std::array<Vec3, 3>;
+
+Corners corners(const SurfaceMesh& surface, const std::array<Index, 3>& t) {
+    return {surface.nodes[static_cast<std::size_t>(t[0])], surface.nodes[static_cast<std::size_t>(t[1])],
+            surface.nodes[static_cast<std::size_t>(t[2])]};
+}
+
+Real area_of(const SurfaceMesh& surface) {
+    Real area = 0;
+    for (const auto& t : surface.triangles) {
+        const Corners x = corners(surface, t);
+        area += (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
+    }
+    return area;
+}
+
+/// By the divergence theorem, about a point of the surface: rounding then is that of its size.
+Real volume_inside(const SurfaceMesh& surface) {
+    Real volume = 0;
+    for (const auto& t : surface.triangles) {
+        Corners x = corners(surface, t);
+        for (Vec3& corner : x) corner -= surface.nodes.front();
+        volume += x[0].dot(x[1].cross(x[2])) / 6;
+    }
+    return volume;
+}
+
+Real mean_edge_of(const SurfaceMesh& surface) {
+    Real sum = 0;
+    for (const auto& t : surface.triangles) {
+        const Corners x = corners(surface, t);
+        for (std::size_t a = 0; a < 3; ++a) sum += (x[(a + 1) % 3] - x[a]).norm();
+    }
+    return sum / static_cast<Real>(3 * surface.triangles.size());
+}
+
+/// The smallest step by which something of a mesh that is no body could go is none.
+Real step_of(const Mesh& mesh, const MeshReport& report, const StepCase& of) {
+    return report.tetrahedra > 0 && report.inverted + report.flat == 0 ? step_bound(mesh, of, false).step : 0;
+}
+
+MeshFigures figures_of(const Mesh& mesh, const SurfaceMesh& surface, const StepCase& of) {
+    MeshFigures figures{.mesh = inspect(mesh), .surface_area = area_of(surface), .step = 0};
+    figures.step = step_of(mesh, figures.mesh, of);
+    return figures;
+}
+
+/// A new mesh of the body, and what became of the surface.
+struct Candidate {
+    Mesh mesh;
+    SurfaceMesh surface;
+    MeshFigures figures;  // a step of 0: there is none
+    std::size_t collapsed = 0, flipped = 0;
+};
+
+class Repair {
+public:
+    Repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
+           const std::function<void(const std::string&)>& progress)
+        : mesh_(mesh), of_(of), progress_(progress), surface_(mesh::boundary(mesh)) {
+        result_.before = figures_of(mesh, surface_, of);
+        const MeshReport& report = result_.before.mesh;
+        if (!report.closed_manifold)
+            Complaint{what,
+                      "boundary",
+                      {},
+                      "edges that have not two triangles each",
+                      "a closed manifold",
+                      "tetrahedra that touch in an edge alone have to be parted first"}
+                .raise();
+        result_.tolerance = tolerance * (report.upper - report.lower).norm();
+    }
+
+    RepairedMesh run() {
+        Candidate best;
+        try_fill(surface_, "as it is", best);
+        if (result_.tolerance > 0) {
+            progress_("looking for knots of the surface");
+            const mesh::ThinnedSurface thinned = thinned_within_tolerance();
+            if (thinned.collapsed + thinned.flipped > 0) {
+                Candidate other;
+                try_fill(thinned.surface, "without its knots", other);
+                other.collapsed = thinned.collapsed;
+                other.flipped = thinned.flipped;
+                if (other.figures.step > least_gain * best.figures.step) best = std::move(other);
+            }
+        }
+        take(std::move(best));
+        return std::move(result_);
+    }
+
+private:
+    /// While the surface changes, few points of it are looked at; what they let pass is tried again with less.
+    mesh::ThinnedSurface thinned_within_tolerance() const {
+        constexpr int tries = 4;
+        constexpr Real less = 0.75;
+        Real tolerance = result_.tolerance;
+        for (int i = 0; i < tries; ++i, tolerance *= less) {
+            mesh::ThinnedSurface thinned = mesh::thin_knots(
+                surface_, {.tolerance = tolerance, .altitude = knot_altitude * mean_edge_of(surface_)});
+            if (mesh::surface_distance(surface_, thinned.surface).greatest() <= result_.tolerance) return thinned;
+        }
+        return {};
+    }
+
+    /// The surface filled with tetrahedra of several sizes: `best` becomes the mesh whose step is longest. The finest
+    /// only where the others have too few.
+    void try_fill(const SurfaceMesh& surface, const std::string& which, Candidate& best) {
+        const Real volume = volume_inside(surface);
+        for (const Real size : largest_edges) {
+            if (size < 1 && best.figures.step > 0) return;
+            const Mesh filled = fill_surface(surface, size * result_.before.mesh.mean_edge,
+                                             [&] { progress_("filling the surface " + which); });
+            if (filled.tetrahedra.empty()) continue;
+            filled_once_ = true;
+            if (static_cast<Real>(filled.tetrahedra.size()) < least_count * static_cast<Real>(mesh_.tetrahedra.size()))
+                continue;
+            const SurfaceMesh boundary = mesh::boundary(filled);
+            const MeshFigures figures = figures_of(filled, boundary, of_);
+            if (std::abs(figures.mesh.volume - volume) <= volume_rounding * volume && figures.step > best.figures.step)
+                best = {filled, boundary, figures, 0, 0};
+        }
+    }
+
+    void take(Candidate best) {
+        result_.mesh = std::move(best.mesh);
+        result_.after = best.figures;
+        result_.collapsed = best.collapsed;
+        result_.flipped = best.flipped;
+        if (result_.mesh.tetrahedra.empty() || !(result_.after.step > 0)) {
+            result_.refusal = filled_once_ ? "no mesh found that is not much coarser, and keeps the volume"
+                                           : "no tetrahedra found inside the surface; does it cut itself?";
+            return;
+        }
+        progress_("measuring how far the surface moved");
+        result_.distance = mesh::surface_distance(surface_, best.surface);
+        // What was not to move at all is the same to rounding.
+        const Real rounding = 1e-9 * (result_.before.mesh.upper - result_.before.mesh.lower).norm();
+        if (result_.distance.greatest() > std::max(result_.tolerance, rounding))
+            result_.refusal = "the surface would move by " + with_unit(result_.distance.greatest(), "m") +
+                              ", more than the tolerance of " + with_unit(result_.tolerance, "m");
+        else if (!(result_.after.step > least_gain * result_.before.step))
+            result_.refusal =
+                "no mesh found whose step is at least 5 % longer: " + with_unit(result_.before.step, "s") +
+                " before, " + with_unit(result_.after.step, "s") + " with the best of those tried";
+    }
+
+    const Mesh& mesh_;
+    const StepCase& of_;
+    const std::function<void(const std::string&)>& progress_;
+    SurfaceMesh surface_;
+    RepairedMesh result_;
+    bool filled_once_ = false;
+};
+
+}  // namespace
+
+RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
+                    const std::function<void(const std::string&)>& progress) {
+    return Repair(mesh, what, of, tolerance, progress).run();
+}
+
+}  // namespace skerry

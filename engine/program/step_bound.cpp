@@ -1,0 +1,120 @@
+#include "engine/program/step_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "engine/mesh/tetrahedron.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t listed_count = 3;
+constexpr Real shares[] = {0.001, 0.01};
+
+struct Body {
+    World world;
+    BodyHandle handle;
+};
+
+Body body_of(const Mesh& mesh, const StepCase& of) {
+    Settings settings = of.settings;
+    settings.step_size.reset();
+    settings.backend = Backend::serial;
+    World world(settings);
+    BodySettings body = of.body;
+    body.material = world.add_material(of.material);
+    const BodyHandle handle = world.add_body(mesh, body);
+    return {std::move(world), handle};
+}
+
+Real altitude_of(const Mesh& mesh, Index tetrahedron) {
+    const std::array<Index, 4>& corners = mesh.tetrahedra[static_cast<std::size_t>(tetrahedron)];
+    return mesh::six_volumes(mesh, corners) / std::sqrt(mesh::largest_face_squared(mesh, corners));
+}
+
+CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
+    const std::array<Index, 4>& corners = mesh.tetrahedra[static_cast<std::size_t>(tetrahedron)];
+    CostlyTetrahedron found{tetrahedron, Vec3::Zero(), altitude_of(mesh, tetrahedron), 0, step};
+    for (const Index n : corners) found.place += mesh.nodes[static_cast<std::size_t>(n)] / 4;
+    for (const Real edge : mesh::edge_lengths(mesh, corners)) found.mean_edge += edge / 6;
+    return found;
+}
+
+/// All tetrahedra. Masses are shared so that what is beside a bad one allows hardly more than that one does: among
+/// those that allow about the least, the flattest come first.
+std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
+    constexpr Real about = 1.1;
+    const Real least = about * *std::min_element(step.begin(), step.end());
+    std::vector<std::pair<Real, Real>> key(step.size());
+    for (std::size_t t = 0; t < key.size(); ++t)
+        key[t] = {std::max(step[t], least), altitude_of(mesh, static_cast<Index>(t))};
+    std::vector<Index> order(step.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+        return key[static_cast<std::size_t>(a)] < key[static_cast<std::size_t>(b)];
+    });
+    return order;
+}
+
+/// Without those of `gone`, and without nodes that then have none.
+Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
+    std::vector<bool> stays(mesh.tetrahedra.size(), true);
+    for (const Index t : gone) stays[static_cast<std::size_t>(t)] = false;
+    Mesh rest;
+    std::vector<Index> row(mesh.nodes.size(), no_index);
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        if (!stays[t]) continue;
+        std::array<Index, 4> corners = mesh.tetrahedra[t];
+        for (Index& n : corners) {
+            Index& place = row[static_cast<std::size_t>(n)];
+            if (place == no_index) {
+                place = static_cast<Index>(rest.nodes.size());
+                rest.nodes.push_back(mesh.nodes[static_cast<std::size_t>(n)]);
+            }
+            n = place;
+        }
+        rest.tetrahedra.push_back(corners);
+    }
+    return rest;
+}
+
+/// s, when the worst are not there. They are taken out in fact, a quarter at a time: what was beside them has its
+/// masses for itself then.
+Real step_without(const Mesh& mesh, const StepCase& of, std::size_t count) {
+    const std::size_t at_once = (count + 3) / 4;
+    Mesh rest = mesh;
+    for (std::size_t left = count; left > 0; left -= std::min(left, at_once)) {
+        const Body body = body_of(rest, of);
+        const std::vector<Index> order = worst_first(rest, body.world.tetrahedron_steps(body.handle));
+        rest = taken_out(rest, std::span(order).first(std::min(left, at_once)));
+    }
+    return body_of(rest, of).world.stable_step();
+}
+
+}  // namespace
+
+StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details) {
+    const Body body = body_of(mesh, of);
+    StepBound bound{
+        .step = body.world.stable_step(), .element = body.world.element(body.handle), .worst = {}, .without = {}};
+    if (!details) return bound;
+    const std::vector<Real> step = body.world.tetrahedron_steps(body.handle);
+    const std::vector<Index> order = worst_first(mesh, step);
+    const auto least = static_cast<Index>(std::min_element(step.begin(), step.end()) - step.begin());
+    bound.worst.push_back(describe(mesh, least, step[static_cast<std::size_t>(least)]));
+    for (const Index t : order)
+        if (t != least && bound.worst.size() < listed_count)
+            bound.worst.push_back(describe(mesh, t, step[static_cast<std::size_t>(t)]));
+    for (const Real share : shares) {
+        const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<Real>(order.size())));
+        if (count >= order.size() || (!bound.without.empty() && bound.without.back().count == count)) continue;
+        bound.without.push_back({share, count, step_without(mesh, of, count)});
+    }
+    return bound;
+}
+
+}  // namespace skerry
