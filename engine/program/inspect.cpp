@@ -16,6 +16,7 @@ using Problems = std::vector<std::string>;
 
 constexpr Real poor_quality = 0.1;        // below it a tetrahedron is a sliver that costs steps and accuracy
 constexpr Real expensive_step_ratio = 4;  // a body that bounds the step this much below the next one is worth a word
+constexpr Real hardly_longer = 1.03;      // times a step
 constexpr int timed_steps = 20;
 constexpr std::size_t longest_list = 300;  // characters of names in a message
 
@@ -79,7 +80,9 @@ void print_bound(const StepBound& bound, const char* indent) {
     for (const StepWithout& w : bound.without)
         std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
                   << short_number(100 * w.share) << " %): " << with_unit(w.step, "s") << ", "
-                  << short_number(w.step / bound.step) << " times as long\n";
+                  << (w.step < hardly_longer * bound.step ? "hardly longer"
+                                                          : short_number(w.step / bound.step) + " times as long")
+                  << "\n";
 }
 
 int inspect_mesh(const InspectOptions& options) {

@@ -82,17 +82,29 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     return rest;
 }
 
-/// s, when the worst are not there. They are taken out in fact, a quarter at a time: what was beside them has its
-/// masses for itself then.
-Real step_without(const Mesh& mesh, const StepCase& of, std::size_t count) {
-    const std::size_t at_once = (count + 3) / 4;
+/// What the step is when the worst are not there. They are taken out in fact, some at a time: what was beside them has
+/// its masses for itself then. `order`: worst first, of the whole mesh.
+std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std::vector<Index> order) {
+    constexpr std::size_t rounds = 3;  // for all that are taken out between two shares
+    std::vector<StepWithout> without;
     Mesh rest = mesh;
-    for (std::size_t left = count; left > 0; left -= std::min(left, at_once)) {
-        const Body body = body_of(rest, of);
-        const std::vector<Index> order = worst_first(rest, body.world.tetrahedron_steps(body.handle));
-        rest = taken_out(rest, std::span(order).first(std::min(left, at_once)));
+    std::size_t gone = 0;
+    for (const Real share : shares) {
+        const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<Real>(mesh.tetrahedra.size())));
+        if (count >= mesh.tetrahedra.size() || count == gone) continue;
+        const std::size_t at_once = (count - gone + rounds - 1) / rounds;
+        Real step = 0;
+        while (gone < count) {
+            const std::size_t taken = std::min(at_once, count - gone);
+            rest = taken_out(rest, std::span(order).first(taken));
+            gone += taken;
+            const Body body = body_of(rest, of);
+            step = body.world.stable_step();
+            order = worst_first(rest, body.world.tetrahedron_steps(body.handle));
+        }
+        without.push_back({share, count, step});
     }
-    return body_of(rest, of).world.stable_step();
+    return without;
 }
 
 }  // namespace
@@ -109,11 +121,7 @@ StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details) {
     for (const Index t : order)
         if (t != least && bound.worst.size() < listed_count)
             bound.worst.push_back(describe(mesh, t, step[static_cast<std::size_t>(t)]));
-    for (const Real share : shares) {
-        const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<Real>(order.size())));
-        if (count >= order.size() || (!bound.without.empty() && bound.without.back().count == count)) continue;
-        bound.without.push_back({share, count, step_without(mesh, of, count)});
-    }
+    bound.without = steps_without(mesh, of, order);
     return bound;
 }
 
