@@ -34,6 +34,8 @@ Problems problems_of(const MeshReport& r) {
 }
 
 Json mesh_json(const MeshReport& r) {
+    Json labels = Json::object();
+    for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
     return {{"nodes", r.nodes},
             {"tetrahedra", r.tetrahedra},
             {"boundary_triangles", r.boundary_triangles},
@@ -46,12 +48,25 @@ Json mesh_json(const MeshReport& r) {
             {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
             {"inverted", r.inverted},
             {"flat", r.flat},
-            {"closed_manifold", r.closed_manifold}};
+            {"closed_manifold", r.closed_manifold},
+            {"labels", labels}};
 }
 
 void print_problems(const Problems& problems) {
     if (problems.empty()) std::cout << "  problems      none found\n";
     for (const std::string& problem : problems) std::cout << "  problem       " << problem << "\n";
+}
+
+/// "1: 300, 2: 20 tetrahedra"; of many the first.
+std::string labels_text(const MeshReport& report) {
+    constexpr std::size_t most = 20;
+    std::string text;
+    std::size_t listed = 0;
+    for (const auto& [label, tetrahedra] : report.labels) {
+        if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
+        text += (listed++ > 0 ? ", " : "") + std::to_string(label) + ": " + grouped(tetrahedra);
+    }
+    return text + " tetrahedra";
 }
 
 int inspect_mesh(const InspectOptions& options) {
@@ -76,18 +91,40 @@ int inspect_mesh(const InspectOptions& options) {
               << short_number(report.min_quality) << " (1 is regular)\n"
               << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
               << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
+    if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
     print_problems(problems);
     return exit_ok;
 }
 
-/// Bodies that share mesh and material, and so a stable step.
+/// Bodies that share mesh and materials, and so a stable step.
 struct BodyKindReport {
     std::string first_name;
+    std::vector<std::pair<std::string, std::size_t>> materials;  // and how many tetrahedra have each; more than 0
     std::size_t count = 0;
     MeshReport mesh;
     Real stable_step = 0;  // s
     ElementKind element{};
 };
+
+/// The body's own material first, then those of its labels.
+std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan& plan, const BodyPlan& body,
+                                                                 const MeshReport& mesh) {
+    std::vector<std::pair<std::size_t, std::size_t>> count{{body.material, mesh.tetrahedra}};
+    for (const auto& [label, material] : body.materials) {
+        const std::size_t tetrahedra = mesh.labels.at(label);
+        count.front().second -= tetrahedra;
+        const auto same = std::find_if(count.begin(), count.end(),
+                                       [wanted = material](const auto& known) { return known.first == wanted; });
+        if (same != count.end())
+            same->second += tetrahedra;
+        else
+            count.emplace_back(material, tetrahedra);
+    }
+    std::vector<std::pair<std::string, std::size_t>> named;
+    for (const auto& [material, tetrahedra] : count)
+        if (tetrahedra > 0) named.emplace_back(plan.materials[material].first, tetrahedra);
+    return named;
+}
 
 /// Each kind of body in a world of its own: that is the step it would allow.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan) {
@@ -101,14 +138,28 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan) {
             settings.backend = Backend::serial;
             World alone(settings);
             BodySettings settings_of_body = body.settings;
-            settings_of_body.material = alone.add_material(plan.materials[body.material].second);
+            std::vector<MaterialHandle> materials;
+            for (const auto& [name, material] : plan.materials) materials.push_back(alone.add_material(material));
+            settings_of_body.material = materials[body.material];
+            for (const auto& [label, material] : body.materials)
+                settings_of_body.materials.emplace(label, materials[material]);
             const BodyHandle added = alone.add_body(plan.meshes[body.mesh], settings_of_body);
-            kinds.push_back(
-                {body.settings.name, 0, inspect(plan.meshes[body.mesh]), alone.stable_step(), alone.element(added)});
+            const MeshReport mesh = inspect(plan.meshes[body.mesh]);
+            kinds.push_back({body.settings.name, count_materials(plan, body, mesh), 0, mesh, alone.stable_step(),
+                             alone.element(added)});
         }
         ++kinds[at->second].count;
     }
     return kinds;
+}
+
+/// "steel", or "steel 300, rubber 20".
+std::string materials_text(const BodyKindReport& kind) {
+    if (kind.materials.size() == 1) return kind.materials.front().first;
+    std::string text;
+    for (const auto& [material, tetrahedra] : kind.materials)
+        text += (text.empty() ? "" : ", ") + material + " " + grouped(tetrahedra);
+    return text;
 }
 
 struct SceneCost {
@@ -160,12 +211,16 @@ int inspect_scene(const InspectOptions& options) {
     const Problems problems = problems_of(kinds, cost);
     if (options.json) {
         Json bodies = Json::array();
-        for (const BodyKindReport& kind : kinds)
+        for (const BodyKindReport& kind : kinds) {
+            Json materials = Json::object();
+            for (const auto& [material, tetrahedra] : kind.materials) materials[material] = tetrahedra;
             bodies.push_back({{"name", kind.first_name},
                               {"count", kind.count},
+                              {"materials", materials},
                               {"stable_dt", kind.stable_step},
                               {"element", name_of(kind.element)},
                               {"mesh", mesh_json(kind.mesh)}});
+        }
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
                            {"description", scene.description},
@@ -197,8 +252,8 @@ int inspect_scene(const InspectOptions& options) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
                   << grouped(kind.mesh.tetrahedra) << " tetrahedra (" << name_of(kind.element) << "), mean edge "
-                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.stable_step, "s")
-                  << "\n";
+                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.stable_step, "s") << "; "
+                  << materials_text(kind) << "\n";
     print_problems(problems);
     return exit_ok;
 }
