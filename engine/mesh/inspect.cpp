@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/mesh/labels.h"
 #include "engine/mesh/tetrahedron.h"
 #include "skerry/mesh.h"
 #include "systems/collision/build_surface.h"
@@ -118,6 +119,7 @@ MeshReport inspect(const Mesh& mesh) {
     }
     const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
     report.boundary_triangles = triangles.size();
+    report.labels = mesh::count_labels(mesh);
     report.closed_manifold = is_closed_manifold(triangles);
     report.components = count_components(mesh);
     measure_edges(mesh, report);

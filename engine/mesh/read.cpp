@@ -58,6 +58,7 @@ Mesh take_tetrahedra(RawMesh& raw) {
     Mesh mesh;
     mesh.nodes = drop_unused(raw.nodes, raw.tetrahedra);
     mesh.tetrahedra = std::move(raw.tetrahedra);
+    mesh.label = std::move(raw.label);
     // Some programs count the other way round. A file in which nothing is positive and something negative is one of
     // theirs; where both occur, something is wrong with the mesh, and turning tetrahedra over would hide it.
     bool any_positive = false, any_inverted = false;

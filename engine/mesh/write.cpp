@@ -22,7 +22,8 @@ void write(const std::string& path, const Mesh& mesh) {
             out << n + 1 << ' ' << mesh.nodes[n].x() << ' ' << mesh.nodes[n].y() << ' ' << mesh.nodes[n].z() << '\n';
         out << "$EndNodes\n$Elements\n" << mesh.tetrahedra.size() << '\n';
         for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
-            out << e + 1 << " 4 2 1 1";  // a tetrahedron with two tags: of part 1, of volume 1
+            const int label = mesh.label.empty() ? 1 : mesh.label[e];
+            out << e + 1 << " 4 2 " << label << ' ' << label;  // a tetrahedron with two tags: its group, its volume
             for (const Index n : mesh.tetrahedra[e]) out << ' ' << n + 1;
             out << '\n';
         }

@@ -37,6 +37,8 @@ Problems problems_of(const MeshReport& r) {
 }
 
 Json mesh_json(const MeshReport& r) {
+    Json labels = Json::object();
+    for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
     return {{"nodes", r.nodes},
             {"tetrahedra", r.tetrahedra},
             {"boundary_triangles", r.boundary_triangles},
@@ -49,7 +51,8 @@ Json mesh_json(const MeshReport& r) {
             {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
             {"inverted", r.inverted},
             {"flat", r.flat},
-            {"closed_manifold", r.closed_manifold}};
+            {"closed_manifold", r.closed_manifold},
+            {"labels", labels}};
 }
 
 void print_problems(const Problems& problems) {
@@ -83,6 +86,18 @@ void print_bound(const StepBound& bound, const char* indent) {
                   << (w.step < hardly_longer * bound.step ? "hardly longer"
                                                           : short_number(w.step / bound.step) + " times as long")
                   << "\n";
+}
+
+/// "1: 300, 2: 20 tetrahedra"; of many the first.
+std::string labels_text(const MeshReport& report) {
+    constexpr std::size_t most = 20;
+    std::string text;
+    std::size_t listed = 0;
+    for (const auto& [label, tetrahedra] : report.labels) {
+        if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
+        text += (listed++ > 0 ? ", " : "") + std::to_string(label) + ": " + grouped(tetrahedra);
+    }
+    return text + " tetrahedra";
 }
 
 int inspect_mesh(const InspectOptions& options) {
@@ -132,13 +147,15 @@ int inspect_mesh(const InspectOptions& options) {
                   << " of the default material, 1e5 Pa and 1000 kg/m^3 (" << name_of(bound.element) << ")\n";
         print_bound(bound, "                ");
     }
+    if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
     print_problems(problems);
     return exit_ok;
 }
 
-/// Bodies that share mesh and material, and so a stable step.
+/// Bodies that share mesh and materials, and so a stable step.
 struct BodyKindReport {
     std::string first_name;
+    std::vector<std::pair<std::string, std::size_t>> materials;  // and how many tetrahedra have each; more than 0
     std::size_t count = 0;
     std::size_t body = 0;  // of ScenePlan::bodies: the first
     MeshReport mesh;
@@ -146,7 +163,32 @@ struct BodyKindReport {
 };
 
 StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
-    return {.settings = plan.settings, .material = plan.materials[body.material].second, .body = body.settings};
+    StepCase of{.settings = plan.settings,
+                .material = plan.materials[body.material].second,
+                .body = body.settings,
+                .labelled = {}};
+    for (const auto& [label, material] : body.materials) of.labelled.emplace(label, plan.materials[material].second);
+    return of;
+}
+
+/// The body's own material first, then those of its labels.
+std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan& plan, const BodyPlan& body,
+                                                                 const MeshReport& mesh) {
+    std::vector<std::pair<std::size_t, std::size_t>> count{{body.material, mesh.tetrahedra}};
+    for (const auto& [label, material] : body.materials) {
+        const std::size_t tetrahedra = mesh.labels.at(label);
+        count.front().second -= tetrahedra;
+        const auto same = std::find_if(count.begin(), count.end(),
+                                       [wanted = material](const auto& known) { return known.first == wanted; });
+        if (same != count.end())
+            same->second += tetrahedra;
+        else
+            count.emplace_back(material, tetrahedra);
+    }
+    std::vector<std::pair<std::string, std::size_t>> named;
+    for (const auto& [material, tetrahedra] : count)
+        if (tetrahedra > 0) named.emplace_back(plan.materials[material].first, tetrahedra);
+    return named;
 }
 
 /// Each kind of body in a world of its own: that is the step it would allow.
@@ -156,12 +198,23 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details) {
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
         const auto [at, is_new] = row.try_emplace({body.mesh, body.material}, kinds.size());
-        if (is_new)
-            kinds.push_back({body.settings.name, 0, b, inspect(plan.meshes[body.mesh]),
+        if (is_new) {
+            const MeshReport mesh = inspect(plan.meshes[body.mesh]);
+            kinds.push_back({body.settings.name, count_materials(plan, body, mesh), 0, b, mesh,
                              step_bound(plan.meshes[body.mesh], step_case(plan, body), details)});
+        }
         ++kinds[at->second].count;
     }
     return kinds;
+}
+
+/// "steel", or "steel 300, rubber 20".
+std::string materials_text(const BodyKindReport& kind) {
+    if (kind.materials.size() == 1) return kind.materials.front().first;
+    std::string text;
+    for (const auto& [material, tetrahedra] : kind.materials)
+        text += (text.empty() ? "" : ", ") + material + " " + grouped(tetrahedra);
+    return text;
 }
 
 struct SceneCost {
@@ -244,13 +297,17 @@ int inspect_scene(const InspectOptions& options) {
     const Problems problems = problems_of(kinds, cost);
     if (options.json) {
         Json bodies = Json::array();
-        for (const BodyKindReport& kind : kinds)
+        for (const BodyKindReport& kind : kinds) {
+            Json materials = Json::object();
+            for (const auto& [material, tetrahedra] : kind.materials) materials[material] = tetrahedra;
             bodies.push_back({{"name", kind.first_name},
                               {"count", kind.count},
+                              {"materials", materials},
                               {"stable_dt", kind.bound.step},
                               {"element", name_of(kind.bound.element)},
                               {"mesh", mesh_json(kind.mesh)},
                               {"step_bound", bound_json(kind.bound)}});
+        }
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
                            {"description", scene.description},
@@ -282,7 +339,8 @@ int inspect_scene(const InspectOptions& options) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
                   << grouped(kind.mesh.tetrahedra) << " tetrahedra (" << name_of(kind.bound.element) << "), mean edge "
-                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.bound.step, "s") << "\n";
+                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.bound.step, "s") << "; "
+                  << materials_text(kind) << "\n";
         print_bound(kind.bound, "                ");
     }
     print_problems(problems);

@@ -90,6 +90,14 @@ public:
                       "a closed manifold",
                       "tetrahedra that touch in an edge alone have to be parted first"}
                 .raise();
+        if (report.labels.size() > 1)
+            Complaint{what,
+                      "tetrahedra",
+                      "label",
+                      std::to_string(report.labels.size()) + " different labels",
+                      "one: the inside is filled anew, and would lose where one material ends",
+                      "mend a mesh of one material at a time"}
+                .raise();
         result_.tolerance = tolerance * (report.upper - report.lower).norm();
     }
 

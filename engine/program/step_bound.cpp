@@ -23,10 +23,15 @@ struct Body {
 Body body_of(const Mesh& mesh, const StepCase& of) {
     Settings settings = of.settings;
     settings.step_size.reset();
+    settings.clusters = false;  // what the elements stand on their own
     settings.backend = Backend::serial;
     World world(settings);
     BodySettings body = of.body;
     body.material = world.add_material(of.material);
+    body.materials.clear();
+    for (const auto& [label, material] : of.labelled)
+        if (std::ranges::find(mesh.label, label) != mesh.label.end())
+            body.materials.emplace(label, world.add_material(material));
     const BodyHandle handle = world.add_body(mesh, body);
     return {std::move(world), handle};
 }
@@ -78,6 +83,7 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
             n = place;
         }
         rest.tetrahedra.push_back(corners);
+        if (!mesh.label.empty()) rest.label.push_back(mesh.label[t]);
     }
     return rest;
 }

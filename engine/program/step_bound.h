@@ -1,6 +1,7 @@
 // Which tetrahedra of a mesh bound its step.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "skerry/scene.h"
@@ -12,6 +13,7 @@ struct StepCase {
     Settings settings;
     MaterialSettings material;
     BodySettings body;
+    std::map<int, MaterialSettings> labelled;  // of tetrahedra by label
 };
 
 struct CostlyTetrahedron {

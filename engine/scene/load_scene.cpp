@@ -22,6 +22,7 @@ Scene build_scene(const ScenePlan& plan) {
     for (const BodyPlan& body : plan.bodies) {
         BodySettings settings = body.settings;
         settings.material = materials[body.material];
+        for (const auto& [label, row] : body.materials) settings.materials.emplace(label, materials[row]);
         bodies.push_back(called_at(body.place, [&] { return world.add_body(plan.meshes[body.mesh], settings); }));
         for (const PinPlan& pin : body.pins)
             called_at(pin.place, [&] { return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot); });

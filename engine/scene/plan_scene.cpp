@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cstdint>
+#include <map>
 
 #include "components/split_mix.h"
+#include "engine/mesh/labels.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_plan.h"
 
@@ -96,22 +98,36 @@ std::vector<Vec3> positions_of(const BodyEntry& entry) {
     return positions;
 }
 
-std::size_t find_material(const ScenePlan& plan, const BodyEntry& entry) {
+std::size_t find_material(const ScenePlan& plan, const std::string& wanted, const Place& place) {
     std::vector<std::string> names;
     for (const auto& [name, material] : plan.materials) names.push_back(name);
-    const auto found = std::find(names.begin(), names.end(), entry.material);
+    const auto found = std::find(names.begin(), names.end(), wanted);
     if (found == names.end())
-        entry.place.key("material")
-            .refuse(in_quotes(entry.material),
-                    names.empty() ? "one of the materials, but the scene has none"
-                                  : "one of the materials " + listed(names),
-                    nearest_hint(entry.material, names));
+        place.refuse(
+            in_quotes(wanted),
+            names.empty() ? "one of the materials, but the scene has none" : "one of the materials " + listed(names),
+            nearest_hint(wanted, names));
     return static_cast<std::size_t>(found - names.begin());
 }
 
+std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan& plan, const BodyEntry& entry,
+                                                                 const Mesh& mesh) {
+    std::vector<std::pair<int, std::size_t>> found;
+    const std::map<int, std::size_t> labels = mesh::count_labels(mesh);
+    for (const auto& [label, name] : entry.materials.items) {
+        const Place place = entry.place.key("materials").key(std::to_string(label));
+        if (!labels.contains(label))
+            place.refuse("label " + std::to_string(label), mesh::expected_label(mesh),
+                         labels.empty() ? "labels come from mesh files (scenes/README.md)" : "");
+        found.emplace_back(label, find_material(plan, name, place));
+    }
+    return found;
+}
+
 void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
-    const std::size_t material = find_material(plan, entry);
+    const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
     const Mesh& mesh = plan.meshes.emplace_back(make_mesh(entry.mesh));
+    const std::vector<std::pair<int, std::size_t>> materials = find_materials_by_label(plan, entry, mesh);
     std::vector<PinPlan> pins;
     for (const PinEntry& pin : entry.pin.items) pins.push_back(plan_pin(pin, mesh));
 
@@ -130,6 +146,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
         body.settings.name = copies ? name + "_" + std::to_string(copy) : name;
         body.mesh = plan.meshes.size() - 1;
         body.material = material;
+        body.materials = materials;
         body.pins = pins;
         body.place = entry.place;
         for (const BodyPlan& other : plan.bodies)

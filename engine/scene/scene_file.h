@@ -77,6 +77,7 @@ struct BodyEntry {
     std::string name;
     MeshEntry mesh;
     std::string material;
+    ByNumber<std::string> materials;
     Vec3 position = Vec3::Zero();
     Rotation rotation;
     std::vector<Vec3> positions;

@@ -17,9 +17,10 @@ struct PinPlan {
     Place place;
 };
 struct BodyPlan {
-    BodySettings settings;     // the material's handle comes when it is built
-    std::size_t mesh = 0;      // of ScenePlan::meshes
-    std::size_t material = 0;  // of ScenePlan::materials
+    BodySettings settings;                               // handles of materials come when it is built
+    std::size_t mesh = 0;                                // of ScenePlan::meshes
+    std::size_t material = 0;                            // of ScenePlan::materials
+    std::vector<std::pair<int, std::size_t>> materials;  // of ScenePlan::materials, by label
     std::vector<PinPlan> pins;
     Place place;
 };

@@ -48,6 +48,9 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("name", &BodyEntry::name, {.meaning = "for messages, output and probes; body_NUMBER by default"})
             .key("mesh", &BodyEntry::mesh, {.meaning = "its tetrahedra", .required = true})
             .key("material", &BodyEntry::material, {.meaning = "the name of one of the materials", .required = true})
+            .key("materials", &BodyEntry::materials,
+                 {.meaning = "materials of tetrahedra by the label that the mesh file gives them; the others have "
+                             "\"material\", whose friction, restitution and damping the whole body has"})
             .key("position", &BodyEntry::position, {.meaning = "of the mesh's origin", .unit = "m"})
             .key("rotation", &BodyEntry::rotation, {.meaning = "about the mesh's origin"})
             .key("positions", &BodyEntry::positions,

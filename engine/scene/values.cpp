@@ -1,6 +1,7 @@
 #include "engine/scene/values.h"
 
 #include <Eigen/Geometry>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -98,6 +99,14 @@ void Value<int>::read(const Json& json, const Place& place, const KeyDoc& doc, i
         place.refuse(described(json), expected_number(doc, kind));
     check_limits(number, json, place, doc, kind);
     out = static_cast<int>(number);
+}
+
+int read_number_key(const std::string& key, const Place& place) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
+    if (error != std::errc{} || end != key.data() + key.size() || std::to_string(number) != key)
+        place.refuse("the key " + in_quotes(key), "a whole number as a key, such as \"1\"");
+    return number;
 }
 
 void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc&, std::string& out) {

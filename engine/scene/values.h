@@ -25,6 +25,11 @@ template <class T>
 struct Named {
     std::vector<std::pair<std::string, T>> items;
 };
+/// Objects by number: keys are whole numbers, written as text, since those of JSON are.
+template <class T>
+struct ByNumber {
+    std::vector<std::pair<int, T>> items;
+};
 /// One object, or a list of them.
 template <class T>
 struct OneOrMore {
@@ -161,6 +166,25 @@ struct Value<Named<T>> {
     }
     static Json schema(SchemaBook& book, const KeyDoc& doc) {
         return {{"type", "object"}, {"additionalProperties", Value<T>::schema(book, doc)}};
+    }
+};
+
+/// The number that a key is, and nothing else: no sign but minus, no leading zeros, 32 bits.
+int read_number_key(const std::string& key, const Place& place);
+
+template <class T>
+struct Value<ByNumber<T>> {
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, ByNumber<T>& out) {
+        if (!json.is_object()) place.refuse(described(json), "an object: one key for each number");
+        for (const auto& [name, value] : json.items()) {
+            const int number = read_number_key(name, place.key(name));
+            Value<T>::read(value, place.key(name), doc, out.items.emplace_back(number, T{}).second);
+        }
+    }
+    static Json schema(SchemaBook& book, const KeyDoc& doc) {
+        return {{"type", "object"},
+                {"propertyNames", {{"pattern", "^(0|-?[1-9][0-9]{0,9})$"}}},
+                {"additionalProperties", Value<T>::schema(book, doc)}};
     }
 };
 

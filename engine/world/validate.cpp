@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "engine/mesh/labels.h"
 #include "engine/mesh/require_positive.h"
 
 namespace skerry {
@@ -20,7 +21,8 @@ std::string text(const Vec3& value) {
     return "(" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + ")";
 }
 
-[[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found, const char* expected) {
+[[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
+                         const std::string& expected) {
     Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
 }
 
@@ -74,6 +76,16 @@ struct ShapeCheck {
                     refuse(object, "triangles", "node " + std::to_string(corner), "a row of its nodes");
     }
 };
+
+void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& materials, const std::string& object) {
+    if (!mesh.label.empty() && mesh.label.size() != mesh.tetrahedra.size())
+        refuse(object, "mesh", std::to_string(mesh.label.size()) + " labels",
+               std::to_string(mesh.tetrahedra.size()) + ", one for each tetrahedron, or none");
+    const std::map<int, std::size_t> labels = mesh::count_labels(mesh);
+    for (const auto& [label, material] : materials)
+        if (!labels.contains(label))
+            refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
+}
 
 }  // namespace
 
@@ -136,6 +148,7 @@ void validate(const Mesh& mesh, const BodySettings& body) {
                 refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner),
                        "rows of its nodes");
     mesh::require_positive(mesh, object);
+    require_labels(mesh, body.materials, object);
     require_finite(object, "position", body.position);
     require_finite(object, "rotation", body.rotation);
     require_finite(object, "velocity", body.velocity);

@@ -1,6 +1,7 @@
 #include "skerry/world.h"
 
 #include <algorithm>
+#include <map>
 #include <ostream>
 #include <utility>
 
@@ -11,6 +12,21 @@
 #include "systems/material/material_law.h"
 
 namespace skerry {
+
+namespace {
+
+/// Rows of the materials of the tetrahedra; empty where none is named by its label.
+std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh, const BodySettings& body) {
+    if (body.materials.empty()) return {};
+    std::map<int, Index> row_of;
+    for (const auto& [label, material] : body.materials) row_of[label] = model.row(material, "add_body");
+    std::vector<Index> rows(mesh.tetrahedra.size(), model.row(body.material, "add_body"));
+    for (std::size_t t = 0; t < rows.size(); ++t)
+        if (const auto named = row_of.find(mesh.label[t]); named != row_of.end()) rows[t] = named->second;
+    return rows;
+}
+
+}  // namespace
 
 WorldState::WorldState(const Settings& settings) : executor(make_executor(settings.backend, settings.threads)) {
     model.settings = settings;
@@ -61,12 +77,14 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
 BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     validate(mesh, body);
     const Index material = state_->model.row(body.material, "add_body");
+    const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(state_->model, mesh, body);
     const BodyHandle handle = state_->model.body_map.insert(static_cast<Index>(state_->model.bodies.slot.size()));
     append_body(state_->model, {.slot = handle.slot,
                                 .kind = BodyKind::deformable,
                                 .self_contact = body.self_contact,
                                 .element = body.element,
                                 .material = material,
+                                .tetrahedron_material = tetrahedron_material,
                                 .collider = no_index,
                                 .contact_distance = body.contact_distance.value_or(-1),
                                 .nodes = mesh.nodes,

@@ -14,8 +14,9 @@ using namespace skerry::test;
 
 namespace {
 
-/// Everything that has a memory at once: stiff and soft elements with levels, bodies at rest and bodies that fall onto
-/// them, friction, damping, loads, a mesh collider and a bar that move by scripts, and a held body.
+/// Everything that has a memory at once: stiff and soft elements with levels, also in one body, bodies at rest and
+/// bodies that fall onto them, friction, damping, loads, a mesh collider and a bar that move by scripts, and a held
+/// body.
 World lively_scene(Settings settings, int threads = 1) {
     settings.backend = available_backends().front();
     settings.threads = threads;
@@ -31,7 +32,7 @@ World lively_scene(Settings settings, int threads = 1) {
                                            .loss_factor = 0.05,
                                            .model = MaterialModel::corotational});
     world.add_collider(Plane{});
-    const Mesh paddle = mesh::box({0.3, 0.05, 0.02}, {3, 1, 1});
+    Mesh paddle = mesh::box({0.3, 0.05, 0.02}, {3, 1, 1});
     world.add_collider(Capsule{0.02, 0.2}, {.position = {-0.25, 0, 0.05},
                                             .motion = {.keys = {{0, {-0.25, 0, 0.05}, {0, 0, 0}},
                                                                 {0.5, {0.05, 0, 0.08}, {0, 0.5, 0}},
@@ -46,7 +47,8 @@ World lively_scene(Settings settings, int threads = 1) {
                               .position = {0.104 * (i % 3) - 0.1, 0.01 * i, 0.052 + 0.2 * (i / 3)},
                               .rotation = {0.3 * i, 0.2, 0.1 * i},
                               .velocity = {0, 0, i < 3 ? 0.0 : -0.5}});
-    const auto held = world.add_body(paddle, {.material = soft, .position = {0, 0.3, 0.3}});
+    for (std::size_t e = 0; e < paddle.tetrahedra.size(); ++e) paddle.label.push_back(e % 5 == 0 ? 1 : 0);
+    const auto held = world.add_body(paddle, {.material = soft, .materials = {{1, stiff}}, .position = {0, 0.3, 0.3}});
     world.attach(held, std::vector<Index>{0, 1, 2, 3}, {.velocity = {0, 0, 0.01}}, {0, 0.3, 0.3});
     world.set_loads(held, std::vector<Vec3>(world.positions(held).size(), Vec3(0, 1e-3, 0)));
     return world;

@@ -51,6 +51,9 @@ int main(int argc, char** argv) {
     const fs::path folder = argv[1];
     put_meshes(folder, "box_", mesh::box({0.1, 0.2, 0.3}, {1, 1, 1}));
     put_meshes(folder, "ball_", mesh::ball(0.1, 2));
+    Mesh labelled = mesh::box({0.1, 0.2, 0.3}, {1, 1, 1});
+    labelled.label = {1, 1, 2, 2, -3, -3};
+    put_meshes(folder, "labels_", labelled);
     int number = 0;
     for (const char* scene : small_scenes) put(folder / "scene" / ("small_" + std::to_string(number++)), scene);
     for (std::uint64_t seed = 1; seed <= 40; ++seed)

@@ -8,6 +8,7 @@
 #include "components/node_table.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
+#include "systems/dynamics/stability/stiffness_share.h"
 #include "systems/material/material_law.h"
 #include "tests/support/jittered_box.h"
 #include "tests/support/node_forces.h"
@@ -23,8 +24,16 @@ struct ElasticBody {
     Range blocks;
     Ragged<Index> corners;
     Column<MaterialConstants> constants;
+    ElementList list;
+    std::vector<Index> element_at;  // of the list, by place; no_index in a lane that is left over
 
     ElasticBody(const TetMesh& mesh, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
+                ElementKind kind = ElementKind::linear)
+        : ElasticBody(mesh, {material}, std::vector<Index>(mesh.tetrahedra.size(), 0), rotation, kind) {}
+
+    /// Of several materials: that of each tetrahedron.
+    ElasticBody(const TetMesh& mesh, const std::vector<MaterialConstants>& materials,
+                const std::vector<Index>& material_of, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear) {
         const std::size_t n = mesh.nodes.size();
         for (const Vec3& x : mesh.nodes) position.push_back(rotation * x);
@@ -32,12 +41,23 @@ struct ElasticBody {
         load.assign(n, Vec3::Zero());
         force.assign(n, Vec3::Zero());
         mass.assign(n, 0);
-        constants.push_back(material);
+        std::vector<MaterialZone> zones;
+        for (std::size_t m = 0; m < materials.size(); ++m) {
+            constants.push_back(materials[m]);
+            zones.push_back({static_cast<Index>(m), kind, {}});
+        }
+        std::vector<Real> density;
+        for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+            zones[static_cast<std::size_t>(material_of[t])].tetrahedra.push_back(static_cast<Index>(t));
+            density.push_back(materials[static_cast<std::size_t>(material_of[t])].density);
+        }
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
-        blocks = append_elements(elements_of({mesh.tetrahedra, mesh.nodes, rotation}, kind), {}, 0, 0, 0, elements,
-                                 element_nodes)
-                     .blocks;
-        add_lumped_mass(mesh.tetrahedra, mesh.nodes, material.density, mass);
+        list = elements_of({mesh.tetrahedra, mesh.nodes, rotation}, zones);
+        const AppendedElements appended = append_elements(list, {}, 0, 0, elements, element_nodes);
+        blocks = appended.blocks;
+        element_at = appended.element;
+        start_mass_shares(inputs(), blocks, elements.mass_share);
+        add_lumped_mass(mesh.tetrahedra, mesh.nodes, density, mass);
         for (Real m : mass) inverse_mass.push_back(1 / m);
         build_corners(elements, element_nodes, n, corners);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,9 @@ namespace skerry {
 struct Mesh {
     std::vector<Vec3> nodes;                       // m
     std::vector<std::array<Index, 4>> tetrahedra;  // rows of nodes
+    // A number of each tetrahedron, for example of its material: BodySettings::materials goes by it. Or empty: no
+    // labels
+    std::vector<int> label{};
 };
 
 /// A closed or open triangle surface, counter-clockwise seen from outside.
@@ -65,8 +69,14 @@ Mesh table(const TableShape& shape);
 /// Reads Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary) or TetGen .node/.ele (either
 /// name). Linear tetrahedra are taken, other element kinds are passed over, curved tetrahedra refused; nodes no
 /// tetrahedron uses are dropped. If no tetrahedron is positive the file counts the other way round and all are turned
-/// over; if some are, the mesh is as in the file and `inspect` says what is wrong with it. Throws SceneError that names
-/// the file, the place and what was found and expected.
+/// over; if some are, the mesh is as in the file and `inspect` says what is wrong with it.
+///
+/// Labels are, of Gmsh: the number of the physical group (the first, if a volume is in several), 0 outside of all; of
+/// the elementary volume where no tetrahedron is in a group. Of VTK: the first array of cell data that is called
+/// region, gmsh:physical, medit:ref or CellEntityIds and has one whole number a cell. Of TetGen: the last attribute of
+/// the .ele, where all are whole numbers. Without any of these the mesh has no labels.
+///
+/// Throws SceneError that names the file, the place and what was found and expected.
 Mesh read(const std::string& path);
 
 /// Reads the triangles of a file of the same kinds, or of a Wavefront .obj or an STL; of a tetrahedral file its
@@ -94,6 +104,7 @@ struct MeshReport {
     Real min_quality = 0, mean_quality = 0;
     std::size_t inverted = 0, flat = 0;  // tetrahedra of negative, of no volume
     bool closed_manifold = false;        // every boundary edge has two triangles
+    std::map<int, std::size_t> labels;   // tetrahedra with each label; none without labels
 };
 MeshReport inspect(const Mesh& mesh);
 

@@ -2,6 +2,7 @@
 // initialiser, so that naming some of them warns about none.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -36,7 +37,11 @@ struct MaterialSettings {
 
 /// Where a body is put. The rotation is applied first.
 struct BodySettings {
+    // Of all that `materials` does not name. Friction, restitution and damping of the whole body are those of this one,
+    // whichever material its surface has.
     MaterialHandle material{};
+    // By the label of tetrahedra (Mesh::label), each of which the mesh must have: their elasticity, density, losses
+    std::map<int, MaterialHandle> materials{};
     Vec3 position = Vec3::Zero();            // m
     Vec3 rotation = Vec3::Zero();            // rad, axis times angle
     Vec3 velocity = Vec3::Zero();            // m/s

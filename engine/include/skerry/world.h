@@ -63,7 +63,8 @@ public:
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // boundary triangles, local nodes
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // local nodes
     /// Cauchy stress, Pa, without what relaxes (losses), and Green's strain. A tetrahedron has the mean of the elements
-    /// that cover it, a node the mean of its tetrahedra by volume (docs/methods/elasticity.md 7.5).
+    /// that cover it, a node the mean of its tetrahedra by volume (docs/methods/elasticity.md 7.5), whatever their
+    /// materials: where two meet stress jumps, and the nodes between them have a mean of both sides.
     std::vector<Mat3> stress(BodyHandle body) const;            // by tetrahedron
     std::vector<Mat3> strain(BodyHandle body) const;            // by tetrahedron
     std::vector<Mat3> node_stress(BodyHandle body) const;       // by node
@@ -73,7 +74,8 @@ public:
     /// shortest is the body's stable step, the tetrahedra that have it are those to mend.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     const std::string& name(BodyHandle body) const;
-    ElementKind element(BodyHandle body) const;    // what it has; `smoothed` is told as what it stands for
+    /// What it has. `smoothed` is told as what it stands for: where that differs by material, as edge_node_smoothed.
+    ElementKind element(BodyHandle body) const;
     Real mass(BodyHandle body) const;              // kg
     Vec3 center_of_mass(BodyHandle body) const;    // m
     Real contact_distance(BodyHandle body) const;  // m

@@ -1,5 +1,8 @@
 #include "engine/mesh/formats/raw_mesh.h"
 
+#include <cmath>
+#include <limits>
+
 namespace skerry::mesh {
 
 void NodeNumbers::add(std::int64_t number, const FileReader& reader) {
@@ -11,6 +14,12 @@ Index NodeNumbers::row(std::int64_t number, const FileReader& reader) const {
     const auto place = row_.find(number);
     if (place == row_.end()) reader.complain("node", std::to_string(number), "the number of a node of the file");
     return place->second;
+}
+
+std::optional<int> as_label(Real number) {
+    constexpr Real largest = std::numeric_limits<int>::max();
+    if (!(std::abs(number) <= largest) || number != std::floor(number)) return {};
+    return static_cast<int>(number);
 }
 
 }  // namespace skerry::mesh

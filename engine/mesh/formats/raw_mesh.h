@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace skerry::mesh {
 struct RawMesh {
     std::vector<Vec3> nodes;
     std::vector<std::array<Index, 4>> tetrahedra;
+    std::vector<int> label;  // by tetrahedron, or empty
     std::vector<std::array<Index, 3>> triangles;
     std::size_t curved_triangles = 0;  // of second or higher order
     std::size_t others = 0;            // elements of kinds that are passed over
@@ -33,6 +35,9 @@ public:
 private:
     std::unordered_map<std::int64_t, Index> row_;
 };
+
+/// A number as a label: whole, and of 32 bits; else nothing.
+std::optional<int> as_label(Real number);
 
 /// Complains when an element names a node twice.
 template <std::size_t N>

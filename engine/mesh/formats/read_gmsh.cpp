@@ -1,5 +1,7 @@
 #include "engine/mesh/formats/read_gmsh.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace skerry::mesh {
@@ -32,8 +34,8 @@ std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
     return count;
 }
 
-void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const NodeNumbers& numbers,
-                       const FileReader& reader, RawMesh& mesh) {
+void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
+                       const NodeNumbers& numbers, const FileReader& reader, GmshMesh& mesh) {
     std::array<Index, 4> rows{};
     for (std::size_t a = 0; a < node_numbers.size(); ++a) {
         const Index row = numbers.row(node_numbers[a], reader);
@@ -42,6 +44,7 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
     if (type == tetrahedron_type) {
         require_different(rows, reader);
         mesh.tetrahedra.push_back(rows);
+        mesh.tags.push_back(tags);
     } else if (type == triangle_type) {
         const std::array<Index, 3> nodes{rows[0], rows[1], rows[2]};
         require_different(nodes, reader);
@@ -104,10 +107,25 @@ void require_end(FileReader& reader, const std::string& mark) {
         reader.complain({}, in_quotes(end), mark, "more rows than the section announces?");
 }
 
+/// Physical groups are what users number. Who made none has the volumes of the geometry.
+void label(GmshMesh& mesh) {
+    const bool grouped = std::ranges::any_of(mesh.tags, [](const GmshTags& tags) { return tags.physical != 0; });
+    std::vector<int> labels;
+    for (const GmshTags& tags : mesh.tags) {
+        // the sign of a group is that of an orientation
+        const Real tag = static_cast<Real>(grouped ? tags.physical : tags.elementary);
+        const std::optional<int> number = as_label(grouped ? std::abs(tag) : tag);
+        if (!number) return;
+        labels.push_back(*number);
+    }
+    mesh.label = std::move(labels);
+}
+
 }  // namespace
 
 RawMesh read_gmsh(FileReader& reader) {
-    RawMesh mesh;
+    GmshMesh mesh;
+    GmshVolumes volumes;
     NodeNumbers numbers;
     Header header;
     bool has_nodes = false, has_elements = false;
@@ -138,12 +156,15 @@ RawMesh read_gmsh(FileReader& reader) {
             if (!has_nodes) reader.complain({}, "elements before nodes", "the nodes first");
             if (std::exchange(has_elements, true)) reader.complain({}, "a second section of elements", "one");
             if (header.version == 4)
-                read_gmsh4_elements(reader, header.binary, numbers, mesh);
+                read_gmsh4_elements(reader, header.binary, numbers, volumes, mesh);
             else if (header.version == 2)
                 read_gmsh2_elements(reader, header.binary, numbers, mesh);
             else
                 read_gmsh1_elements(reader, numbers, mesh);
             require_end(reader, version_1 ? "$ENDELM" : "$EndElements");
+        } else if (header.version == 4 && section == "$Entities") {
+            volumes = read_gmsh4_entities(reader, header.binary);
+            require_end(reader, "$EndEntities");
         } else {
             const std::string end = (version_1 ? "$END" : "$End") + section.substr(1);
             if (!reader.skip_behind(end)) reader.complain({}, "no " + end, "the end of each section");
@@ -153,6 +174,7 @@ RawMesh read_gmsh(FileReader& reader) {
     if (!has_nodes) reader.complain({}, "no nodes", header.version == 1 ? "a section $NOD" : "a section $Nodes");
     if (!has_elements)
         reader.complain({}, "no elements", header.version == 1 ? "a section $ELM" : "a section $Elements");
+    label(mesh);
     return mesh;
 }
 

@@ -26,7 +26,7 @@ void require_words(const FileReader& reader, std::size_t found, std::size_t expe
 
 }  // namespace
 
-void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, RawMesh& mesh) {
+void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, GmshMesh& mesh) {
     const std::int64_t announced = integer_line(reader, 1, "count", "the number of nodes")[0];
     const std::size_t count = reader.checked_count(announced, binary ? binary_node : shortest_row, "count");
     numbers.reserve(count);
@@ -50,7 +50,7 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Raw
     reader.set_section("$Nodes");
 }
 
-void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
+void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMesh& mesh) {
     const std::size_t count = reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0],
                                                    2 * shortest_row - 4, "count");
     for (std::size_t i = 0; i < count; ++i) {
@@ -66,14 +66,16 @@ void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, RawMesh
             reader.complain("node count", std::to_string(given),
                             std::to_string(nodes) + " for type " + std::to_string(type));
         require_words(reader, words.size(), 5 + nodes, "number type physical elementary node-count nodes");
-        take_gmsh_element(type, parse_nodes(reader, words, 5), numbers, reader, mesh);
+        const GmshTags tags{reader.parse_integer(words[2], "physical group"),
+                            reader.parse_integer(words[3], "elementary entity")};
+        take_gmsh_element(type, parse_nodes(reader, words, 5), tags, numbers, reader, mesh);
     }
     reader.set_section("$ELM");
 }
 
 namespace {
 
-void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
+void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh& mesh) {
     const std::vector<std::string_view>& words = row_words(reader, "number type tag-count tags nodes");
     if (words.size() < 4) require_words(reader, words.size(), 4, "at least number, type, tag-count and a node");
     const std::int64_t type = reader.parse_integer(words[1], "type");
@@ -82,12 +84,15 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, RawMesh&
     if (tags < 0 || tags > static_cast<std::int64_t>(words.size()))
         reader.complain("tag count", std::to_string(tags), "as many tags as the line has");
     require_words(reader, words.size(), 3 + static_cast<std::size_t>(tags) + nodes, "number type tag-count tags nodes");
-    take_gmsh_element(type, parse_nodes(reader, words, 3 + static_cast<std::size_t>(tags)), numbers, reader, mesh);
+    GmshTags own;
+    if (tags > 0) own.physical = reader.parse_integer(words[3], "physical group");
+    if (tags > 1) own.elementary = reader.parse_integer(words[4], "elementary entity");
+    take_gmsh_element(type, parse_nodes(reader, words, 3 + static_cast<std::size_t>(tags)), own, numbers, reader, mesh);
 }
 
 /// Elements of one type with equally many tags behind one header. Returns how many.
 std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers,
-                              RawMesh& mesh) {
+                              GmshMesh& mesh) {
     const auto type = reader.binary<std::int32_t>("type");
     const std::size_t nodes = gmsh_node_count(type, reader);
     const auto announced = reader.binary<std::int32_t>("elements of a block");
@@ -100,16 +105,22 @@ std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t 
     std::vector<std::int64_t> node_numbers(nodes);
     for (std::size_t i = 0; i < rows; ++i) {
         reader.set_row("element", done + i + 1, count);
-        reader.skip_bytes(4 * (1 + tag_count), "number and tags");
+        reader.skip_bytes(4, "number");
+        GmshTags own;
+        for (std::size_t i_tag = 0; i_tag < tag_count; ++i_tag) {
+            const auto tag = reader.binary<std::int32_t>("tag");
+            if (i_tag == 0) own.physical = tag;
+            if (i_tag == 1) own.elementary = tag;
+        }
         for (std::int64_t& number : node_numbers) number = reader.binary<std::int32_t>("node");
-        take_gmsh_element(type, node_numbers, numbers, reader, mesh);
+        take_gmsh_element(type, node_numbers, own, numbers, reader, mesh);
     }
     return rows;
 }
 
 }  // namespace
 
-void read_gmsh2_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, RawMesh& mesh) {
+void read_gmsh2_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, GmshMesh& mesh) {
     const std::size_t count =
         reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0], 8, "count");
     for (std::size_t done = 0; done < count;) {

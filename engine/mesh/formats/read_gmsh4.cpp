@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "engine/mesh/formats/read_gmsh.h"
@@ -46,6 +47,20 @@ std::string_view row_word(FileReader& reader, const char* expected) {
     return text;
 }
 
+/// The tag of an entity, or of a group.
+std::int64_t read_tag(FileReader& reader, bool binary) {
+    return binary ? reader.binary<std::int32_t>("tag") : reader.parse_integer(row_word(reader, "a tag"), "tag");
+}
+
+/// A count and as many tags.
+std::vector<std::int64_t> read_tags(FileReader& reader, bool binary) {
+    const std::int64_t announced = binary ? static_cast<std::int64_t>(reader.binary<std::uint64_t>("count of tags"))
+                                          : reader.parse_integer(row_word(reader, "a count of tags"), "count of tags");
+    std::vector<std::int64_t> tags(reader.checked_count(announced, binary ? 4 : 2, "count of tags"));
+    for (std::int64_t& tag : tags) tag = read_tag(reader, binary);
+    return tags;
+}
+
 void require_total(const FileReader& reader, std::size_t found, std::int64_t announced) {
     if (found != static_cast<std::size_t>(announced))
         reader.complain("count of rows", std::to_string(announced) + " in the header", std::to_string(found),
@@ -54,7 +69,7 @@ void require_total(const FileReader& reader, std::size_t found, std::int64_t ann
 
 /// Numbers, then positions of the nodes of a block.
 void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::size_t parameters, std::size_t total,
-                     NodeNumbers& numbers, std::array<std::int64_t, 2>& range, RawMesh& mesh) {
+                     NodeNumbers& numbers, std::array<std::int64_t, 2>& range, GmshMesh& mesh) {
     const std::size_t first = mesh.nodes.size();
     for (std::size_t i = 0; i < rows; ++i) {
         reader.set_row("number of node", first + i + 1, total);
@@ -77,7 +92,7 @@ void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::siz
 
 }  // namespace
 
-void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, RawMesh& mesh) {
+void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, GmshMesh& mesh) {
     const std::size_t row_bytes = binary ? 32 : 8;
     const Numbers4 header = read_section_header(reader, binary, row_bytes);
     std::array<std::int64_t, 2> range{std::numeric_limits<std::int64_t>::max(),
@@ -97,7 +112,30 @@ void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Raw
                         std::to_string(range[0]) + " to " + std::to_string(range[1]), "the numbers its blocks list");
 }
 
-void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, RawMesh& mesh) {
+GmshVolumes read_gmsh4_entities(FileReader& reader, bool binary) {
+    const Numbers4 count = read_four(reader, binary, {8, 8, 8, 8}, "header",
+                                     "4 integers: count of points, of curves, of surfaces and of volumes");
+    constexpr std::array<const char*, 4> kind{"point", "curve", "surface", "volume"};
+    GmshVolumes volumes;
+    for (std::size_t dimension = 0; dimension < 4; ++dimension) {
+        const std::size_t rows = reader.checked_count(count[dimension], binary ? 36 : 8, "count of entities");
+        for (std::size_t i = 0; i < rows; ++i) {
+            reader.set_row(kind[dimension], i + 1, rows);
+            const std::int64_t tag = read_tag(reader, binary);
+            // where a point is, or the box around anything else
+            for (int a = 0; a < (dimension == 0 ? 3 : 6); ++a)
+                binary ? void(reader.binary<double>("position")) : void(row_word(reader, "a coordinate"));
+            const std::vector<std::int64_t> groups = read_tags(reader, binary);
+            if (dimension > 0) read_tags(reader, binary);  // its boundary
+            if (dimension == 3 && !groups.empty()) volumes[tag] = groups.front();
+        }
+    }
+    reader.set_section("$Entities");
+    return volumes;
+}
+
+void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& numbers, const GmshVolumes& volumes,
+                         GmshMesh& mesh) {
     const Numbers4 header = read_section_header(reader, binary, binary ? 16 : 4);
     std::size_t total = 0;
     for (std::int64_t b = 0; b < header[0]; ++b) {
@@ -107,6 +145,8 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
         const std::size_t nodes = gmsh_node_count(block[2], reader);
         const std::size_t rows =
             reader.checked_count(block[3], (nodes + 1) * (binary ? 8 : 2), "elements of the block");
+        const auto volume = block[0] == 3 ? volumes.find(block[1]) : volumes.end();
+        const GmshTags tags{volume == volumes.end() ? 0 : volume->second, block[1]};
         std::vector<std::int64_t> node_numbers(nodes);
         for (std::size_t i = 0; i < rows; ++i) {
             reader.set_row("element", ++total, static_cast<std::size_t>(header[1]));
@@ -124,7 +164,7 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
                     reader.complain({}, in_quotes(text), std::to_string(nodes + 1) + " integers: number and nodes");
                 for (std::size_t a = 0; a < nodes; ++a) node_numbers[a] = reader.parse_integer(words[a + 1], "node");
             }
-            take_gmsh_element(block[2], node_numbers, numbers, reader, mesh);
+            take_gmsh_element(block[2], node_numbers, tags, numbers, reader, mesh);
         }
     }
     reader.set_section("$Elements");

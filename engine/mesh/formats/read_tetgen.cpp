@@ -80,6 +80,7 @@ void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& me
     if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
     reader.set_section("tetrahedra");
     mesh.tetrahedra.reserve(count);
+    bool labelled = attributes > 0;
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("tetrahedron", i + 1, count);
         const std::vector<std::string_view>& words = row_words(reader, "number and four nodes");
@@ -89,7 +90,14 @@ void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& me
         for (std::size_t a = 0; a < 4; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
         require_different(nodes, reader);
         mesh.tetrahedra.push_back(nodes);
+        // with -A TetGen puts the number of the region behind all other attributes
+        labelled = labelled && words.size() == 5 + static_cast<std::size_t>(attributes);
+        if (!labelled) continue;
+        const std::optional<int> number = as_label(reader.parse_real(words.back(), "attribute"));
+        labelled = number.has_value();
+        mesh.label.push_back(number.value_or(0));
     }
+    if (!labelled) mesh.label.clear();
     require_end(reader, "tetrahedra");
 }
 

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -52,10 +54,10 @@ private:
             reader_.complain("DATASET", in_quotes(dataset_), "UNSTRUCTURED_GRID or POLYDATA");
     }
 
-    /// One section behind its name. False when the data of points and cells begin: nothing of the mesh follows them.
+    /// One section behind its name. False when nothing of the mesh follows.
     bool read_section(const std::string& name) {
         reader_.set_section(name);
-        if (name == "POINT_DATA" || name == "CELL_DATA") return false;
+        if (name == "POINT_DATA" || name == "CELL_DATA") return read_data(name == "CELL_DATA");
         if (name == "POINTS")
             read_points();
         else if (name == "CELLS" && dataset_ == "UNSTRUCTURED_GRID")
@@ -88,7 +90,13 @@ private:
     }
 
     NumberType read_type(const char* field) {
-        std::string name(reader_.word(field));
+        const std::string name(reader_.word(field));
+        const std::optional<NumberType> type = type_of(name);
+        if (!type) reader_.complain(field, in_quotes(name), "a number type of VTK, for example float or double");
+        return *type;
+    }
+
+    static std::optional<NumberType> type_of(std::string name) {
         std::transform(name.begin(), name.end(), name.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         struct Name {
@@ -109,8 +117,7 @@ private:
                                                      {"unsigned_short", {Kind::uint16, 2}},
                                                      {"vtktypeint32", {Kind::int32, 4}}}};
         const auto found = std::find_if(names.begin(), names.end(), [&](const Name& n) { return name == n.name; });
-        if (found == names.end())
-            reader_.complain(field, in_quotes(name), "a number type of VTK, for example float or double");
+        if (found == names.end()) return {};
         return found->type;
     }
 
@@ -287,6 +294,7 @@ private:
                                              cell_nodes_[begin + 3]};
                 require_different(t, reader_);
                 mesh_.tetrahedra.push_back(t);
+                if (!cell_label_.empty()) mesh_.label.push_back(cell_label_[c]);
             } else if (type == 5) {
                 if (nodes != 3) reader_.complain("node count", std::to_string(nodes), "3 for a triangle");
                 take_polygon(begin, begin + 3);
@@ -295,6 +303,117 @@ private:
                 mesh_.others += 1;
             }
         }
+    }
+
+    /// Data of points or of cells, array by array, of which only labels are kept. False at the end, and at what is not
+    /// known: a mesh can do without.
+    bool read_data(bool of_cells) {
+        if (dataset_ == "POLYDATA") return false;
+        const std::size_t rows = of_cells ? types_.size() : mesh_.nodes.size();
+        if (const std::int64_t count = reader_.parse_integer(reader_.word("count"), "count");
+            count != static_cast<std::int64_t>(rows))
+            reader_.complain("count", std::to_string(count),
+                             std::to_string(rows) + (of_cells ? ", the cells" : ", the points"));
+        while (!reader_.at_end()) {
+            const std::string_view next = reader_.peek_word();
+            if (next == "POINT_DATA" || next == "CELL_DATA") return true;
+            if (!read_attribute(std::string(reader_.word("an array")), rows, of_cells)) return false;
+        }
+        return false;
+    }
+
+    /// One array, or a field of several, behind its keyword. False when it is not known.
+    bool read_attribute(const std::string& keyword, std::size_t rows, bool of_cells) {
+        reader_.set_section(keyword);
+        if (keyword == "METADATA") {
+            skip_metadata();
+            return true;
+        }
+        const std::string name(reader_.word("the name of the array"));
+        if (keyword == "FIELD") return read_field_data(rows, of_cells);
+        if (keyword == "COLOR_SCALARS" || keyword == "LOOKUP_TABLE") {
+            const std::size_t count = read_count("count", 1);
+            // bytes in binary files, fractions in text
+            return skip_array(keyword == "LOOKUP_TABLE" ? count : rows, keyword == "LOOKUP_TABLE" ? 4 : count,
+                              {Kind::uint8, 1});
+        }
+        const std::size_t coordinates = keyword == "TEXTURE_COORDINATES" ? read_count("dimension", 1) : 0;
+        const std::optional<NumberType> type = type_of(std::string(reader_.word("type")));
+        if (!type) return false;
+        if (keyword == "SCALARS") return read_scalars(name, rows, of_cells, *type);
+        if (keyword == "TEXTURE_COORDINATES") return skip_array(rows, coordinates, *type);
+        if (keyword == "VECTORS" || keyword == "NORMALS") return skip_array(rows, 3, *type);
+        if (keyword == "TENSORS") return skip_array(rows, 9, *type);
+        if (keyword == "TENSORS6") return skip_array(rows, 6, *type);
+        if (keyword == "GLOBAL_IDS" || keyword == "PEDIGREE_IDS" || keyword == "EDGE_FLAGS")
+            return skip_array(rows, 1, *type);
+        return false;
+    }
+
+    /// Behind "SCALARS name type": how many a row, and which table of colours, may be left out.
+    bool read_scalars(const std::string& name, std::size_t rows, bool of_cells, const NumberType& type) {
+        std::size_t components = 1;
+        if (const std::string_view rest = reader_.line(); !rest.empty())
+            components = reader_.checked_count(reader_.parse_integer(rest, "components"), 1, "components");
+        if (reader_.peek_word() == "LOOKUP_TABLE") {
+            reader_.word("LOOKUP_TABLE");
+            reader_.word("the name of the table");
+            begin_rows();
+        }
+        return read_array(name, rows, components, of_cells, type);
+    }
+
+    bool read_field_data(std::size_t data_rows, bool of_cells) {
+        const std::size_t arrays = read_count("arrays", 4);
+        for (std::size_t i = 0; i < arrays; ++i) {
+            reader_.set_row("array", i + 1, arrays);
+            const std::string name(reader_.word("the name of the array"));
+            if (name == "METADATA") {  // of the array before
+                skip_metadata();
+                --i;
+                continue;
+            }
+            const std::size_t components = read_count("components", 1), rows = read_count("rows", 1);
+            const std::optional<NumberType> type = type_of(std::string(reader_.word("type")));
+            if (!type) return false;
+            begin_rows();
+            read_array(name, rows, components, of_cells && rows == data_rows, *type);
+        }
+        return true;
+    }
+
+    /// Keeps the array if it is the first with labels.
+    bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
+                    const NumberType& type) {
+        constexpr std::array<std::string_view, 4> known{"region", "gmsh:physical", "medit:ref", "CellEntityIds"};
+        const bool wanted = of_cells && components == 1 && cell_label_.empty() &&
+                            std::find(known.begin(), known.end(), name) != known.end();
+        if (!wanted) return skip_rows(rows, components, type);
+        std::vector<int> labels;
+        bool whole = true;
+        for (std::size_t i = 0; i < rows; ++i) {
+            reader_.set_row("cell", i + 1, rows);
+            const std::optional<int> label = as_label(read_real(type, "label"));
+            whole = whole && label;
+            labels.push_back(label.value_or(0));
+        }
+        if (whole) cell_label_ = std::move(labels);
+        return true;
+    }
+
+    bool skip_array(std::size_t rows, std::size_t components, const NumberType& type) {
+        begin_rows();
+        return skip_rows(rows, components, type);
+    }
+
+    bool skip_rows(std::size_t rows, std::size_t components, const NumberType& type) {
+        const std::size_t numbers =
+            reader_.checked_count(static_cast<std::int64_t>(components * rows), binary_ ? type.size : 2, "numbers");
+        if (binary_)
+            reader_.skip_bytes(numbers * type.size, "numbers");
+        else
+            for (std::size_t n = 0; n < numbers; ++n) reader_.word("a number");
+        return true;
     }
 
     /// "FIELD name arrays", then arrays "name components rows type" and their numbers.
@@ -306,13 +425,7 @@ private:
             reader_.word("the name of the array");
             const std::size_t components = read_count("components", 1), rows = read_count("rows", 1);
             const NumberType type = read_type("type");
-            begin_rows();
-            const std::size_t numbers =
-                reader_.checked_count(static_cast<std::int64_t>(components * rows), binary_ ? type.size : 2, "numbers");
-            if (binary_)
-                reader_.skip_bytes(numbers * type.size, "numbers");
-            else
-                for (std::size_t n = 0; n < numbers; ++n) reader_.word("a number");
+            skip_array(rows, components, type);
         }
     }
 
@@ -322,6 +435,7 @@ private:
     std::vector<std::size_t> offsets_{0};
     std::vector<Index> cell_nodes_;
     std::vector<std::int64_t> types_;
+    std::vector<int> cell_label_;  // by cell, or empty
     RawMesh mesh_;
 };
 

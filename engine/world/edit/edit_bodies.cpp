@@ -43,12 +43,43 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
+/// Row of the material of a tetrahedron.
+Index material_of(const NewBody& body, std::size_t tetrahedron) {
+    return body.tetrahedron_material.empty() ? body.material : body.tetrahedron_material[tetrahedron];
+}
+
+/// In the order in which the mesh comes to their materials.
+std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
+    std::vector<MaterialZone> zones;
+    for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+        const Index material = material_of(body, t);
+        auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
+        if (zone == zones.end()) {
+            const Real poisson_ratio = model.materials.poisson_ratio[static_cast<std::size_t>(material)];
+            zone = zones.insert(zones.end(),
+                                {material, resolved(body.element, poisson_ratio, model.settings.multirate), {}});
+        }
+        zone->tetrahedra.push_back(static_cast<Index>(t));
+    }
+    return zones;
+}
+
+/// What all zones have, or, where `smoothed` stands for both, the one with nodes.
+ElementKind kind_of(const NewBody& body, std::span<const MaterialZone> zones) {
+    ElementKind kind = zones.empty() ? body.element : zones.front().kind;
+    for (const MaterialZone& zone : zones)
+        if (zone.kind == ElementKind::edge_node_smoothed) kind = zone.kind;
+    return kind;
+}
+
 /// Masses of the nodes, and the initial rigid motion about the centre of mass.
 void set_masses_and_motion(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     if (body.kind == BodyKind::kinematic) return;  // no mass: inverse mass 0
     const auto first = static_cast<std::size_t>(range.begin), count = static_cast<std::size_t>(range.size());
-    const Real density = model.materials.constants[static_cast<std::size_t>(body.material)].density;
+    std::vector<Real> density(body.tetrahedra.size());
+    for (std::size_t t = 0; t < density.size(); ++t)
+        density[t] = model.materials.constants[static_cast<std::size_t>(material_of(body, t))].density;
     add_lumped_mass(body.tetrahedra, body.nodes, density, nodes.mass.span().subspan(first, count));
     Vec3 center = Vec3::Zero();
     Real mass = 0;
@@ -107,8 +138,17 @@ auto rows_of(auto& column, Range rows) {
     return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
 }
 
+/// Appends the elements of a body; `level` of each, or none: all 0.
+AppendedElements append_elements_of(Model& model, const ElementList& list, std::span<const std::uint8_t> level,
+                                    const BodyRows& rows) {
+    AppendedElements appended =
+        append_elements(list, level, rows.nodes.begin, rows.row, model.elements, model.element_nodes);
+    start_mass_shares(model.all_elements(), appended.blocks, rows_of(model.elements.mass_share, appended.blocks));
+    return appended;
+}
+
 /// Elements by level, so that blocks have one level.
-void sort_by_level(Model& model, const NewBody& body, const ElementList& list, BodyRows& rows) {
+void sort_by_level(Model& model, const ElementList& list, BodyRows& rows) {
     Column<Real> stiffness_sum;
     stiffness_sum.resize(model.nodes.position.size());
     const Range blocks = rows.elements.blocks;
@@ -123,8 +163,7 @@ void sort_by_level(Model& model, const NewBody& body, const ElementList& list, B
 
     erase_rows(model.element_nodes, rows.elements.nodes);
     erase_rows(model.elements, blocks);
-    rows.elements =
-        append_elements(list, level, rows.nodes.begin, rows.row, body.material, model.elements, model.element_nodes);
+    rows.elements = append_elements_of(model, list, level, rows);
     find_viscous_times(rows_of(model.elements.level, rows.elements.blocks), step,
                        rows_of(model.elements.viscous_time, rows.elements.blocks));
 }
@@ -144,11 +183,29 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
     return covered;
 }
 
-/// How the elements of a new body relax, whose stable step would be `step` (s) if they did not.
-void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real step) {
+/// m/s, of waves along a thin bar, sqrt(E / rho). Of several materials with their mean density and a modulus halfway,
+/// by factors, between the bounds of all mixtures: one beside the other (Voigt) and one behind the other (Reuss).
+Real bar_speed(const Model& model, const NewBody& body, std::span<const MaterialZone> zones) {
+    Real volume = 0, mass = 0, stiffness = 0, compliance = 0;
+    for (const MaterialZone& zone : zones) {
+        const auto row = static_cast<std::size_t>(zone.material);
+        const Real modulus = model.materials.young_modulus[row], density = model.materials.constants[row].density;
+        if (zones.size() == 1) return std::sqrt(modulus / density);
+        Real of_zone = 0;
+        for (const Index t : zone.tetrahedra)
+            of_zone += six_volumes(body.tetrahedra[static_cast<std::size_t>(t)], body.nodes) / 6;
+        volume += of_zone;
+        mass += of_zone * density;
+        stiffness += of_zone * modulus;
+        compliance += of_zone / modulus;
+    }
+    return std::sqrt(std::sqrt(stiffness / compliance) * volume / mass);
+}
+
+/// How the elements of a new body relax, whose stable step would be `step` (s) if they did not. `speed`: bar_speed.
+void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real speed,
+                    Real step) {
     ElementBlockTable& elements = model.elements;
-    const auto material = static_cast<std::size_t>(elements.material[static_cast<std::size_t>(blocks.begin)]);
-    const Real speed = std::sqrt(model.materials.young_modulus[material] / model.materials.constants[material].density);
     const Real lowest =
         lowest_frequency_estimate(rows_of(model.nodes.position, nodes), rows_of(model.nodes.mass, nodes), speed);
     find_relaxation(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.position, model.nodes.mass,
@@ -259,15 +316,10 @@ Index append_body(Model& model, const NewBody& body) {
     set_masses_and_motion(model, body, nodes);
     BodyRows rows{row, nodes, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
-    ElementList list;
-    ElementKind element = body.element;
-    if (!body.tetrahedra.empty()) {
-        element = resolved(element, model.materials.poisson_ratio[static_cast<std::size_t>(body.material)],
-                           model.settings.multirate);
-        list = elements_of({body.tetrahedra, body.nodes, body.rotation}, element);
-    }
-    rows.elements = append_elements(list, {}, nodes.begin, row, body.material, model.elements, model.element_nodes);
-    if (model.settings.multirate && !body.tetrahedra.empty()) sort_by_level(model, body, list, rows);
+    const std::vector<MaterialZone> zones = zones_of(model, body);
+    const ElementList list = elements_of({body.tetrahedra, body.nodes, body.rotation}, zones);
+    rows.elements = append_elements_of(model, list, {}, rows);
+    if (model.settings.multirate && !body.tetrahedra.empty()) sort_by_level(model, list, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;
@@ -285,7 +337,7 @@ Index append_body(Model& model, const NewBody& body) {
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(model.elements, blocks);
     model.body_records.push_back({.name = {},
-                                  .element = element,
+                                  .element = kind_of(body, zones),
                                   .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
                                   .surface = outline(body),
                                   .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
@@ -301,8 +353,11 @@ Index append_body(Model& model, const NewBody& body) {
     };
     bodies.rest_step[b] = bodies.stable_step[b] = step();
     if (body.tetrahedra.empty()) return row;
-    if (model.materials.constants[static_cast<std::size_t>(body.material)].relaxes())
-        set_relaxation(model, nodes, blocks, stiffness_sum, bodies.rest_step[b]);
+    const auto relaxes = [&](const MaterialZone& zone) {
+        return model.materials.constants[static_cast<std::size_t>(zone.material)].relaxes();
+    };
+    if (std::any_of(zones.begin(), zones.end(), relaxes))
+        set_relaxation(model, nodes, blocks, stiffness_sum, bar_speed(model, body, zones), bodies.rest_step[b]);
     // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
     const auto& levels = bodies.level_count[b];
     if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; }))

@@ -15,7 +15,8 @@ struct NewBody {
     BodyKind kind = BodyKind::deformable;
     bool self_contact = false;
     ElementKind element = ElementKind::linear;
-    Index material = no_index;
+    Index material = no_index;                         // of the surface and of what has no other
+    std::span<const Index> tetrahedron_material = {};  // by tetrahedron; empty: `material`
     Index collider = no_index;
     Real contact_distance = -1;  // m, < 0: 2 % of the mean edge
     std::span<const Vec3> nodes;

@@ -23,9 +23,12 @@ std::vector<Index> places_of(const ElementList& list, std::span<const std::uint8
     constexpr std::size_t window = 256;
     std::vector<Index> places;
     for (std::size_t first = 0; first < order.size();) {
-        const ElementPart part = list.part[static_cast<std::size_t>(order[first])];
+        const auto like_first = [&](Index e) {
+            const auto at = static_cast<std::size_t>(e), leader = static_cast<std::size_t>(order[first]);
+            return list.part[at] == list.part[leader] && list.material[at] == list.material[leader];
+        };
         std::size_t end = first;
-        while (end < order.size() && list.part[static_cast<std::size_t>(order[end])] == part) ++end;
+        while (end < order.size() && like_first(order[end])) ++end;
         for (std::size_t begin = first; begin < end; begin += window)
             std::stable_sort(
                 order.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -77,7 +80,7 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
 }
 
 AppendedElements append_elements(const ElementList& list, std::span<const std::uint8_t> level, Index first_node,
-                                 Index body, Index material, ElementBlockTable& blocks, ElementNodeTable& nodes) {
+                                 Index body, ElementBlockTable& blocks, ElementNodeTable& nodes) {
     SKERRY_CHECK(level.empty() || level.size() == list.size());
     const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
     AppendedElements appended{{}, {}, places_of(list, level)};
@@ -93,7 +96,7 @@ AppendedElements append_elements(const ElementList& list, std::span<const std::u
         blocks.first[block] = static_cast<Index>(row);
         blocks.count[block] = static_cast<Index>(count);
         blocks.body[block] = body;
-        blocks.material[block] = material;
+        blocks.material[block] = list.material[leader];
         blocks.part[block] = list.part[leader];
         blocks.level[block] = level.empty() ? std::uint8_t{0} : level[leader];
         for (Real& w : blocks.rotation[block][0].lane) w = 1;
@@ -120,10 +123,11 @@ AppendedElements append_elements(const ElementList& list, std::span<const std::u
 }
 
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
-                     Real density, std::span<Real> mass) {
-    for (const auto& tetrahedron : tetrahedra) {
-        const Real share = density * six_volumes(tetrahedron, rest_position) / 24;  // rho V / 4
-        for (const Index n : tetrahedron) mass[static_cast<std::size_t>(n)] += share;
+                     std::span<const Real> density, std::span<Real> mass) {
+    SKERRY_CHECK(density.size() == tetrahedra.size());
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+        const Real share = density[t] * six_volumes(tetrahedra[t], rest_position) / 24;  // rho V / 4
+        for (const Index n : tetrahedra[t]) mass[static_cast<std::size_t>(n)] += share;
     }
 }
 

@@ -25,16 +25,17 @@ struct AppendedElements {
     std::vector<Index> element;  // of the list, by place in the blocks; no_index in a lane that is left over
 };
 
-/// Appends the elements of a new body. They keep their order but for two things: a block has elements of one part, and
-/// among few hundred neighbours of a part those with as many nodes stand together, so that few rows are left over.
+/// Appends the elements of a new body. They keep their order but for two things: a block has elements of one part and
+/// one material, and among few hundred neighbours of these those with as many nodes stand together, so that few rows
+/// are left over.
 /// `level` of each element of the list, or none: all 0; elements are sorted by level, and a block has the lowest of its
 /// elements.
 AppendedElements append_elements(const ElementList& list, std::span<const std::uint8_t> level, Index first_node,
-                                 Index body, Index material, ElementBlockTable& blocks, ElementNodeTable& nodes);
+                                 Index body, ElementBlockTable& blocks, ElementNodeTable& nodes);
 
-/// Adds rho V / 4 of each tetrahedron to its nodes.
+/// Adds rho V / 4 of each tetrahedron to its nodes; `density` by tetrahedron, kg/m^3.
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
-                     Real density, std::span<Real> mass);
+                     std::span<const Real> density, std::span<Real> mass);
 
 /// For every node the places (element_lanes * row + lane) where elements have a force for it, in element order. What is
 /// left over is left out.

@@ -4,6 +4,27 @@
 
 namespace skerry {
 
+namespace {
+
+/// Appends elements whose tetrahedra are numbered as in `tetrahedra`.
+void append(const ElementList& from, std::span<const Index> tetrahedra, ElementList& to) {
+    const auto append_all = [](const auto& more, auto& column) {
+        column.insert(column.end(), more.begin(), more.end());
+    };
+    for (std::size_t e = 0; e < from.size(); ++e) {
+        to.first_node.push_back(to.node.size() + from.first_node[e + 1]);
+        to.first_tetrahedron.push_back(to.tetrahedron.size() + from.first_tetrahedron[e + 1]);
+    }
+    append_all(from.node, to.node);
+    append_all(from.gradient, to.gradient);
+    append_all(from.volume, to.volume);
+    append_all(from.part, to.part);
+    append_all(from.material, to.material);
+    for (const Index t : from.tetrahedron) to.tetrahedron.push_back(tetrahedra[static_cast<std::size_t>(t)]);
+}
+
+}  // namespace
+
 ElementKind resolved(ElementKind kind, Real poisson_ratio, bool multirate) {
     constexpr Real largest_edge_smoothed_ratio = 0.25;
     if (kind != ElementKind::smoothed) return kind;
@@ -11,7 +32,7 @@ ElementKind resolved(ElementKind kind, Real poisson_ratio, bool multirate) {
     return poisson_ratio > largest_edge_smoothed_ratio ? ElementKind::edge_node_smoothed : ElementKind::edge_smoothed;
 }
 
-ElementList elements_of(const RestMesh& mesh, ElementKind kind) {
+ElementList elements_of(const RestMesh& mesh, ElementKind kind, Index material) {
     SKERRY_CHECK(kind != ElementKind::smoothed);
     ElementList list;
     switch (kind) {
@@ -26,6 +47,19 @@ ElementList elements_of(const RestMesh& mesh, ElementKind kind) {
         case ElementKind::smoothed:
             add_edge_elements(mesh, ElementPart::whole, list);
             break;
+    }
+    list.material.assign(list.size(), material);
+    return list;
+}
+
+ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zones) {
+    ElementList list;
+    std::vector<std::array<Index, 4>> tetrahedra;
+    for (const MaterialZone& zone : zones) {
+        tetrahedra.clear();
+        for (const Index t : zone.tetrahedra) tetrahedra.push_back(mesh.tetrahedra[static_cast<std::size_t>(t)]);
+        append(elements_of({tetrahedra, mesh.position, mesh.rotation}, zone.kind, zone.material), zone.tetrahedra,
+               list);
     }
     return list;
 }

@@ -21,6 +21,7 @@ struct ElementList {
     std::vector<Index> tetrahedron;                 // those that the element covers
     std::vector<Real> volume;                       // m^3, at rest
     std::vector<ElementPart> part;
+    std::vector<Index> material;  // row of MaterialTable
 
     std::size_t size() const { return volume.size(); }
     std::size_t nodes_of(std::size_t e) const { return first_node[e + 1] - first_node[e]; }
@@ -46,8 +47,19 @@ struct RestMesh {
     Mat3 rotation = Mat3::Identity();
 };
 
-/// The elements of a kind; `smoothed` has been resolved to one of the two that it stands for.
-ElementList elements_of(const RestMesh& mesh, ElementKind kind);
+/// The elements of a kind, all of one material; `smoothed` has been resolved to one of the two that it stands for.
+ElementList elements_of(const RestMesh& mesh, ElementKind kind, Index material = 0);
+
+/// Tetrahedra of one material, and the kind of their elements.
+struct MaterialZone {
+    Index material;  // row of MaterialTable
+    ElementKind kind;
+    std::vector<Index> tetrahedra;  // ascending
+};
+
+/// The elements of each zone by itself, zone after zone: none covers tetrahedra of two, so that no strain is averaged
+/// across an interface, where it jumps (docs/methods/elasticity.md 7.6).
+ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zones);
 
 /// Which kind `smoothed` stands for: above a Poisson ratio of 0.25 the volumetric modulus lambda is more than the shear
 /// modulus, and elements by edges alone begin to lock (docs/methods/elasticity.md 7.3). With impulses at several rates

@@ -1,5 +1,7 @@
 #include "systems/dynamics/stability/stiffness_share.h"
 
+#include <algorithm>
+
 #include "systems/dynamics/stability/element_stiffness.h"
 #include "systems/material/relaxation.h"
 #include "systems/material/with_law.h"
@@ -46,6 +48,29 @@ Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const L
         if constexpr (law.stiffness_varies) weight = weight * law.stiffness_bound(material, F);
     });
     return weight;
+}
+
+void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share) {
+    const auto constants_of = [&](std::size_t b) -> const MaterialConstants& {
+        return elements.constants[static_cast<std::size_t>(elements.material[b])];
+    };
+    const auto stiffness = [](const MaterialConstants& m) { return m.lame_lambda + 2 * m.shear_modulus; };
+    const auto varies = [](const MaterialConstants& m) {
+        return with_law(m.model, [](auto law) { return law.stiffness_varies; });
+    };
+    const auto first = static_cast<std::size_t>(blocks.begin), end = static_cast<std::size_t>(blocks.end);
+    bool any_varies = false, several = false;
+    Real stiffest = 0;
+    for (std::size_t b = first; b < end; ++b) {
+        any_varies |= varies(constants_of(b));
+        several |= elements.material[b] != elements.material[first];
+        stiffest = std::max(stiffest, stiffness(constants_of(b)));
+    }
+    for (std::size_t b = first; b < end; ++b) {
+        const bool known = !several || varies(constants_of(b));
+        const Real share = known ? 1 : stiffness(constants_of(b)) / (any_varies ? 1 : stiffest);
+        for (Real& lane : mass_share[b - first].lane) lane = share;
+    }
 }
 
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "components/body_table.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/material/extract_rotation.h"
@@ -19,6 +20,10 @@ LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block,
 /// What an element weighs when the mass of its nodes is shared: its mass_share times V, times the bound of the
 /// material's Hessian where deformation changes it much. Node k counts with |g_k|^2 times this.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
+
+/// What mass_share starts with. Where a body has several materials, an element whose law leaves its stiffness out of
+/// its weight has it here, over the greatest of the body, or in Pa beside laws that have it in their weight; else 1.
+void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
 /// stiffness_sum[node] += the stiffness with which each element of the block holds it; of lanes where `counts` says so.
 template <class Counts>

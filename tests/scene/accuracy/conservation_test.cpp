@@ -108,6 +108,56 @@ TEST_CASE("a free spinning body keeps its angular momentum in every step", "[sce
         }
 }
 
+TEST_CASE("a free spinning bar of smoothed elements keeps energy and angular momentum for 10,000 steps",
+          "[scene][accuracy]") {
+    for (const auto model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
+        Settings settings;
+        settings.gravity = Vec3::Zero();
+        settings.integrator = Integrator::leapfrog;
+        World world(settings);
+        const auto material =
+            world.add_material(test::lossless({.young_modulus = 1e6, .poisson_ratio = 0.3, .model = model}));
+        world.add_body(mesh::box({1, 0.1, 0.1}, {20, 2, 2}), {.material = material, .angular_velocity = {0.5, 3, 1}});
+        const Real h = 0.8 * world.stable_step();
+        const WorldReport start = world.report();
+        const auto energy = [&] {
+            const Energy now = world.energy();
+            return now.kinetic + now.elastic;
+        };
+        Real worst = 0;
+        std::array<Real, 2> mean{};  // over the first and the last tenth
+        const Real before = energy();
+        constexpr int steps = 10000;
+        for (int step = 0; step < steps; ++step) {
+            REQUIRE(world.advance(h).steps == 1);
+            const Real error = energy() / before - 1;
+            worst = std::max(worst, std::abs(error));
+            if (step < steps / 10) mean[0] += error / (steps / 10);
+            if (step >= steps - steps / 10) mean[1] += error / (steps / 10);
+        }
+        const std::string bar = "free spinning bar, 10,000 leapfrog steps, " + std::string(name_of(model));
+        accuracy::check({.item = 40,
+                         .name = bar + ", largest change of energy, relative",
+                         .formula = "0",
+                         .found = worst,
+                         .tolerance = 2e-6,
+                         .kind = Tolerance::absolute});
+        accuracy::check({.item = 40,
+                         .name = bar + ", mean energy of the last tenth less that of the first, relative",
+                         .formula = "0",
+                         .found = mean[1] - mean[0],
+                         .tolerance = 1e-7,
+                         .kind = Tolerance::absolute});
+        accuracy::check(
+            {.item = 40,
+             .name = bar + ", change of angular momentum, relative",
+             .formula = "0",
+             .found = (world.report().angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm(),
+             .tolerance = 1e-13,
+             .kind = Tolerance::absolute});
+    }
+}
+
 TEST_CASE("friction across a gap turns a pair of bodies by the known torque and no more", "[scene][accuracy]") {
     TwoBalls scene(in_short_steps(Vec3::Zero()));
     const Real scale = scene.angular_momentum().norm();

@@ -35,14 +35,14 @@ TEST_CASE("volumes and masses add up to those of the box", "[unit]") {
 
 TEST_CASE("lanes that are left over have no volume, no gradient and a node of the body", "[unit]") {
     const test::TetMesh mesh = jittered_box({1, 1, 1}, 0.1, 0, 1);  // six tetrahedra
-    const ElementList list = elements_of({mesh.tetrahedra, mesh.nodes}, ElementKind::linear);
+    const ElementList list = elements_of({mesh.tetrahedra, mesh.nodes}, ElementKind::linear, 2);
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
     ElementNodeTable nodes;
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra) == Range{0, 1});
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 8, tetrahedra) == Range{1, 2});
-    CHECK(append_elements(list, {}, 0, 0, 0, elements, nodes).blocks == Range{0, 1});
-    const AppendedElements second = append_elements(list, {}, 8, 1, 2, elements, nodes);
+    CHECK(append_elements(list, {}, 0, 0, elements, nodes).blocks == Range{0, 1});
+    const AppendedElements second = append_elements(list, {}, 8, 1, elements, nodes);
     CHECK(second.blocks == Range{1, 2});
     CHECK(second.nodes == Range{4, 8});
     CHECK(elements.body[1] == 1);
@@ -68,7 +68,7 @@ TEST_CASE("no tetrahedra make no blocks", "[unit]") {
     ElementBlockTable elements;
     ElementNodeTable nodes;
     CHECK(append_tetrahedra({}, {}, 0, tetrahedra) == Range{0, 0});
-    CHECK(append_elements({}, {}, 0, 0, 0, elements, nodes).blocks == Range{0, 0});
+    CHECK(append_elements({}, {}, 0, 0, elements, nodes).blocks == Range{0, 0});
     Ragged<Index> corners;
     build_corners(elements, nodes, 3, corners);
     CHECK(corners.size() == 3);

@@ -49,7 +49,9 @@ using namespace skerry::test;
 namespace {
 
 Mesh small_mesh() {
-    return mesh::box({0.1, 0.2, 0.3}, {1, 1, 1});
+    Mesh mesh = mesh::box({0.1, 0.2, 0.3}, {1, 1, 1});
+    mesh.label = {1, 1, 2, 2, -3, -3};
+    return mesh;
 }
 
 /// The name under which this file is to be damaged. A .node and a .ele are read together: writes a good pair of that

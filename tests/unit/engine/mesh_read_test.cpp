@@ -17,6 +17,13 @@ Mesh sample() {
     return mesh::box({0.1, 0.2, 0.3}, {1, 1, 2});
 }
 
+/// The same with labels that come back, one of them below zero.
+Mesh labelled_sample() {
+    Mesh mesh = sample();
+    mesh.label = {1, 1, 1, 1, 1, -3, -3, 20, 20, 20, 20, 20};
+    return mesh;
+}
+
 Mesh one_tetrahedron() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
 }
@@ -68,6 +75,77 @@ TEST_CASE("every format gives back the tetrahedra that were written, without the
     }
 }
 
+TEST_CASE("every format of tetrahedra gives back the labels that were written", "[unit]") {
+    const Mesh mesh = labelled_sample();
+    const TemporaryFolder folder;
+    for (const SampleFile& file : all_sample_files(mesh)) {
+        INFO(file.name);
+        const std::string path = folder.write(file.name, file.content);
+        if (is_surface_file(file.name) || file.name.ends_with(".node")) continue;
+        std::vector<int> expected = mesh.label;
+        if (file.name.ends_with(".msh"))  // where the sign of a group is that of an orientation
+            for (int& label : expected) label = std::abs(label);
+        CHECK(mesh::read(path).label == expected);
+    }
+}
+
+TEST_CASE("labels are left out where a file has no whole numbers that are known to be some", "[unit]") {
+    const Mesh mesh = labelled_sample();
+    const TemporaryFolder folder;
+    const auto labels = [&](const std::string& name, const std::string& content) {
+        return mesh::read(folder.write(name, content)).label;
+    };
+    const std::string vtk = vtk_file(mesh, false, false), binary = vtk_file(mesh, true, true);
+    CHECK(labels("a.vtk", vtk_file(sample(), false, false)).empty());
+    CHECK(labels("a.vtk", replaced(vtk, "SCALARS region int", "SCALARS colour int")).empty());
+    CHECK(labels("a.vtk", replaced(vtk, "region int 1", "CellEntityIds int")) == mesh.label);
+    CHECK(labels("a.vtk", replaced(vtk, "SCALARS region int 1\nLOOKUP_TABLE default\n78", "SCALARS region int\n78")) ==
+          mesh.label);
+    CHECK(labels("a.vtk", replaced(vtk, "int 1\nLOOKUP_TABLE default\n78", "float 1\nLOOKUP_TABLE default\n7.5"))
+              .empty());
+    CHECK(labels("a.vtk", replaced(binary, "gmsh:physical", "gmsh:geometry")).empty());
+    // what is not known ends the search, and is no reason to refuse a mesh
+    CHECK(labels("a.vtk", replaced(vtk, "TENSORS stress double", "SPINORS spin double")).empty());
+    CHECK(labels("a.vtk", replaced(vtk, "TENSORS stress double", "TENSORS stress bit")).empty());
+
+    folder.write("a.node", node_file(mesh, 0));
+    const std::string ele = ele_file(mesh, 0);
+    CHECK(labels("a.ele", replaced(ele, "0.5 -3", "0.5 2.5")).empty());
+    CHECK(labels("a.ele", replaced(ele, "0.5 -3", "0.5 3000000000")).empty());
+    CHECK(labels("a.ele", replaced(ele, "0.5 -3", "0.5")).empty());
+}
+
+TEST_CASE("a Gmsh file without physical groups has the numbers of its volumes for labels", "[unit]") {
+    Mesh mesh = sample();
+    mesh.label.assign(mesh.tetrahedra.size(), 0);
+    const TemporaryFolder folder;
+    const auto labels = [&](const std::string& content) { return mesh::read(folder.write("a.msh", content)).label; };
+    const std::vector<int> volume(mesh.tetrahedra.size(), 6);
+    CHECK(labels(gmsh1_file(mesh)) == volume);
+    CHECK(labels(gmsh2_file(mesh, Bytes::text)) == volume);
+    CHECK(labels(gmsh2_file(mesh, Bytes::foreign)) == volume);
+    mesh.label.clear();  // no section of entities
+    CHECK(labels(gmsh41_file(mesh, Bytes::text)) == std::vector<int>(mesh.tetrahedra.size(), 10));
+    // some in a group: the others have 0
+    mesh.label.assign(mesh.tetrahedra.size(), 0);
+    mesh.label.back() = 4;
+    CHECK(labels(gmsh2_file(mesh, Bytes::text)) == mesh.label);
+}
+
+TEST_CASE("entities and cell data that do not add up are refused with the place and the reason", "[unit]") {
+    const std::string gmsh = gmsh41_file(labelled_sample(), Bytes::text);
+    CHECK_THAT(refusal("a.msh", replaced(gmsh, "2 1 79 ", "1 1 79 ")),
+               Contains("$Entities, volume 1 of 3") && Contains("tag: found \"0.25\", expected an integer"));
+    CHECK_THAT(refusal("a.msh", replaced(gmsh, "1 1 1 3 \n", "1 1 1 4 \n")),
+               Contains("$Entities, volume 4 of 4") && Contains("fewer rows than the section announces"));
+    CHECK_THAT(refusal("a.msh", replaced(gmsh, "1 1 1 3 \n", "1 1 1 2 \n")), Contains("expected $EndEntities"));
+    const std::string vtk = vtk_file(labelled_sample(), false, false);
+    CHECK_THAT(refusal("a.vtk", replaced(vtk, "CELL_DATA 13", "CELL_DATA 12")),
+               Contains("CELL_DATA") && Contains("count: found 12, expected 13, the cells"));
+    CHECK_THAT(refusal("a.vtk", replaced(vtk, "default\n78 ", "default\n78 x ")),
+               Contains("SCALARS, cell 2 of 13") && Contains("found \"x\""));
+}
+
 TEST_CASE("every format gives the boundary as a surface", "[unit]") {
     const Mesh mesh = sample();
     const SurfaceMesh boundary = mesh::boundary(mesh);
@@ -116,13 +194,13 @@ TEST_CASE("a file with some inverted tetrahedra is read as it is", "[unit]") {
 TEST_CASE("a bad Gmsh file is refused with the place and the reason", "[unit]") {
     const std::string good = gmsh2_file(one_tetrahedron(), Bytes::text),
                       new_good = gmsh41_file(one_tetrahedron(), Bytes::text);
-    const std::string element = "2 4 2 1 1 1 2 3 4";
+    const std::string element = "2 4 2 1 6 1 2 3 4";
     CHECK(refusal("a.msh", good) == "nothing refused");
     CHECK(refusal("a.msh", new_good) == "nothing refused");
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3 5")),
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3 5")),
                Contains("$Elements, element 2 of 2, line 20: node: found 5, expected the number of a node"));
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3 3")), Contains("the same node twice"));
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 1 1 2 3")), Contains("found 8 numbers, expected 9"));
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3 3")), Contains("the same node twice"));
+    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3")), Contains("found 8 numbers, expected 9"));
     CHECK_THAT(refusal("a.msh", replaced(good, element, "2 11 2 1 1 1 2 3 4 1 2 3 4 1 2")),
                Contains("second or higher order"));
     CHECK_THAT(refusal("a.msh", replaced(good, element, "2 77 2 1 1 1 2 3 4")), Contains("type: found 77"));
@@ -188,9 +266,9 @@ TEST_CASE("a bad TetGen file is refused with the place and the reason", "[unit]"
     CHECK(refused(nodes, elements) == "nothing refused");
     CHECK_THAT(refused(nodes, ele_file(mesh, 0)),
                Contains("a.ele: tetrahedra, tetrahedron 1 of 1, line 2: node: found 0"));
-    CHECK_THAT(refused(nodes, replaced(elements, "1 4 1", "1 10 1")), Contains("second order"));
-    CHECK_THAT(refused(nodes, replaced(elements, "1 4 1", "2 4 1")), Contains("end of the file"));
-    CHECK_THAT(refused(nodes, elements + "2 1 2 3 4 7\n"), Contains("more tetrahedra than the header announces"));
+    CHECK_THAT(refused(nodes, replaced(elements, "1 4 2", "1 10 2")), Contains("second order"));
+    CHECK_THAT(refused(nodes, replaced(elements, "1 4 2", "2 4 2")), Contains("end of the file"));
+    CHECK_THAT(refused(nodes, elements + "2 1 2 3 4 0.5 7\n"), Contains("more tetrahedra than the header announces"));
     CHECK_THAT(refused(replaced(nodes, "2 1 0 0", "1 1 0 0"), elements), Contains("1 a second time"));
     const TemporaryFolder folder;
     CHECK_THROWS_WITH(mesh::read(folder.write("lonely.node", nodes)), Contains("lonely.ele: found no such file"));

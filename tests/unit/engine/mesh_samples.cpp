@@ -31,6 +31,10 @@ std::string text(const std::array<Index, N>& nodes, int first_number) {
     return line;
 }
 
+int label_of(const Mesh& mesh, std::size_t tetrahedron) {
+    return mesh.label.empty() ? 1 : mesh.label[tetrahedron];
+}
+
 }  // namespace
 
 std::string gmsh1_file(const Mesh& mesh) {
@@ -40,7 +44,7 @@ std::string gmsh1_file(const Mesh& mesh) {
     out << "999 9 9 9\n$ENDNOD\n$ELM\n" << mesh.tetrahedra.size() + 2 << '\n';
     out << "1 15 1 1 1 1\n2 2 1 1 3 1 2 3\n";
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
-        out << e + 3 << " 4 1 1 4" << text(mesh.tetrahedra[e], 1) << '\n';
+        out << e + 3 << " 4 " << label_of(mesh, e) << " 6 4" << text(mesh.tetrahedra[e], 1) << '\n';
     out << "$ENDELM\n";
     return out.str();
 }
@@ -71,10 +75,12 @@ std::string gmsh2_file(const Mesh& mesh, Bytes bytes) {
     }
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
         if (binary) {
-            for (const int value : {static_cast<int>(e) + 2, 1, 1}) put<std::int32_t>(file, value, swap);
+            for (const int value : {static_cast<int>(e) + 2, label_of(mesh, e), 6})
+                put<std::int32_t>(file, value, swap);
             for (const Index n : mesh.tetrahedra[e]) put<std::int32_t>(file, n + 1, swap);
         } else {
-            file += std::to_string(e + 2) + " 4 2 1 1" + text(mesh.tetrahedra[e], 1) + '\n';
+            file += std::to_string(e + 2) + " 4 2 " + std::to_string(label_of(mesh, e)) + " 6" +
+                    text(mesh.tetrahedra[e], 1) + '\n';
         }
     }
     return file + (binary ? "\n" : "") + "$EndElements\n";
@@ -93,7 +99,31 @@ std::string gmsh41_file(const Mesh& mesh, Bytes bytes) {
     };
     const auto end_line = [&] { binary ? void() : void(file += '\n'); };
     if (binary) put<std::int32_t>(file, 1, swap);
-    file += binary ? "\n$EndMeshFormat\n$Nodes\n" : "$EndMeshFormat\n$Nodes\n";
+    file += binary ? "\n$EndMeshFormat\n" : "$EndMeshFormat\n";
+    // Volumes 10, 11, ... in one group each, but for the first, which is in two; before them a point, a curve and a
+    // surface in groups of their own
+    std::vector<std::uint64_t> first{0};  // tetrahedron of each volume; one more than volumes
+    for (std::size_t e = 1; e < mesh.tetrahedra.size(); ++e)
+        if (label_of(mesh, e) != label_of(mesh, e - 1)) first.push_back(e);
+    first.push_back(mesh.tetrahedra.size());
+    const auto places = [&](std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) binary ? put(file, 0.25, swap) : void(file += "0.25 ");
+    };
+    if (!mesh.label.empty()) {
+        file += "$Entities\n";
+        sizes({1, 1, 1, first.size() - 1}), end_line();
+        ints({1}), places(3), sizes({1}), ints({77}), end_line();
+        ints({1}), places(6), sizes({0}), sizes({2}), ints({1, -1}), end_line();
+        ints({1}), places(6), sizes({1}), ints({78}), sizes({1}), ints({1}), end_line();
+        for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+            ints({static_cast<std::int32_t>(10 + v)}), places(6);
+            const int label = label_of(mesh, first[v]);
+            v == 0 ? (sizes({2}), ints({label, 79})) : (sizes({1}), ints({label}));
+            sizes({2}), ints({1, -2}), end_line();
+        }
+        file += binary ? "\n$EndEntities\n" : "$EndEntities\n";
+    }
+    file += "$Nodes\n";
     const std::uint64_t nodes = mesh.nodes.size(), tetrahedra = mesh.tetrahedra.size();
     sizes({2, nodes + 1, 1, 999});
     end_line();
@@ -112,13 +142,15 @@ std::string gmsh41_file(const Mesh& mesh, Bytes bytes) {
     else
         file += "9 9 9 0.5\n";
     file += binary ? "\n$EndNodes\n$Elements\n" : "$EndNodes\n$Elements\n";
-    sizes({2, tetrahedra + 1, 1, tetrahedra + 1}), end_line();
+    sizes({first.size(), tetrahedra + 1, 1, tetrahedra + 1}), end_line();
     ints({2, 1, 2}), sizes({1}), end_line(), sizes({1, 1, 2, 3}), end_line();
-    ints({3, 1, 4}), sizes({tetrahedra}), end_line();
-    for (std::uint64_t e = 0; e < tetrahedra; ++e) {
-        sizes({e + 2});
-        for (const Index n : mesh.tetrahedra[e]) sizes({static_cast<std::uint64_t>(n) + 1});
-        end_line();
+    for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+        ints({3, static_cast<std::int32_t>(10 + v), 4}), sizes({first[v + 1] - first[v]}), end_line();
+        for (std::uint64_t e = first[v]; e < first[v + 1]; ++e) {
+            sizes({e + 2});
+            for (const Index n : mesh.tetrahedra[e]) sizes({static_cast<std::uint64_t>(n) + 1});
+            end_line();
+        }
     }
     return file + (binary ? "\n" : "") + "$EndElements\n";
 }
@@ -165,7 +197,26 @@ std::string vtk_file(const Mesh& mesh, bool offsets, bool binary) {
     file += "\nCELL_TYPES " + std::to_string(cells) + "\n";
     integer(5, false);
     for (std::size_t c = 1; c < cells; ++c) integer(10, false);
-    return file + "\nPOINT_DATA 1\nSCALARS nothing float 1\n";
+    const auto real = [&](double value) {
+        binary ? put(file, value, swap) : void(file += std::to_string(value) + ' ');
+    };
+    const std::size_t points = mesh.nodes.size() + 1;
+    file += "\nPOINT_DATA " + std::to_string(points) + "\nSCALARS region double\nLOOKUP_TABLE default\n";
+    for (std::size_t n = 0; n < points; ++n) real(7);
+    file += "\nVECTORS force double\n";
+    for (std::size_t n = 0; n < 3 * points; ++n) real(0.5);
+    file += "\nCELL_DATA " + std::to_string(cells) + "\n";
+    file += offsets ? "FIELD FieldData 2\nshares 2 " + std::to_string(cells) + " double\n" : "TENSORS stress double\n";
+    for (std::size_t c = 0; c < (offsets ? 2 : 9) * cells; ++c) real(0.5);
+    if (!mesh.label.empty()) {
+        file += offsets ? "\nMETADATA\nINFORMATION 0\n\ngmsh:physical 1 " + std::to_string(cells) + " vtktypeint64\n"
+                        : "\nSCALARS region int 1\nLOOKUP_TABLE default\n";
+        for (std::size_t c = 0; c < cells; ++c) integer(c == 0 ? 78 : mesh.label[c - 1], offsets);
+    } else if (offsets) {
+        file += "\nother 1 " + std::to_string(cells) + " vtktypeint64\n";
+        for (std::size_t c = 0; c < cells; ++c) integer(3, true);
+    }
+    return file + "\n";
 }
 
 std::string node_file(const Mesh& mesh, int first_number) {
@@ -176,9 +227,10 @@ std::string node_file(const Mesh& mesh, int first_number) {
 }
 
 std::string ele_file(const Mesh& mesh, int first_number) {
-    std::string file = std::to_string(mesh.tetrahedra.size()) + " 4 1\n";
+    std::string file = std::to_string(mesh.tetrahedra.size()) + " 4 2\n";
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
-        file += std::to_string(static_cast<int>(e) + first_number) + text(mesh.tetrahedra[e], first_number) + " 7\n\n";
+        file += std::to_string(static_cast<int>(e) + first_number) + text(mesh.tetrahedra[e], first_number) + " 0.5 " +
+                std::to_string(label_of(mesh, e)) + "\n\n";
     return file;
 }
 

@@ -293,6 +293,17 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(done.stdout, "")
         self.assertFalse(out.exists())
 
+    def test_inspect_counts_labels_and_materials(self):
+        self.write("m.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n")
+        mesh = self.write("m.ele", "2 4 1\n1 1 2 3 4 -1\n2 2 3 4 5 20\n")
+        self.assertEqual(json.loads(self.skerry("inspect", mesh, "--json").stdout)["labels"], {"-1": 1, "20": 1})
+        self.assertIn("-1: 1, 20: 1 tetrahedra", self.skerry("inspect", mesh).stdout)
+        layered = self.write("layered.json", {"materials": {"rubber": {"E": 1e5}, "steel": {"E": 1e7}}, "bodies": [
+            {"mesh": {"file": "m.ele"}, "material": "rubber", "materials": {"20": "steel"}}]})
+        kind = json.loads(self.skerry("inspect", layered, "--json").stdout)["body_kinds"][0]
+        self.assertEqual(kind["materials"], {"rubber": 1, "steel": 1})
+        self.assertIn("rubber 1, steel 1", self.skerry("inspect", layered).stdout)
+
     def test_inspect_finds_an_overlap(self):
         sunk = json.loads(json.dumps(SCENE))
         sunk["bodies"][0]["position"][2] = 0.09

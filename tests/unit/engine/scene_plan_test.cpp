@@ -53,6 +53,49 @@ TEST_CASE("a material that is not there is named with the nearest one", "[unit]"
                           Catch::Contains("nearest known one is \"rubber\""));
 }
 
+namespace {
+
+/// A scene whose body is two tetrahedra with the labels 1 and 20, and has `materials`.
+std::string labelled_scene(const TemporaryFolder& folder, const std::string& materials) {
+    folder.write("m.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n");
+    folder.write("m.ele", "2 4 1\n1 1 2 3 4 1\n2 2 3 4 5 20\n");
+    return folder.write("scene.json", R"({"materials": {"rubber": {"rho": 1000}, "steel": {"rho": 8000}}, "bodies": [
+        {"name": "b", "mesh": {"file": "m.ele"}, "material": "rubber", "materials": )" +
+                                          materials + "}]}");
+}
+
+}  // namespace
+
+TEST_CASE("materials of tetrahedra are found by the labels of the mesh", "[unit]") {
+    const TemporaryFolder folder;
+    const ScenePlan plan = plan_scene(labelled_scene(folder, R"({"20": "steel"})"));
+    REQUIRE(plan.bodies.size() == 1);
+    CHECK(plan.meshes[0].label == std::vector<int>{1, 20});
+    CHECK(plan.bodies[0].materials == std::vector<std::pair<int, std::size_t>>{{20, 1}});
+    const Scene scene = build_scene(plan);
+    CHECK(scene.world.mass(scene.world.bodies()[0]) == Approx(1000.0 / 6 + 8000.0 / 3));
+}
+
+TEST_CASE("labels and materials that are not there are named with what is", "[unit]") {
+    const auto refusal = [](const std::string& materials) {
+        const TemporaryFolder folder;
+        try {
+            plan_scene(labelled_scene(folder, materials));
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing refused");
+    };
+    CHECK_THAT(refusal(R"({"2": "steel"})"),
+               Catch::Contains("body \"b\": bodies[0].materials.2: found label 2, expected one of the labels of the "
+                               "mesh: 1, 20"));
+    CHECK_THAT(refusal(R"({"1": "stele"})"), Catch::Contains("bodies[0].materials.1: found \"stele\"") &&
+                                                 Catch::Contains("the nearest known one is \"steel\""));
+    const TemporaryFolder folder;
+    CHECK_THROWS_WITH(plan_scene(folder.write("box.json", body_with(R"("materials": {"1": "rubber"})"))),
+                      Catch::Contains("found label 1, expected a mesh with labels (labels come from mesh files"));
+}
+
 TEST_CASE("two bodies of one name are refused", "[unit]") {
     const TemporaryFolder folder;
     const std::string body = R"({"name": "b", "mesh": {"ball": {"radius": 1, "resolution": 3}}, "material": "m"})";
