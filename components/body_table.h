@@ -48,6 +48,7 @@ struct BodyTable {
     Column<Real> min_altitude;      // m, of the elements at rest
     Column<Real> rest_step;         // s, stable step of the rest shape
     Column<Real> stable_step;       // s, as last watched
+    Column<Real> cluster_step;      // s, the longest that its implicit elements stand; 0 where it has none
     // of the whole body in the present cycle of steps: its own steps are 2^level steps long
     Column<std::uint8_t> level;
     Column<std::array<Index, element_level_count>> level_count;  // elements of each level, within the body
@@ -88,6 +89,7 @@ struct BodyTable {
         visit("min_altitude", min_altitude, ColumnRole::state);
         visit("rest_step", rest_step, ColumnRole::state);
         visit("stable_step", stable_step, ColumnRole::state);
+        visit("cluster_step", cluster_step, ColumnRole::state);
         visit("level", level, ColumnRole::link);
         visit("level_count", level_count, ColumnRole::state);
         visit("active", active, ColumnRole::scratch);

@@ -27,6 +27,8 @@ struct TetrahedronBlockTable {
     Column<TetrahedronNodes> node;
     Column<ElementLane> volume;    // m^3, at rest; 0 in a lane that is left over
     Column<ElementLane> altitude;  // m, the smallest at rest; infinite in a lane that is left over
+    // in how many times max_strain_step F may change: more than 1 where an implicit element covers the tetrahedron
+    Column<ElementLane> leeway;
     // m: none of the block turns inside out, or back, while the body's travel is below this
     Column<Real> uninverted_until;
 
@@ -36,6 +38,7 @@ struct TetrahedronBlockTable {
         visit("node", node, ColumnRole::link);
         visit("volume", volume, ColumnRole::state);
         visit("altitude", altitude, ColumnRole::state);
+        visit("leeway", leeway, ColumnRole::state);
         visit("uninverted_until", uninverted_until, ColumnRole::derived);
     }
 };
@@ -50,6 +53,7 @@ struct ElementBlockTable {
     Column<Index> count;                    // of rows
     Column<ElementLane> volume;             // m^3, at rest; 0 in a lane that is left over
     Column<ElementLane> mass_share;         // weight with which an element takes mass from its nodes (stable_step.h)
+    Column<ElementLane> implicit_modulus;   // Pa, stiffness of an element that a cluster carries; 0: an explicit one
     Column<ElementRotation> rotation;       // corotational frame, the start of the next extraction
     Column<ElementRotation> rotation_next;  // this step's frame; swapped with rotation when the step is committed
     // Green strain that the relaxing part of the stress has forgotten, and the volume strain that the bulk viscosity
@@ -74,6 +78,7 @@ struct ElementBlockTable {
         visit("count", count, ColumnRole::state);
         visit("volume", volume, ColumnRole::state);
         visit("mass_share", mass_share, ColumnRole::state);
+        visit("implicit_modulus", implicit_modulus, ColumnRole::state);
         visit("rotation", rotation, ColumnRole::state);
         visit("body", body, ColumnRole::link);
         visit("material", material, ColumnRole::link);

@@ -31,7 +31,7 @@ struct Problem {
           stage{inputs, settings, scene.h, out, data} {
         for (std::size_t k = 0; k < scene.stencil.size(); ++k) row.push_back(static_cast<Index>(k));
         for (std::size_t k = 0; k < row.size(); ++k) gap[k] = k % 3 == 0 ? -1e-3 : 0;
-        data.make_room_for(row.size(), velocity_next.size(), settings);
+        data.make_room_for(row.size(), 4 * row.size(), velocity_next.size(), settings);
         team.gather(executor, [&] {
             order_region(inputs, row, team, data.place.span(), kept);
             if (!coloured)
@@ -51,7 +51,7 @@ struct Problem {
         RegionInputs pressed = inputs;
         pressed.gap = gap;
         solve_push<Walk>({pressed, settings, stage.h, out, data}, walk, {row, memory.contact, memory.velocity},
-                         push_memory(stage, 0, row.size(), memory.node.size()));
+                         push_memory(stage, 0, row.size(), memory.scratch));
     }
 
     std::vector<Vec3> velocity_next, impulse_out, push_out;

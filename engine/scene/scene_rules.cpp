@@ -175,6 +175,8 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("integrator", &S::integrator,
                  {.meaning = "how velocities and positions are moved on; forward_euler is for comparison only"})
             .key("multirate", &S::multirate, {.meaning = "elements that stand longer steps get impulses less often"})
+            .key("clusters", &S::clusters,
+                 {.meaning = "the few elements that would make all steps several times shorter move as clusters"})
             .key("backend", &S::backend, {.meaning = "what runs the threads"})
             .key("threads", &S::threads, {.meaning = "0: as many as there are", .limits = within(0, 1024)})
             .key("contact_regions", &S::contact_regions, {.meaning = "how contacts are grouped"})

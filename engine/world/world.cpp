@@ -38,6 +38,8 @@ WorldState::WorldState(const Settings& settings) : executor(make_executor(settin
 
 void WorldState::topology_changed() {
     model.rebuild_derived();
+    model.clusters.clear();  // of rows that have moved
+    model.clusters_open = true;
     model.wake_all();
     cache.drop_pairs(model);
     record.balance.close();
@@ -179,6 +181,7 @@ void World::set_gravity(const Vec3& gravity) {
 }
 
 Real World::stable_step() const {
+    settle_clusters(state_->model, state_->scratch.stiffness_sum);
     return skerry::stable_step(state_->model.bodies);
 }
 

@@ -107,6 +107,11 @@ WorldReport World::report() const {
     report.nodes = world.model.nodes.position.size();
     for (Index count : world.model.bodies.tetrahedron_count) report.elements += static_cast<std::size_t>(count);
     Index stiffest = no_index;
+    settle_clusters(state_->model, state_->scratch.stiffness_sum);
+    report.clusters = world.model.clusters.size();
+    report.cluster_nodes = world.model.clusters.nodes.item.size();
+    for (const ElementLane& modulus : world.model.elements.implicit_modulus)
+        for (const Real m : modulus.lane) report.implicit_elements += m > 0;
     report.stable_step = skerry::stable_step(world.model.bodies, &stiffest);
     if (stiffest != no_index)
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;

@@ -11,13 +11,15 @@
 namespace skerry {
 namespace {
 
-/// Joins the moving nodes of a contact. Returns their root, or no_index.
-Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, UnionFind& sets) {
+/// Joins the moving nodes of a contact, each with its cluster: `leader(node)` stands for that. Returns their root, or
+/// no_index.
+template <class Leader>
+Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, UnionFind& sets) {
     Index root = no_index;
     for (std::size_t a = 0; a < 4; ++a) {
         const Index at = stencil.node[a];
         if (stencil.weight[a] == 0 || !(inverse_mass[at] > 0)) continue;
-        const Index other = sets.root(at);
+        const Index other = sets.root(leader(at));
         if (root == other) continue;
         root = root == no_index ? other : sets.join_roots(root, other);
     }
@@ -25,8 +27,9 @@ Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, UnionFin
 }
 
 /// Numbers the regions by their first contact.
-Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, UnionFind& sets,
-                          std::span<Index> contact_region) {
+template <class Leader>
+Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const Leader& leader,
+                          UnionFind& sets, std::span<Index> contact_region) {
     sets.start(inverse_mass.size());
     constexpr std::size_t ahead = 12;  // contacts: by then their nodes have come from the memory
     const auto fetch = [&](const Stencil& next) {
@@ -37,7 +40,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
     };
     for (std::size_t i = 0; i < stencil.size(); ++i) {
         if (i + ahead < stencil.size()) fetch(stencil[i + ahead]);
-        contact_region[i] = unite(stencil[i], inverse_mass, sets);
+        contact_region[i] = unite(stencil[i], inverse_mass, leader, sets);
     }
     for (std::size_t i = 0; i < contact_region.size(); ++i) {
         if (i + ahead < contact_region.size() && contact_region[i + ahead] != no_index)
@@ -87,8 +90,9 @@ void resize_results(Index region_count, RegionTable& regions) {
 
 }  // namespace
 
-bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, ContactRegions mode,
-                      UnionFind& memory, RegionTable& regions, std::span<Index> contact_region) {
+bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                      const NodeClusters& clusters, ContactRegions mode, UnionFind& memory, RegionTable& regions,
+                      std::span<Index> contact_region) {
     SKERRY_CHECK(contact_region.size() == stencil.size());
     regions.independent = true;
     if (stencil.empty()) {
@@ -99,7 +103,12 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
     Index region_count = 0;
     switch (mode) {
         case ContactRegions::separate:
-            region_count = label_by_union_find(stencil, inverse_mass, memory, contact_region);
+            region_count = clusters.empty()
+                               ? label_by_union_find(
+                                     stencil, inverse_mass, [](Index node) { return node; }, memory, contact_region)
+                               : label_by_union_find(
+                                     stencil, inverse_mass, [&](Index node) { return clusters.leader(node); }, memory,
+                                     contact_region);
             break;
         case ContactRegions::global:
             region_count = label_all_as_one(stencil, inverse_mass, contact_region);

@@ -4,6 +4,7 @@
 
 #include "components/check.h"
 #include "systems/solver/regions/lane_queue.h"
+#include "systems/solver/regions/solve_clustered.h"
 #include "systems/solver/regions/solve_large_regions.h"
 #include "systems/solver/schedule_regions.h"
 
@@ -15,7 +16,11 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
     for (Index k = task.begin; k < task.end; ++k) {
         const Index number = regions.order[k];
         const std::span<const Index> row = regions.contacts[number];
-        if (is_large(stage.settings, row.size())) continue;
+        if (is_large(stage, regions, number)) continue;
+        if (touches_cluster(stage.memory, number)) {
+            write_outcome(solve_clustered(stage, row, number, regions.contacts.offset[number]), number, regions);
+            continue;
+        }
         if (row.size() == 1 && !stage.settings.fixed_iterations) {
             write_outcome(solve_single(stage, row[0]), number, regions);
             continue;
@@ -81,7 +86,8 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
         remember_regions(data, regions);
         return false;
     }
-    data.make_room_for(regions.contacts.item.size(), contacts.inverse_mass.size(), settings);
+    const std::size_t region_nodes = find_region_clusters(contacts, regions, data);
+    data.make_room_for(regions.contacts.item.size(), region_nodes, contacts.inverse_mass.size(), settings);
     schedule_regions(settings, executor.worker_count(), data, regions);
     solve_tasks(executor, {contacts, settings, h, out, data}, regions);
     regions.pushed = data.pushed.load(std::memory_order_relaxed);

@@ -54,7 +54,7 @@ struct ContactScene {
         SolvedScene result;
         UnionFind memory;
         std::vector<Index> region(stencil.size());
-        separate_regions(stencil, inverse_mass, mode, memory, result.regions, region);
+        separate_regions(stencil, inverse_mass, NodeClusters{}, mode, memory, result.regions, region);
         result.impulse = impulse;
         result.velocity = velocity;
         result.push_out.assign(velocity.size(), Vec3::Zero());

@@ -155,8 +155,11 @@ struct WorldReport : RunCounters {
     Real time = 0;
     std::size_t asleep = 0;  // bodies at rest, now
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
-    Real stable_step = 0;                                             // s, of the stiffest body, now
-    std::string stable_step_body;                                     // which body that is
+    Real stable_step = 0;          // s, of the stiffest body, now
+    std::string stable_step_body;  // which body that is
+    // Groups of nodes that implicit elements couple, so that these do not make the step shorter
+    // (docs/methods/clusters.md).
+    std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;
     std::vector<StepLimitReport> step_limits;                         // most steps first
     std::vector<StageReport> stages;                                  // in the order of the step
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region

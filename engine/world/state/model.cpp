@@ -4,6 +4,7 @@
 
 #include "systems/collision/build_surface.h"
 #include "systems/collision/tree/bvh.h"
+#include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/elements/build_elements.h"
 
 namespace skerry {
@@ -92,6 +93,13 @@ void Model::rebuild_derived() {
     // What a step leaves where it has nothing to do: nodes at rest, and nodes that no contact pushes.
     std::ranges::fill(nodes.velocity_next, Vec3::Zero());
     std::ranges::fill(nodes.push_out, Vec3::Zero());
+}
+
+void Model::rebuild_clusters() {
+    build_clusters(all_elements(),
+                   {bodies.blocks.span(), bodies.cluster_step.span(), elements.implicit_modulus.span(),
+                    nodes.mass.span(), nodes.inverse_mass.span()},
+                   clusters);
 }
 
 void Model::append_outline(std::size_t body) {

@@ -13,6 +13,7 @@
 #include "components/handle.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
+#include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/ragged.h"
 #include "components/surface_table.h"
@@ -50,6 +51,7 @@ struct Model {
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
     Ragged<Index> corners;  // by node: element_lanes row + lane of element_nodes; derived: rebuild_derived
+    NodeClusters clusters;  // of the implicit elements; derived: rebuild_clusters
     SurfaceTables surface;
     BvhTable bvh;
     BvhLeafTable bvh_leaves;
@@ -64,7 +66,9 @@ struct Model {
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
 
-    Column<Real> body_mass;   // kg, of all nodes of a body, held ones, too; derived: rebuild_derived
+    Column<Real> body_mass;  // kg, of all nodes of a body, held ones, too; derived: rebuild_derived
+    // bodies, colliders or settings have changed since it was last decided which elements are implicit
+    bool clusters_open = true;
     bool loaded = false;      // some node has a load; derived: note_loads
     bool any_asleep = false;  // some body rests; derived: note_rest. While none does, no stage asks
 
@@ -89,6 +93,8 @@ struct Model {
     void note_loads();
     /// After bodies or colliders came or went: what is derived from all of them.
     void rebuild_derived();
+    /// After elements became implicit or explicit.
+    void rebuild_clusters();
 
     /// Surface and tree of one body, from its record and its shape at rest; the body must be the last that has rows in
     /// these tables.

@@ -79,6 +79,7 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     Column<Real> stiffness_sum;             // of stable_step, by node
+    Column<Vec3> cluster_kick;              // of kick_clusters
     Column<std::uint8_t> pressed;           // by body at rest, in this step
     WarmStartTable warm_start_next;         // of store_warm_start
     Column<ExternalWork> work_parts;        // of measure_work

@@ -14,6 +14,8 @@ namespace {
 /// Steps between two looks at the stable step: it changes with deformation, over many steps.
 /// In cycles of fine steps it is the coarse ones that count: all elements deform at the pace of the whole.
 constexpr std::uint64_t steps_per_watch = 256;
+/// With clusters steps are several times longer, and explicit elements beside them deform more in each.
+constexpr std::uint64_t steps_per_watch_of_clusters = 64;
 
 StepStatus status_of(StepFault fault) {
     switch (fault) {
@@ -131,6 +133,7 @@ StepReport World::advance(Real dt) {
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
+    settle_clusters(model, world.scratch.stiffness_sum);
     require_countable(
         dt, model.settings.step_size.value_or(skerry::stable_step(model.bodies) * model.settings.step_safety));
     StepReport report;
@@ -167,10 +170,12 @@ StepReport World::advance(Real dt) {
         note_inversions(world, report);
         note_limit(world, report);
         left = plan.steps > 1 ? left - plan.h : 0;
+        world.record.balance.work += follow_stiffening(model);
         // Between cycles: within one, levels must stay.
-        if (++clock.steps_since_watch >= steps_per_watch << clock.cycle.levels && clock.cycle.index == 0) {
+        const std::uint64_t between = model.clusters.empty() ? steps_per_watch : steps_per_watch_of_clusters;
+        if (++clock.steps_since_watch >= between << clock.cycle.levels && clock.cycle.index == 0) {
             clock.steps_since_watch = 0;
-            watch_stable_steps(model, world.scratch.stiffness_sum);
+            world.record.balance.work += watch_stable_steps(model, world.scratch.stiffness_sum);
             if (clock.offset == 0)
                 check_balance(model, lag_between_steps(world), world.record.balance);
             else

@@ -4,6 +4,7 @@
 
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
+#include "engine/world/step/step.h"
 #include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
@@ -27,6 +28,7 @@ Present measure(const Model& model, Real lag) {
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
     }
+    now.kinetic += added_energy(model);
     // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies
     // keep m v.v' / 2 and their elastic energy together, as leapfrog does.
     if (lag > 0) {

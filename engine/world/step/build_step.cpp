@@ -7,6 +7,7 @@
 #include "systems/collision/find_crossings.h"
 #include "systems/contact/match_warm_start.h"
 #include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/clusters/kick_clusters.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
@@ -46,6 +47,8 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/predict_velocity", predict_velocity,
             inputs<KickInputs>(k, m.corners, m.element_nodes, n, b, p.gravity, m.loaded, m.any_asleep),
             read(n.velocity), value(p.h), write(n.force), write(n.velocity_next));
+    g.stage("dynamics/kick_clusters", kick_clusters, inputs<ClusterKickInputs>(m.clusters, n, b, m.any_asleep),
+            read(n.velocity), make(w.scratch.cluster_kick), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
 }
@@ -69,7 +72,8 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
-            value(p.contact_regions), make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
+            value(m.clusters), value(p.contact_regions), make(w.scratch.union_find), make(w.scratch.regions),
+            write(c.region));
 }
 
 void list_solve(WorldState& w, TaskGraph& g) {
@@ -79,7 +83,8 @@ void list_solve(WorldState& w, TaskGraph& g) {
     const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.problem_wanted));
     g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next),
             make(w.scratch.kept_velocities), if_wanted);
-    g.stage("solver/solve_regions", solve_regions, inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity),
+    g.stage("solver/solve_regions", solve_regions,
+            inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity, w.model.clusters, w.scratch.cluster_kick),
             value(p.solver), value(p.h), make(w.scratch.solver_memory), make(w.scratch.regions),
             outputs<RegionOutputs>(c, n));
     g.stage_with_result("contact/measure_contacts", w.scratch.findings.measures, measure_contacts, read(c),

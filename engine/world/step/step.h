@@ -18,8 +18,25 @@ void count_step(const StepScratch& scratch, RunCounters& counters);
 Real stable_step(const BodyTable& bodies, Index* body = nullptr);
 /// The longest step that is taken: that of the settings, or the stable step where that is shorter.
 Real trusted_step(const Model& model, Index* body = nullptr);
-/// Looks at the stable step of every body again.
-void watch_stable_steps(Model& model, Column<Real>& stiffness_sum);
+/// Looks at the stable step of every body again. Bodies that stand much less than at rest get clusters where that
+/// helps; returns the energy that these, by changing what their elements weigh, bring into the balance, J.
+Real watch_stable_steps(Model& model, Column<Real>& stiffness_sum);
+
+/// After a committed step: clusters follow what has stiffened. Returns the energy that brings into the balance, J.
+Real follow_stiffening(Model& model);
+
+// choose_clusters.cpp
+/// Whether elements of this world may be implicit.
+bool clusters_allowed(const Settings& settings);
+/// After a change of the world: decides, by what a simulated second is likely to cost, how long steps are to be, and
+/// which elements are implicit so that they can be.
+void settle_clusters(Model& model, Column<Real>& stiffness_sum);
+/// Makes the elements implicit that do not stand `step` (s) in the shape `position`. Returns false, and changes
+/// nothing, where they are too many.
+bool make_implicit(Model& model, std::size_t body, Real step, std::span<const Vec3> position,
+                   std::span<Real> stiffness_sum);
+/// J, what the inertia of all implicit elements adds to the kinetic energy.
+Real added_energy(const Model& model);
 
 // advance.cpp
 /// s, by which velocities are older than positions between steps, where all are by the same; else 0.

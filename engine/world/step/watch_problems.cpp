@@ -27,8 +27,8 @@ void show_contact_problem(const Model& model, const StepScratch& scratch, Real t
     if (!record.problem_watch.wants(record.counters.steps) || scratch.contacts.size() == 0) return;
     const ContactTable& c = scratch.contacts;
     const KeptVelocities& kept = scratch.kept_velocities;
-    const RegionInputs inputs =
-        RegionInputs::bind({}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity);
+    const RegionInputs inputs = RegionInputs::bind(
+        {}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity, model.clusters, scratch.cluster_kick);
     StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region}, scratch.parameters.solver,
                                        scratch.parameters.h);
     if (problem.problem.q.empty()) return;

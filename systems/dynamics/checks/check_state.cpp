@@ -69,7 +69,12 @@ LaneMat3<Real8> parting_of(const CheckInputs& state, std::size_t block) {
     return state.push_out.empty() ? parting : parting + edges(state.tetrahedron_node[block], state.push_out);
 }
 
-/// |F'|^2, F' = [v_k - v_0] [X_k - X_0]^-1, of each element of a block; 0 in a lane that is left over.
+Real8 leeway_of(const CheckInputs& state, std::size_t block) {
+    return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
+}
+
+/// |F'|^2 over the square of the leeway, F' = [v_k - v_0] [X_k - X_0]^-1, of each element of a block; 0 in a lane that
+/// is left over.
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& parting) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -79,7 +84,8 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
     const LaneVec3<Real8> x = column(cof.c0.x, cof.c1.x, cof.c2.x), y = column(cof.c0.y, cof.c1.y, cof.c2.y),
                           z = column(cof.c0.z, cof.c1.z, cof.c2.z);
     const Real8 scaled = dot(x, x) + dot(y, y) + dot(z, z);
-    return det > 0.0 ? scaled / (det * det) : Real8{};
+    const Real8 allowed = det * leeway_of(state, block);
+    return det > 0.0 ? scaled / (allowed * allowed) : Real8{};
 }
 
 /// Whether any element of a block deforms faster than `rate` (1/s): all side by side, and nothing is said of which. In
@@ -88,7 +94,8 @@ bool any_deforms_faster(const CheckInputs& state, std::size_t block, Real rate) 
     const LaneMat3<Real8> parting = parting_of(state, block);
     const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
                 third = dot(parting.c2, parting.c2);
-    const Real8 limit = rate * load(state.tetrahedron_altitude[block]), limit_squared = limit * limit;
+    const Real8 limit = rate * load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
+                limit_squared = limit * limit;
     if (all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared))) return false;
     return !all(rate_squared_of(state, block, parting) <= rate * rate);
 }

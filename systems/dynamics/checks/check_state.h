@@ -34,6 +34,7 @@ struct CheckInputs {
     std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_altitude = {};   // m
+    std::span<const ElementLane> tetrahedron_leeway = {};     // in times max_strain_step; empty: 1
     std::span<const Range> body_blocks = {};  // BodyTable; empty: bodies are judged as one tetrahedron each
 
     /// `pushed`: some contact pushes.
@@ -50,6 +51,7 @@ struct CheckInputs {
                 .rest_position = binder.read(node.rest_position),
                 .tetrahedron_node = binder.read(tetrahedron.node),
                 .tetrahedron_altitude = binder.read(tetrahedron.altitude),
+                .tetrahedron_leeway = binder.read(tetrahedron.leeway),
                 .body_blocks = binder.read(body.tetrahedron_blocks)};
     }
 };

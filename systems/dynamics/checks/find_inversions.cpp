@@ -71,12 +71,17 @@ struct Body {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
             const Real8 volume = determinant(edges(inputs.tetrahedron_node[b], inputs.position));
             for (std::size_t l = 0; l < element_lanes; ++l)
-                if (inputs.tetrahedron_volume[b][l] > 0 && !(volume[l] > 0)) return true;
+                if (inputs.tetrahedron_volume[b][l] > 0 && !(volume[l] > 0) && is_judged(b, l)) return true;
         }
         return false;
     }
 
 private:
+    /// An implicit element makes no step unstable, whatever becomes of it.
+    bool is_judged(std::size_t b, std::size_t l) const {
+        return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
+    }
+
     static Real least(std::span<const Real> of, std::size_t begin, std::size_t end) {
         Real least = std::numeric_limits<Real>::infinity();
         const Real* const value = of.data();
@@ -98,6 +103,7 @@ private:
         const Real8 before = determinant(now), after = determinant(now + h * motion);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             if (!(inputs.tetrahedron_volume[b][l] > 0) || !(before[l] > 0) || after[l] > 0) continue;
+            part.judged |= is_judged(b, l);
             if (part.count++ == 0) part.tetrahedron = static_cast<Index>(b * element_lanes + l);
         }
     }
@@ -123,15 +129,16 @@ Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Re
                                      budgets.block_uninverted_until);
             }
         });
-        const Index before = found.count;
+        bool judged = false;
         budgets.body_uninverted_until[b] = std::numeric_limits<Real>::infinity();
         for (const InversionPart& part : parts) {
             budgets.body_uninverted_until[b] = std::min(budgets.body_uninverted_until[b], part.uninverted_until);
             if (part.count == 0) continue;
+            judged |= part.judged;
             if (found.count == 0) found = {0, static_cast<Index>(b), part.tetrahedron, false};
             found.count += part.count;
         }
-        if (found.count > before) found.first |= !body.has_inverted(blocks);
+        if (judged) found.first |= !body.has_inverted(blocks);
     }
     return found;
 }

@@ -14,7 +14,8 @@ namespace skerry {
 struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
-    std::span<const Range> body_blocks;  // BodyTable
+    std::span<const ElementLane> tetrahedron_leeway;  // empty: 1
+    std::span<const Range> body_blocks;               // BodyTable
     std::span<const Real> body_max_speed, body_travel, body_displacement;
     std::span<const Vec3> position;                 // m, at the start of the step
     std::span<const Vec3> velocity_next, push_out;  // push_out: empty: no contact pushes
@@ -24,6 +25,7 @@ struct InversionInputs {
                                 const NodeTable& node, const bool& pushed) {
         return {.tetrahedron_node = binder.read(tetrahedron.node),
                 .tetrahedron_volume = binder.read(tetrahedron.volume),
+                .tetrahedron_leeway = binder.read(tetrahedron.leeway),
                 .body_blocks = binder.read(body.tetrahedron_blocks),
                 .body_max_speed = binder.read(body.max_speed),
                 .body_travel = binder.read(body.travel),
@@ -39,13 +41,15 @@ struct Inversions {
     Index count = 0;
     Index body = no_index;         // row of BodyTable, of the first
     Index tetrahedron = no_index;  // of the table: lane of a block
-    bool first = false;            // some body of them had no inverted tetrahedron before
+    // some body of them had no inverted tetrahedron before; those that implicit elements cover do not count
+    bool first = false;
 };
 
 /// Working memory, kept between steps: what was found in some blocks.
 struct InversionPart {
     Real uninverted_until = 0;                // m, the least of them
     Index count = 0, tetrahedron = no_index;  // that the step turns over, and the first of them
+    bool judged = false;                      // some of them without leeway
 };
 
 struct InversionBudgets {

@@ -74,6 +74,7 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
         table.node.push_back(node);
         table.volume.push_back(volume);
         table.altitude.push_back(altitude);
+        table.leeway.push_back({{1, 1, 1, 1, 1, 1, 1, 1}});
         table.uninverted_until.push_back(-std::numeric_limits<Real>::infinity());
     }
     return {first_block, static_cast<Index>(table.node.size())};

@@ -35,6 +35,11 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
     return Q;
 }
 
+ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F) {
+    return {viscous_moduli(elements.material_of(block), elements.relaxing_share[block]),
+            viscous_stretch(green_strain(F), elements.viscous_strain[block])};
+}
+
 }  // namespace
 
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position) {
@@ -82,8 +87,7 @@ Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, con
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.viscous_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q) + nothing;
-    ViscousPart viscous{viscous_moduli(material, elements.relaxing_share[block]),
-                        viscous_stretch(green_strain(F), elements.viscous_strain[block])};
+    ViscousPart viscous = viscous_part(elements, block, F);
     const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q);
     // A spring that relaxes by a step's end counts less, and the less the longer the step: the step by the springs in
     // full is a safe guess of it.
@@ -91,6 +95,15 @@ Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, con
     viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
     return frequency_squared_bound(material, F, viscous, volume, Q, q) + nothing;
+}
+
+Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                   LaneQuaternion<Real8>& q) {
+    const MaterialConstants material = elements.material_of(block);
+    const bool viscous = material.relaxes() && !elements.viscous_strain.empty();
+    const Real8 one = Real8{} + 1.0, zero{};
+    return frequency_squared_bound(material, F, viscous ? viscous_part(elements, block, F) : ViscousPart{}, one,
+                                   {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, q);
 }
 
 }  // namespace skerry

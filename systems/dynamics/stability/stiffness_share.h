@@ -52,4 +52,8 @@ inline void clear_stiffness(const ElementInputs& elements, std::size_t block, st
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q);
 
+/// Pa, bound of the material's Hessian of each element of a block, what is viscous in full: K <= this V sum g_k.g_l.
+Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                   LaneQuaternion<Real8>& q);
+
 }  // namespace skerry

@@ -41,6 +41,7 @@ inline std::size_t block_count(const ColouredOrder& order) {
 class ByColour {
 public:
     static constexpr bool one_thread = false;
+    static constexpr bool own_masses = true;
 
     /// `partial`: block_count(order) rows.
     ByColour(const ColouredOrder& order, Team& team, std::span<BlockSum> partial)
@@ -65,6 +66,11 @@ public:
         for (std::size_t block = 0; block < block_count(*order_); ++block) sum += std::get<Sum>(partial_[block]);
         return sum;
     }
+
+    void apply(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
+        apply_impulse(contact, impulse, velocity);
+    }
+    Real coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b); }
 
 private:
     template <class Body>

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "components/contact_table.h"
+#include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/types.h"
 #include "jobs/access.h"
@@ -22,10 +23,15 @@ struct RegionInputs {
     Real gravity = 0;                    // m/s^2, norm: scale of the error measure
     // ascending; names the regions across steps. Without it there is no history to schedule by
     std::span<const ContactKey> key{};
+    const NodeClusters* clusters = nullptr;  // nodes that move together; none, or null: every node by its own mass
+    std::span<const Vec3> cluster_kick{};    // N s, of this step, by item of clusters->nodes
+
+    bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
     /// `velocity`: of the nodes, at the start of the step.
     static RegionInputs bind(const Binder& binder, const ContactTable& contact, const NodeTable& node,
-                             const Column<Vec3>& velocity, const Real& gravity) {
+                             const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
+                             const Column<Vec3>& cluster_kick) {
         return {.stencil = binder.read(contact.stencil),
                 .normal = binder.read(contact.normal),
                 .gap = binder.read(contact.gap),
@@ -36,7 +42,9 @@ struct RegionInputs {
                 .inverse_mass = binder.read(node.inverse_mass),
                 .velocity = binder.read(velocity),
                 .gravity = binder.value(gravity),
-                .key = binder.read(contact.key)};
+                .key = binder.read(contact.key),
+                .clusters = &binder.value(clusters),
+                .cluster_kick = binder.read(cluster_kick)};
     }
 };
 

@@ -40,18 +40,35 @@ inline void apply_impulse(const LumpedContact& contact, const Vec4& impulse, Vec
     for (Index a = 0; a < contact.node_count; ++a) velocity[contact.node[a]] += contact.step[a] * impulse;
 }
 
-/// The Gauss-Seidel step of one contact (docs/methods/friction.md 2.2). Returns D |change|^2.
+/// 1/kg: the block of W of two contacts is this number times the identity.
+inline Real coupling_of(const LumpedContact& a, const LumpedContact& b) {
+    Real coupling = 0;
+    for (Index k = 0; k < a.node_count; ++k)
+        for (Index l = 0; l < b.node_count; ++l)
+            if (a.node[k] == b.node[l]) coupling += a.weight[k] * b.step[l];
+    return coupling;
+}
+
+/// The Gauss-Seidel step of one contact (docs/methods/friction.md 2.2); `apply` moves nodes by an impulse. Returns
+/// D |change|^2.
+template <class Apply>
 inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity,
-                          Vec4& impulse) {
+                          Vec4& impulse, const Apply& apply) {
     const Vec4 u = contact_velocity(contact, velocity);
     const Vec4 stopping = impulse - (relaxation * contact.inverse_diagonal) * u;
     const Vec4 next = project_friction(stopping, contact.normal, contact.friction, friction);
     const Vec4 change = next - impulse;
     const Real size = change.dot(change);
     if (size == 0) return 0;  // most contacts that are apart: nothing to scatter
-    apply_impulse(contact, change, velocity);
+    apply(contact, change, velocity);
     impulse = next;
     return contact.diagonal * size;
+}
+inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity,
+                          Vec4& impulse) {
+    return solve_contact(
+        contact, friction, relaxation, velocity, impulse,
+        [](const LumpedContact& of, const Vec4& change, Vec4* moved) { apply_impulse(of, change, moved); });
 }
 
 /// F_i of docs/methods/errors.md 1: how far the impulse is from the one its velocity asks for. The De Saxce form where

@@ -37,15 +37,17 @@ inline Real push_bias(const LumpedContact& contact, Real gap, Real slop, std::sp
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// The Gauss-Seidel step of one contact on the pseudo velocities. Returns D change^2.
-inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity, Real& impulse) {
+/// The Gauss-Seidel step of one contact on the pseudo velocities; `apply` moves nodes by an impulse. Returns D
+/// change^2.
+template <class Apply>
+inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity, Real& impulse, const Apply& apply) {
     Real along = bias;
     for (Index a = 0; a < contact.node_count; ++a)
         along += contact.weight[a] * contact.normal.dot(velocity[contact.node[a]]);
     const Real next = std::max(Real(0), impulse - contact.inverse_diagonal * along);
     const Real change = next - impulse;
     if (change == 0) return 0;
-    apply_impulse(contact, change * contact.normal, velocity);
+    apply(contact, change * contact.normal, velocity);
     impulse = next;
     return contact.diagonal * change * change;
 }

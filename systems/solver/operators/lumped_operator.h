@@ -94,6 +94,11 @@ public:
 private:
     /// Does now what waits for a next sweep.
     void settle();
+    static auto apply_by(const Walk& walk) {
+        return [&walk](const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
+            walk.apply(contact, impulse, velocity);
+        };
+    }
     /// Counts the sweep. The first ones are not worth the bookkeeping: most solves end with them.
     bool may_freeze() {
         constexpr Index first_sweeps = 8;  // docs/solvers.md, "Constants"
@@ -101,9 +106,9 @@ private:
     }
     /// The step of contact i, with copies of all it needs: a store of vectors may change whatever is in memory.
     auto step(Real relaxation) const {
-        return [contact = memory_.contact.data(), velocity = memory_.velocity.data(), friction = friction_, relaxation](
-                   std::size_t i, Vec4& impulse) {
-            return solve_contact(contact[i], friction, relaxation, velocity, impulse);
+        return [contact = memory_.contact.data(), velocity = memory_.velocity.data(), friction = friction_, relaxation,
+                walk = walk_](std::size_t i, Vec4& impulse) {
+            return solve_contact(contact[i], friction, relaxation, velocity, impulse, apply_by(walk));
         };
     }
     Real step_unless_frozen(std::size_t i, Real relaxation, Vec4& impulse);
@@ -219,7 +224,7 @@ Real LumpedOperatorBy<Walk>::step_unless_frozen(std::size_t i, Real relaxation, 
     const Vec4 u = contact_velocity(contact, memory_.velocity.data());
     const Vec4 moved = u - memory_.last_velocity[i];
     memory_.last_velocity[i] = u;
-    const Real size = solve_contact(contact, friction_, relaxation, memory_.velocity.data(), impulse);
+    const Real size = solve_contact(contact, friction_, relaxation, memory_.velocity.data(), impulse, apply_by(walk_));
     const bool known = quiet_sweeps != velocity_unknown;
     const bool at_rest =
         known && size <= memory_.still && contact.inverse_diagonal * moved.squaredNorm() <= memory_.still;
@@ -236,7 +241,7 @@ bool LumpedOperatorBy<Walk>::make_feasible() requires Walk::one_thread {
         const Vec4 inside = project_friction(memory_.impulse[i], contact.normal, contact.friction, friction_);
         const Vec4 change = inside - memory_.impulse[i];
         if (change.squaredNorm() == 0) continue;
-        apply_impulse(contact, change, memory_.velocity.data());
+        walk_.apply(contact, change, memory_.velocity.data());
         memory_.impulse[i] = inside;
         changed = true;
     }
@@ -267,7 +272,7 @@ void LumpedOperatorBy<Walk>::refresh(std::span<const Vec4> impulse, std::span<Ve
         for (std::size_t n = begin; n < end; ++n) velocity[n] = padded(memory_.free_velocity[memory_.node[n]]);
     });
     walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) apply_impulse(memory_.contact[i], impulse[i], velocity.data());
+        for (std::size_t i = begin; i < end; ++i) walk_.apply(memory_.contact[i], impulse[i], velocity.data());
     });
 }
 
@@ -289,7 +294,7 @@ void LumpedOperatorBy<Walk>::multiply(std::span<const Vec4> in, std::span<Vec4> 
         for (std::size_t n = begin; n < end; ++n) memory_.scratch[n].setZero();
     });
     walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) apply_impulse(memory_.contact[i], in[i], memory_.scratch.data());
+        for (std::size_t i = begin; i < end; ++i) walk_.apply(memory_.contact[i], in[i], memory_.scratch.data());
     });
     walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -303,11 +308,7 @@ void LumpedOperatorBy<Walk>::assemble(Eigen::MatrixXd& matrix) const {
     for (Index i = 0; i < size(); ++i)
         for (Index j = 0; j < size(); ++j) {
             const LumpedContact &a = memory_.contact[i], &b = memory_.contact[j];
-            Real coupling = 0;
-            for (Index k = 0; k < a.node_count; ++k)
-                for (Index l = 0; l < b.node_count; ++l)
-                    if (a.node[k] == b.node[l]) coupling += a.weight[k] * b.step[l];
-            matrix.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(coupling);
+            matrix.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(walk_.coupling(a, b));
         }
 }
 

@@ -2,16 +2,17 @@
 
 namespace skerry {
 
-void RegionMemory::make_room_for(std::size_t contacts, std::size_t nodes, const SolverSettings& settings) {
+void RegionMemory::make_room_for(std::size_t contacts, std::size_t region_nodes, std::size_t nodes,
+                                 const SolverSettings& settings) {
     make_room(contact, contacts);
     make_room(impulse, contacts);
     make_room(push_impulse, contacts);
     make_room(push_bias, contacts);
     make_room(quiet_sweeps, contacts);
     make_room(last_velocity, contacts);
-    make_room(node, 4 * contacts);
-    make_room(velocity, 4 * contacts);
-    make_room(scratch, 4 * contacts);
+    make_room(node, region_nodes);
+    make_room(velocity, region_nodes);
+    make_room(scratch, region_nodes);
     make_room(place, nodes);
     for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(workspace[slot], contacts);
 }
@@ -37,24 +38,29 @@ SolveLimits limits_of(const SolverSettings& settings) {
 }
 
 LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node) {
+    return memory_from(stage, base, count, node, 4 * static_cast<std::size_t>(base));
+}
+
+LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node,
+                         std::size_t first_node) {
     RegionMemory& data = stage.memory;
     const std::size_t first = static_cast<std::size_t>(base);
     LumpedMemory memory{.contact = data.contact.span().subspan(first, count),
                         .impulse = data.impulse.span().subspan(first, count),
-                        .velocity = data.velocity.span().subspan(4 * first, node.size()),
+                        .velocity = data.velocity.span().subspan(first_node, node.size()),
                         .node = node,
                         .free_velocity = stage.out.velocity_next,
-                        .scratch = data.scratch.span().subspan(4 * first, node.size()),
+                        .scratch = data.scratch.span().subspan(first_node, node.size()),
                         .workspace = {}};
     for (std::size_t slot = 0; slot < workspace_slots(stage.settings.method); ++slot)
         memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
     return memory;
 }
 
-PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::size_t node_count) {
+PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::span<Vec4> velocity) {
     const std::size_t first = static_cast<std::size_t>(base);
     return {stage.memory.push_impulse.span().subspan(first, count), stage.memory.push_bias.span().subspan(first, count),
-            stage.memory.scratch.span().subspan(4 * first, node_count)};
+            velocity};
 }
 
 Real dissipated_by(const RegionStage& stage, Index row) {
@@ -76,6 +82,28 @@ Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<c
     for (std::size_t n = 0; n < memory.node.size(); ++n) {
         const Vec3 change = memory.velocity[n].head<3>() - stage.inputs.velocity[memory.node[n]];
         work -= change.dot(push_velocity[n].head<3>()) / stage.inputs.inverse_mass[memory.node[n]];
+    }
+    return work;
+}
+
+Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& memory,
+                                std::span<const Vec4> push_velocity) {
+    const NodeClusters& clusters = *stage.inputs.clusters;
+    Real work = 0;
+    for (std::size_t i = 0; i < memory.contact.size(); ++i) {
+        const LumpedContact& contact = memory.contact[i];
+        for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
+            if (clusters.cluster(memory.node[contact.node[a]]) == no_index)
+                work += contact.weight[a] * memory.impulse[i].dot(push_velocity[contact.node[a]]);
+    }
+    for (std::size_t n = 0; n < memory.node.size(); ++n) {
+        const Index node = memory.node[n], cluster = clusters.cluster(node);
+        const Vec3 push = push_velocity[n].head<3>();
+        if (cluster == no_index)
+            work -= (memory.velocity[n].head<3>() - stage.inputs.velocity[node]).dot(push) /
+                    stage.inputs.inverse_mass[node];
+        else
+            work -= stage.inputs.cluster_kick[clusters.nodes.offset[cluster] + clusters.place[node]].dot(push);
     }
     return work;
 }

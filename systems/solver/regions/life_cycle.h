@@ -58,7 +58,11 @@ struct LoadedRegion {
 
 /// The memory of `count` contacts from `base` on, and of their nodes: `node` are rows of NodeTable.
 LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node);
-PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::size_t node_count);
+/// The same where nodes are not kept four by contact: `first_node` is the place of the first.
+LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node,
+                         std::size_t first_node);
+/// `velocity`: by node of the region, for the result.
+PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::span<Vec4> velocity);
 
 /// J, taken out by a contact whose impulse and velocities are written (docs/methods/time_stepping.md 2.6).
 Real dissipated_by(const RegionStage& stage, Index row);
@@ -78,6 +82,12 @@ void load_contacts(const RegionStage& stage, LoadedRegion<Walk>& region, Numberi
             LumpedContact& contact = data.contact[first + i];
             contact = load_contact(stage.inputs, region.row[number], stage.out.velocity_next, stage.settings, stage.h,
                                    numbering(number));
+            if constexpr (!Walk::own_masses) {
+                if (contact.node_count > 0) {
+                    contact.diagonal = region.walk.coupling(contact, contact);
+                    contact.inverse_diagonal = 1 / contact.diagonal;
+                }
+            }
             const Vec4 u = contact_velocity(contact, velocity);
             sums.add(contact, stage.settings.friction, u);
             data.impulse[first + i].setZero();
@@ -103,7 +113,7 @@ void take_warm_start(const RegionStage& stage, const LoadedRegion<Walk>& region)
             if (contact.node_count == 0) continue;
             const Vec4 last = padded(stage.out.impulse[region.row_at(i)]);
             memory.impulse[i] = contact.friction.stick == 0 ? Vec4(contact.normal.dot(last) * contact.normal) : last;
-            apply_impulse(contact, memory.impulse[i], memory.velocity.data());
+            region.walk.apply(contact, memory.impulse[i], memory.velocity.data());
         }
     });
 }
@@ -206,7 +216,10 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
         const Real change = walk.template sum<Real>(contact.size(), [&](std::size_t begin, std::size_t end) {
             Real size = 0;
             for (std::size_t i = begin; i < end; ++i)
-                size += push_contact(contact[i], memory.bias[i], memory.velocity.data(), memory.impulse[i]);
+                size += push_contact(contact[i], memory.bias[i], memory.velocity.data(), memory.impulse[i],
+                                     [&walk](const LumpedContact& of, const Vec4& impulse, Vec4* velocity) {
+                                         walk.apply(of, impulse, velocity);
+                                     });
             return size;
         });
         if (change <= small && !settings.fixed_iterations) break;
@@ -217,6 +230,9 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
 /// J, that moving positions by h p takes against the forces of the step but for those of contacts: h times the force on
 /// a node is its momentum after the step, less that before and less what its contacts gave. To first order in h p.
 Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<const Vec4> push_velocity);
+/// The same where nodes of clusters are not moved by their own masses: what forces gave them is known.
+Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& memory,
+                                std::span<const Vec4> push_velocity);
 
 /// Finish: writes back, pushes out, and notes what was dissipated.
 template <RegionWalk Walk>
@@ -229,13 +245,15 @@ template <RegionWalk Walk>
         for (std::size_t n = begin; n < end; ++n)
             stage.out.push_out[region.memory.node[n]] = push.velocity[n].template head<3>();
     });
-    outcome.push_work = push_work(stage, region.memory, push.velocity);
+    if constexpr (Walk::own_masses)
+        outcome.push_work = push_work(stage, region.memory, push.velocity);
+    else
+        outcome.push_work = push_work_through_clusters(stage, region.memory, push.velocity);
     stage.memory.pushed.store(true, std::memory_order_relaxed);
 }
 template <RegionWalk Walk>
 void finish_region(const RegionStage& stage, const LoadedRegion<Walk>& region, RegionOutcome& outcome) {
-    finish_region(stage, region, push_memory(stage, region.base, region.row.size(), region.memory.node.size()),
-                  outcome);
+    finish_region(stage, region, push_memory(stage, region.base, region.row.size(), region.memory.scratch), outcome);
 }
 
 }  // namespace skerry

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "components/column.h"
+#include "components/ragged.h"
 #include "components/region_table.h"
 #include "systems/solver/coloured/order_region.h"
 #include "systems/solver/inputs/solver_settings.h"
@@ -61,10 +62,14 @@ struct RegionMemory {
     Column<Real> push_bias;     // m/s; likewise the previous ones
     Column<std::uint8_t> quiet_sweeps;  // sweeps without a change
     Column<Vec4> last_velocity;         // m/s
-    // four places by contact: a region never has more nodes
+    // four places by contact: a region never has more nodes, but for those of clusters
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // m/s
     Column<Vec4> scratch;   // m/s
+    // of regions that touch clusters of nodes
+    Ragged<Index> region_clusters;    // by region; no rows without clusters
+    Column<std::size_t> node_base;    // by region: place of its first node
+    Column<Index> region_of_cluster;  // that touched it last
     // by row of NodeTable
     Column<Index> place;  // in its region's list of nodes, if that list agrees
     // by region
@@ -77,7 +82,8 @@ struct RegionMemory {
     std::atomic<bool> pushed = false;  // some region wrote push_out in this step
 
     /// Of the columns by contact and by node.
-    void make_room_for(std::size_t contacts, std::size_t nodes, const SolverSettings& settings);
+    void make_room_for(std::size_t contacts, std::size_t region_nodes, std::size_t nodes,
+                       const SolverSettings& settings);
 };
 
 }  // namespace skerry

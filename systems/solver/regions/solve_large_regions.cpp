@@ -1,6 +1,7 @@
 #include "systems/solver/regions/solve_large_regions.h"
 
 #include "systems/solver/methods/run_method.h"
+#include "systems/solver/regions/solve_clustered.h"
 
 namespace skerry {
 namespace {
@@ -37,17 +38,23 @@ RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> r
     return region;
 }
 
+bool is_large(const RegionStage& stage, const RegionTable& regions, Index number) {
+    const std::size_t contacts = regions.contacts[static_cast<std::size_t>(number)].size();
+    return !stage.settings.fixed_iterations &&
+           contacts >= static_cast<std::size_t>(stage.settings.parallel_region_contacts) &&
+           !touches_cluster(stage.memory, number);
+}
+
 void solve_large_regions(Executor& executor, const RegionStage& stage, RegionTable& regions) {
     LargeRegions& large = stage.memory.large;
     std::size_t count = 0;
-    for (std::size_t r = 0; r < regions.size(); ++r)
-        count += is_large(stage.settings, regions.contacts[r].size()) ? 1 : 0;
+    for (std::size_t r = 0; r < regions.size(); ++r) count += is_large(stage, regions, static_cast<Index>(r)) ? 1 : 0;
     if (count == 0) return;
     while (large.region.size() < count) large.region.push_back(std::make_unique<ColouredRegion>());
     large.team.gather(executor, [&] {
         std::size_t next = 0;
         for (std::size_t r = 0; r < regions.size(); ++r) {
-            if (!is_large(stage.settings, regions.contacts[r].size())) continue;
+            if (!is_large(stage, regions, static_cast<Index>(r))) continue;
             write_outcome(solve_by_colour(stage, regions.contacts[r], regions.contacts.offset[r], large.team,
                                           *large.region[next++]),
                           static_cast<Index>(r), regions);

@@ -6,10 +6,9 @@
 namespace skerry {
 
 /// Whether the region is solved in its coloured order, however many workers there are: so its bits do not depend on
-/// them. Not with fixed iterations, where a region alone and within a larger one are to go the same way.
-inline bool is_large(const SolverSettings& settings, std::size_t contacts) {
-    return !settings.fixed_iterations && contacts >= static_cast<std::size_t>(settings.parallel_region_contacts);
-}
+/// them. Not with fixed iterations, where a region alone and within a larger one are to go the same way, and not
+/// through clusters.
+bool is_large(const RegionStage& stage, const RegionTable& regions, Index number);
 
 using RegionByColour = LoadedRegion<ByColour>;
 

@@ -8,7 +8,7 @@ namespace {
 
 /// Sweeps on the normal impulses alone.
 SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& region, const SolveLimits& limits) {
-    const PushMemory memory = push_memory(stage, region.base, region.row.size(), 0);
+    const PushMemory memory = push_memory(stage, region.base, region.row.size(), {});
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits);
     if (result.converged || !std::isfinite(result.error)) rows.keep();  // else the best ones are there

@@ -37,7 +37,7 @@ struct LoadedScene {
           stage{inputs, settings, scene.h, out, data} {
         settings.method = SolverMethod::apgd;  // which asks for the most vectors
         for (std::size_t k = 0; k < scene.stencil.size(); ++k) row.push_back(static_cast<Index>(k));
-        data.make_room_for(row.size(), scene.velocity.size(), settings);
+        data.make_room_for(row.size(), 4 * row.size(), scene.velocity.size(), settings);
         Team alone;
         order_region(inputs, row, alone, data.place.span(), kept);
         const RegionByColour loaded = load_by_colour(stage, row, 0, alone, kept);

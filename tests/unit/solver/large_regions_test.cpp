@@ -79,7 +79,7 @@ TEST_CASE("small regions do not notice that others are large", "[determinism][so
     const ContactScene scene = large_scene();
     const SolvedScene a = scene.solve(large_from(300)), b = scene.solve(large_from(1000000));
     for (std::size_t r = 0; r < a.regions.size(); ++r) {
-        if (is_large(large_from(300), a.regions.contacts[r].size())) continue;
+        if (a.regions.contacts[r].size() >= 300) continue;
         for (const Index i : a.regions.contacts[r])
             REQUIRE(a.impulse[static_cast<std::size_t>(i)] == b.impulse[static_cast<std::size_t>(i)]);
     }

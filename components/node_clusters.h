@@ -1,0 +1,47 @@
+// Nodes that do not move by their own masses alone: groups that one matrix of inertia couples
+// (docs/methods/clusters.md).
+#pragma once
+
+#include <span>
+
+#include "components/column.h"
+#include "components/ragged.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Clusters of all bodies: an impulse on a node moves every node of its cluster, by a row of `inverse`. Derived from
+/// the implicit elements (build_clusters).
+struct NodeClusters {
+    Ragged<Index> nodes;              // by cluster: rows of NodeTable, moving ones, ascending
+    Column<Index> body;               // by cluster: row of BodyTable
+    Column<std::size_t> first_entry;  // by cluster: of its matrix in `inverse`
+    Column<Real> inverse;             // 1/kg, A^-1, row by row
+    Column<Index> cluster_of, place;  // by node: its cluster or no_index, its place there. No rows without clusters
+
+    std::size_t size() const { return body.size(); }
+    bool empty() const { return body.empty(); }
+    void clear() {
+        nodes.clear();
+        body.clear();
+        first_entry.clear();
+        inverse.clear();
+        cluster_of.clear();
+        place.clear();
+    }
+    /// Row of the cluster that a node belongs to, or no_index.
+    Index cluster(Index node) const { return cluster_of.empty() ? no_index : cluster_of[node]; }
+    /// The first node of the cluster that a node belongs to, or itself.
+    Index leader(Index node) const {
+        const Index of = cluster(node);
+        return of == no_index ? node : nodes.item[nodes.offset[of]];
+    }
+    /// 1/kg, by what an impulse on the node at a place moves the nodes of its cluster.
+    std::span<const Real> row(Index cluster, Index at) const {
+        const auto c = static_cast<std::size_t>(cluster);
+        const std::size_t count = nodes[c].size();
+        return inverse.span().subspan(first_entry[c] + static_cast<std::size_t>(at) * count, count);
+    }
+};
+
+}  // namespace skerry

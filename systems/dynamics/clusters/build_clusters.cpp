@@ -1,0 +1,151 @@
+#include "systems/dynamics/clusters/build_clusters.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <vector>
+
+#include "components/union_find.h"
+#include "systems/dynamics/clusters/implicit_elements.h"
+
+namespace skerry {
+
+namespace {
+
+bool holds(const ElementGradient& gradient, std::size_t l) {
+    return gradient[0][l] != 0 || gradient[1][l] != 0 || gradient[2][l] != 0;
+}
+
+/// Calls visit(block, lane, modulus) for every implicit element; `modulus`: from blocks.begin on.
+template <class Visit>
+void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit&& visit) {
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (const Real m = modulus[b - static_cast<std::size_t>(blocks.begin)][l]; m > 0) visit(b, l, m);
+}
+
+/// Calls visit(node, k) for the moving nodes that an element holds.
+template <class Visit>
+void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real> inverse_mass, Visit&& visit) {
+    for (Index k = 0; k < nodes.count; ++k) {
+        const Index n = nodes.node[k][l];
+        if (holds(nodes.gradient[k], l) && inverse_mass[static_cast<std::size_t>(n)] > 0) visit(n, k);
+    }
+}
+
+void chain(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
+           std::span<const Real> inverse_mass, UnionFind& sets, std::vector<Index>& nodes) {
+    for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {
+        Index root = no_index;
+        for_each_node(elements.nodes_of(b), l, inverse_mass, [&](Index n, Index) {
+            nodes.push_back(n);
+            const Index other = sets.root(n);
+            if (root != other) root = root == no_index ? other : sets.join_roots(root, other);
+        });
+    });
+}
+
+void sort_unique(std::vector<Index>& nodes) {
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+}
+
+/// Numbers the clusters of a body by their first nodes and lists these.
+void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeClusters& clusters) {
+    const auto first = static_cast<Index>(clusters.body.size());
+    for (const Index n : nodes) {
+        const Index root = sets.root(n);  // the smallest of its set: listed first
+        if (root == n) {
+            clusters.cluster_of[n] = static_cast<Index>(clusters.body.size());
+            clusters.body.push_back(body);
+        } else {
+            clusters.cluster_of[n] = clusters.cluster_of[root];
+        }
+    }
+    for (auto c = first; c < static_cast<Index>(clusters.body.size()); ++c) {
+        for (const Index n : nodes)
+            if (clusters.cluster_of[n] == c) {
+                clusters.place[n] = static_cast<Index>(clusters.nodes.item.size()) - clusters.nodes.offset.back();
+                clusters.nodes.item.push_back(n);
+            }
+        clusters.nodes.offset.push_back(static_cast<Index>(clusters.nodes.item.size()));
+    }
+}
+
+}  // namespace
+
+ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
+                           std::span<const Real> inverse_mass) {
+    UnionFind sets;
+    sets.start(inverse_mass.size());
+    std::vector<Index> nodes;
+    chain(elements, blocks, modulus, inverse_mass, sets, nodes);
+    sort_unique(nodes);
+    std::vector<Index> roots;
+    for (const Index n : nodes) roots.push_back(sets.root(n));
+    std::ranges::sort(roots);
+    ClusterSizes sizes;
+    for (std::size_t begin = 0, end = 0; begin < roots.size(); begin = end) {
+        while (end < roots.size() && roots[end] == roots[begin]) ++end;
+        sizes.largest = std::max(sizes.largest, end - begin);
+        sizes.entries += (end - begin) * (end - begin);
+    }
+    return sizes;
+}
+
+void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters) {
+    clusters.clear();
+    if (std::ranges::none_of(inputs.body_cluster_step, [](Real step) { return step > 0; })) return;
+    const std::size_t node_count = inputs.mass.size();
+    clusters.cluster_of.assign(node_count, no_index);
+    clusters.place.assign(node_count, no_index);
+    clusters.nodes.offset.push_back(0);
+    UnionFind sets;
+    sets.start(node_count);
+    std::vector<Index> nodes;
+    std::vector<Eigen::MatrixXd> A;
+    for (std::size_t body = 0; body < inputs.body_blocks.size(); ++body) {
+        if (!(inputs.body_cluster_step[body] > 0)) continue;
+        const Range blocks = inputs.body_blocks[body];
+        const auto modulus =
+            inputs.modulus.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size()));
+        nodes.clear();
+        chain(elements, blocks, modulus, inputs.inverse_mass, sets, nodes);
+        sort_unique(nodes);
+        const std::size_t first = clusters.size();
+        list_nodes(nodes, static_cast<Index>(body), sets, clusters);
+        A.clear();
+        for (std::size_t c = first; c < clusters.size(); ++c) {
+            const auto of_cluster = clusters.nodes[c];
+            const auto count = static_cast<Eigen::Index>(of_cluster.size());
+            A.emplace_back(Eigen::MatrixXd::Zero(count, count));
+            for (Eigen::Index i = 0; i < count; ++i)
+                A.back()(i, i) = inputs.mass[static_cast<std::size_t>(of_cluster[static_cast<std::size_t>(i)])];
+        }
+        const Real beta = inertia_of_stiffness(inputs.body_cluster_step[body]);
+        for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real m) {
+            const BlockNodes of = elements.nodes_of(b);
+            const Real weight = beta * m * elements.volume[b][l];
+            for_each_node(of, l, inputs.inverse_mass, [&](Index n, Index k) {
+                Eigen::MatrixXd& matrix = A[static_cast<std::size_t>(clusters.cluster_of[n]) - first];
+                for_each_node(of, l, inputs.inverse_mass, [&](Index other, Index j) {
+                    Real product = 0;
+                    for (std::size_t i = 0; i < 3; ++i) product += of.gradient[k][i][l] * of.gradient[j][i][l];
+                    matrix(clusters.place[n], clusters.place[other]) += weight * product;
+                });
+            });
+        });
+        for (const Eigen::MatrixXd& matrix : A) {
+            const Eigen::MatrixXd inverse = matrix.llt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
+            const std::size_t begin = clusters.inverse.size();
+            clusters.first_entry.push_back(begin);
+            clusters.inverse.resize(begin + static_cast<std::size_t>(inverse.size()));
+            // symmetric to the last bit: what two contacts do to each other is the same
+            for (Eigen::Index i = 0; i < inverse.rows(); ++i)
+                for (Eigen::Index j = 0; j < inverse.cols(); ++j)
+                    clusters.inverse[begin + static_cast<std::size_t>(i * inverse.cols() + j)] =
+                        i < j ? inverse(i, j) : inverse(j, i);
+        }
+    }
+}
+
+}  // namespace skerry

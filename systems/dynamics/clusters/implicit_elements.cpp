@@ -1,0 +1,149 @@
+#include "systems/dynamics/clusters/implicit_elements.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/stability/stiffness_share.h"
+
+namespace skerry {
+
+namespace {
+
+LaneQuaternion<Real8> no_turn() {
+    const Real8 one = Real8{} + 1.0, zero{};
+    return {one, zero, zero, zero};
+}
+
+/// Calls visit(block, lane) for every element of the range.
+template <class Visit>
+void for_each_element(const ElementInputs& elements, Range blocks, Visit&& visit) {
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (elements.volume[b][l] > 0) visit(b, l);
+}
+
+/// s, the step that each explicit element stands with the present shares; infinite of implicit ones.
+void find_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> mass,
+                std::span<Real> stiffness_sum, std::span<ElementLane> step) {
+    const auto first = static_cast<std::size_t>(blocks.begin), end = static_cast<std::size_t>(blocks.end);
+    for (std::size_t b = first; b < end; ++b) clear_stiffness(elements, b, stiffness_sum);
+    for (std::size_t b = first; b < end; ++b)
+        add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
+                      [](std::size_t) { return true; });
+    LaneQuaternion<Real8> q = no_turn();
+    for (std::size_t b = first; b < end; ++b) {
+        const Real8 bound =
+            frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q);
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            step[b - first][l] =
+                bound[l] > 0 ? step_times_frequency / std::sqrt(bound[l]) : std::numeric_limits<Real>::infinity();
+    }
+}
+
+/// kg m^2, the least moment of inertia of the nodes that the elements have.
+Real least_moment(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                  std::span<const Real> mass) {
+    std::vector<Index> nodes;
+    for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
+        const BlockNodes of = elements.nodes_of(b);
+        for (Index k = 0; k < of.count; ++k) nodes.push_back(of.node[k][l]);
+    });
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    Real total = 0;
+    Vec3 center = Vec3::Zero();
+    for (const Index n : nodes) {
+        total += mass[static_cast<std::size_t>(n)];
+        center += mass[static_cast<std::size_t>(n)] * position[static_cast<std::size_t>(n)];
+    }
+    center /= total;
+    Mat3 second = Mat3::Zero();
+    for (const Index n : nodes) {
+        const Vec3 x = position[static_cast<std::size_t>(n)] - center;
+        second += mass[static_cast<std::size_t>(n)] * x * x.transpose();
+    }
+    const Vec3 spread = Eigen::SelfAdjointEigenSolver<Mat3>(second, Eigen::EigenvaluesOnly).eigenvalues();
+    return spread[0] + spread[1];
+}
+
+}  // namespace
+
+ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                                     std::span<const Real> mass, Real step, Real headroom,
+                                     std::span<Real> stiffness_sum, const ImplicitOutputs& out) {
+    constexpr int rounds_of_sharing = 3;  // between two rounds that give elements up
+    constexpr Real least_share = 1e-6;    // keeps elements that bound nothing from giving all away
+    constexpr Real about_worst = 1.25;    // given up at once: those that stand up to so many times the worst
+    const ElementLane one{{1, 1, 1, 1, 1, 1, 1, 1}};
+    std::ranges::fill(out.mass_share, one);
+    std::ranges::fill(out.modulus, ElementLane{});
+    const auto first = static_cast<std::size_t>(blocks.begin);
+    std::vector<ElementLane> own(out.mass_share.size());
+    const auto share = [&](std::size_t b, std::size_t l) -> Real& { return out.mass_share[b - first][l]; };
+    const auto step_of = [&](std::size_t b, std::size_t l) { return own[b - first][l]; };
+    for (int round = 1;; ++round) {
+        find_steps(elements, blocks, position, mass, stiffness_sum, own);
+        Real shortest = std::numeric_limits<Real>::infinity(), volume = 0, short_volume = 0;
+        for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
+            shortest = std::min(shortest, step_of(b, l));
+            volume += elements.volume[b][l];
+            if (share(b, l) == 0 || step_of(b, l) < step) short_volume += elements.volume[b][l];
+        });
+        if (!(shortest < step)) break;
+        const bool gives_up = round % rounds_of_sharing == 0;
+        if (gives_up && 2 * short_volume > volume) return {.too_many = true};
+        for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
+            Real& of_element = share(b, l);
+            if (of_element == 0) return;
+            if (gives_up && step_of(b, l) < std::min(step, about_worst * shortest))
+                of_element = 0;
+            else
+                of_element = std::max(least_share, of_element * std::max(1e-3, shortest / step_of(b, l)));
+        });
+    }
+    // implicit elements, and what they add to a rigid turn: beta c V |omega x|^2 <= beta c V omega^2 for each axis
+    Real added = 0;
+    LaneQuaternion<Real8> q = no_turn();
+    for (auto b = first; b < static_cast<std::size_t>(blocks.end); ++b) {
+        const Real8 stiffness = stiffness_of(elements, b, deformation_of(elements, b, position), q);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            if (!(elements.volume[b][l] > 0) || share(b, l) != 0) continue;
+            out.modulus[b - first][l] = headroom * stiffness[l];
+            added += 2 * inertia_of_stiffness(step) * out.modulus[b - first][l] * elements.volume[b][l];
+        }
+    }
+    if (added == 0) return {};
+    return {.moment = added / least_moment(elements, blocks, position, mass)};
+}
+
+Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                      std::span<const ElementLane> modulus) {
+    Real worst = 0;
+    LaneQuaternion<Real8> q = no_turn();
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        const ElementLane& taken = modulus[b - static_cast<std::size_t>(blocks.begin)];
+        if (std::none_of(taken.lane, taken.lane + element_lanes, [](Real m) { return m > 0; })) continue;
+        const Real8 stiffness = stiffness_of(elements, b, deformation_of(elements, b, position), q);
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (taken[l] > 0) worst = std::max(worst, stiffness[l] / taken[l]);
+    }
+    return worst;
+}
+
+Real added_energy(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus, Real step,
+                  std::span<const Vec3> velocity) {
+    Real energy = 0;
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        const ElementLane& taken = modulus[b - static_cast<std::size_t>(blocks.begin)];
+        const LaneMat3<Real8> rate = deformation_gradient(elements.nodes_of(b), velocity);
+        const Real8 square = inner_product(rate, rate);
+        for (std::size_t l = 0; l < element_lanes; ++l) energy += taken[l] * elements.volume[b][l] * square[l];
+    }
+    return inertia_of_stiffness(step) * energy / 2;
+}
+
+}  // namespace skerry

@@ -1,0 +1,43 @@
+// Which elements of a body do not stand a step and are left to clusters (docs/methods/clusters.md 3).
+#pragma once
+
+#include <span>
+
+#include "systems/dynamics/elements/compute_element_forces.h"
+
+namespace skerry {
+
+/// What is written of each block of the body.
+struct ImplicitOutputs {
+    std::span<ElementLane> mass_share;  // of implicit elements 0: they take no mass from their nodes
+    std::span<ElementLane> modulus;     // Pa, stiffness that an implicit element is taken to have; 0: explicit
+};
+
+struct ImplicitShare {
+    Real moment = 0;        // what the clusters add to the least moment of inertia of the body, over that moment
+    bool too_many = false;  // half of the body's volume or more does not stand the step: nothing is found
+};
+
+/// Shares the masses of a body anew, so that every explicit element stands `step` (s) in the shape that it has, and
+/// makes implicit those for which no sharing does. Implicit elements have `headroom` times the stiffness that they have
+/// now. `mass_share` and `modulus` are those of the inputs. Sequential.
+ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                                     std::span<const Real> mass, Real step, Real headroom,
+                                     std::span<Real> stiffness_sum, const ImplicitOutputs& out);
+
+/// The largest factor by which an implicit element of the body is stiffer now than it is taken to be; 0 without any.
+Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                      std::span<const ElementLane> modulus);
+
+/// J, what the inertia of implicit elements adds to the kinetic energy: v.(A - M) v / 2. `step`: that of the body's
+/// clusters, s.
+Real added_energy(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus, Real step,
+                  std::span<const Vec3> velocity);
+
+/// kg m^2/s^2 per Pa m^3: beta of A = M + beta sum K, for steps up to `step`.
+constexpr Real inertia_of_stiffness(Real step) {
+    constexpr Real safety = 1.8;  // step_times_frequency, in place of 2
+    return step * step / (safety * safety);
+}
+
+}  // namespace skerry

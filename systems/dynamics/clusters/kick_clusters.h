@@ -1,0 +1,32 @@
+// Nodes of clusters take the impulse of their forces by the inertia of the cluster (docs/methods/clusters.md 1).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/node_clusters.h"
+#include "components/node_table.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+struct ClusterKickInputs {
+    const NodeClusters& clusters;
+    std::span<const Real> mass;                 // kg, by node
+    std::span<const std::uint8_t> body_asleep;  // empty: none is
+
+    static ClusterKickInputs bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
+                                  const BodyTable& body, const bool& any_asleep) {
+        return {.clusters = binder.value(clusters),
+                .mass = binder.read(node.mass),
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)};
+    }
+};
+
+/// velocity_next = velocity + A^-1 m (velocity_next - velocity), cluster by cluster. `kick`: N s, what forces gave each
+/// node, by item of clusters.nodes. Parallel over clusters. Returns false where there is none (skipped).
+bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity,
+                   Column<Vec3>& kick, std::span<Vec3> velocity_next);
+
+}  // namespace skerry
