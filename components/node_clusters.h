@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Clusters of all bodies: an impulse on a node moves every node of its cluster, by a row of `inverse`. Derived from
-/// the implicit elements (build_clusters).
+/// Clusters of all bodies: an impulse on a node moves every node of its cluster, by a row of `inverse`. Made by
+/// build_clusters from the implicit elements, and kept up with these by stiffen_clusters.
 struct NodeClusters {
     Ragged<Index> nodes;              // by cluster: rows of NodeTable, moving ones, ascending
     Column<Index> body;               // by cluster: row of BodyTable

@@ -23,16 +23,45 @@ struct Touch {
 
 /// By node, contacts in their order.
 std::vector<Touch> list_touches(const LumpedContacts& contacts) {
+    std::vector<bool> is_coupled(contacts.inverse_mass.size(), false);
+    for (const CoupledNodes& group : contacts.coupled)
+        for (const Index node : group.node) is_coupled[static_cast<std::size_t>(node)] = true;
     std::vector<Touch> touches;
     for (std::size_t i = 0; i < contacts.node.size(); ++i)
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = contacts.node[i][a];
             const Real weight = contacts.weight[i][a];
-            if (weight != 0 && contacts.inverse_mass[node] > 0)
+            if (weight != 0 && contacts.inverse_mass[node] > 0 && !is_coupled[node])
                 touches.push_back({node, static_cast<Index>(i), weight});
         }
     std::stable_sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& b) { return a.node < b.node; });
     return touches;
+}
+
+/// Adds the blocks between contacts on nodes that move together.
+void add_coupled(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
+    std::vector<std::size_t> place(contacts.inverse_mass.size());
+    for (const CoupledNodes& group : contacts.coupled) {
+        const std::size_t count = group.node.size();
+        std::ranges::fill(place, count);
+        for (std::size_t k = 0; k < count; ++k) place[static_cast<std::size_t>(group.node[k])] = k;
+        std::vector<Touch> touches;  // node: place in the group
+        for (std::size_t i = 0; i < contacts.node.size(); ++i)
+            for (std::size_t a = 0; a < 4; ++a)
+                if (const std::size_t at = place[static_cast<std::size_t>(contacts.node[i][a])];
+                    contacts.weight[i][a] != 0 && at < count)
+                    touches.push_back({static_cast<Index>(at), static_cast<Index>(i), contacts.weight[i][a]});
+        for (const Touch& a : touches)
+            for (const Touch& b : touches) {
+                const Real inverse =
+                    group.inverse[static_cast<std::size_t>(a.node) * count + static_cast<std::size_t>(b.node)];
+                const Real coupling = a.weight * b.weight * inverse;
+                const auto i = static_cast<std::size_t>(a.contact), j = static_cast<std::size_t>(b.contact);
+                parts.push_back(
+                    {a.contact, b.contact,
+                     i == j ? Mat3(coupling * Mat3::Identity()) : Mat3(coupling * (frame[i].transpose() * frame[j]))});
+            }
+    }
 }
 
 }  // namespace
@@ -64,6 +93,7 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
                      i == j ? Mat3(coupling * Mat3::Identity()) : Mat3(coupling * (frame[i].transpose() * frame[j]))});
             }
     }
+    add_coupled(contacts, frame, parts);
     gather_blocks(std::move(parts), problem);
     return problem;
 }

@@ -21,6 +21,26 @@ std::string description_of(const StepContacts& step, const SolverSettings& setti
     return text;
 }
 
+/// The clusters that contacts touch.
+std::vector<CoupledNodes> coupled_nodes(const RegionInputs& contacts) {
+    std::vector<CoupledNodes> coupled;
+    if (!contacts.clustered()) return coupled;
+    const NodeClusters& clusters = *contacts.clusters;
+    std::vector<bool> touched(clusters.size(), false);
+    for (const Stencil& stencil : contacts.stencil)
+        for (std::size_t a = 0; a < 4; ++a)
+            if (const Index c = clusters.cluster(stencil.node[a]); stencil.weight[a] != 0 && c != no_index)
+                touched[static_cast<std::size_t>(c)] = true;
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+        if (!touched[c]) continue;
+        const std::span<const Index> nodes = clusters.nodes[c];
+        const std::span<const Real> inverse =
+            clusters.inverse.span().subspan(clusters.first_entry[c], nodes.size() * nodes.size());
+        coupled.push_back({{nodes.begin(), nodes.end()}, {inverse.begin(), inverse.end()}});
+    }
+    return coupled;
+}
+
 }  // namespace
 
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h) {
@@ -43,6 +63,7 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         result.contact.push_back(static_cast<Index>(row));
         result.region.push_back(step.region[row]);
     }
+    lumped.coupled = coupled_nodes(step.contacts);
     result.problem = assemble_problem(lumped, {});
     result.problem.description = description_of(step, settings);
     result.impulse = in_contact_frames(lumped, impulse);

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <map>
 
+#include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
@@ -318,6 +319,10 @@ int inspect_scene(const InspectOptions& options) {
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
                            {"stable_dt_body", report.stable_step_body},
+                           {"clusters",
+                            {{"count", report.clusters},
+                             {"nodes", report.cluster_nodes},
+                             {"implicit_elements", report.implicit_elements}}},
                            {"contacts_at_start", cost.contacts},
                            {"overlap_at_start", cost.overlap},
                            {"wall_seconds_per_second", cost.seconds_per_second},
@@ -329,6 +334,7 @@ int inspect_scene(const InspectOptions& options) {
     std::cout << scene.name << ": " << scene.description << "\n"
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders\n"
+              << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " (" << report.stable_step_body << "), "
               << grouped(static_cast<std::uint64_t>(scene.seconds / stable_step)) << " steps for "
               << short_number(scene.seconds) << " s\n"

@@ -154,6 +154,8 @@ private:
 
     void take(Candidate best) {
         result_.mesh = std::move(best.mesh);
+        if (const auto& labels = result_.before.mesh.labels; !labels.empty())
+            result_.mesh.label.assign(result_.mesh.tetrahedra.size(), labels.begin()->first);
         result_.after = best.figures;
         result_.collapsed = best.collapsed;
         result_.flipped = best.flipped;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/program/cluster_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 
@@ -149,6 +150,7 @@ std::string summary_of(const RunResult& result) {
                      (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long"
                                     : ""));
     text += limit_lines(r);
+    if (r.clusters > 0) text += line("clusters", cluster_text(r));
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " +

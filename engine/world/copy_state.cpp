@@ -43,7 +43,6 @@ void copy_state(WorldState& from, WorldState& to) {
 
     to.model.rebuild_outlines();
     to.model.rebuild_derived();
-    to.model.rebuild_clusters();
     to.cache.forget_distances(to.model);
     to.record.balance.close();
     to.scratch.contacts.resize(0);

@@ -91,6 +91,16 @@ void add_elements(Hash& hash, Model& model, std::size_t body) {
     }
 }
 
+void add_clusters(Hash& hash, const Model& model, std::size_t body) {
+    const NodeClusters& clusters = model.clusters;
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+        if (clusters.body[c] != static_cast<Index>(body)) continue;
+        const std::span<const Index> nodes = clusters.nodes[c];
+        for (const Index n : nodes) add_row(hash, n - model.bodies.nodes[body].begin);
+        add_rows(hash, clusters.inverse.span().subspan(clusters.first_entry[c], nodes.size() * nodes.size()));
+    }
+}
+
 void add_script(Hash& hash, const MotionScript& script, std::span<const Keyframe> keyframe) {
     add_row(hash, script.velocity);
     add_row(hash, script.angular_velocity);
@@ -164,6 +174,7 @@ std::uint64_t body_hash(Model& model, std::size_t body) {
     for (Range range : {bodies.nodes[body], bodies.node_blocks[body], bodies.blocks[body]}) add_row(hash, range.size());
     add_nodes(hash, model, body);
     add_elements(hash, model, body);
+    add_clusters(hash, model, body);
     return hash.value();
 }
 

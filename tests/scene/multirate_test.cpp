@@ -33,6 +33,7 @@ World sliver_world(bool multirate, MaterialModel model = MaterialModel::stable_n
                    Backend backend = Backend::automatic, int threads = 0) {
     Settings settings;
     settings.gravity = Vec3::Zero();
+    settings.clusters = false;
     settings.multirate = multirate;
     settings.backend = backend;
     settings.threads = threads;
@@ -143,6 +144,7 @@ TEST_CASE("multirate on slivers converges with order 2, with the error of a mesh
     const auto positions = [&](const Mesh& mesh, bool multirate, Real safety, Integrator integrator) {
         Settings settings;
         settings.gravity = Vec3::Zero();
+        settings.clusters = false;
         settings.multirate = multirate;
         settings.step_safety = safety;
         settings.integrator = integrator;

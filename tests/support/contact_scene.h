@@ -24,6 +24,7 @@ struct ContactScene {
     std::vector<Vec3> normal, surface_velocity, impulse;
     std::vector<Real> gap, static_friction, dynamic_friction, restitution;
     Real gravity = 9.81, h = 1e-3;
+    NodeClusters clusters;
 
     Index add_node(Real mass, const Vec3& v) {
         inverse_mass.push_back(mass > 0 ? 1 / mass : 0);
@@ -54,7 +55,7 @@ struct ContactScene {
         SolvedScene result;
         UnionFind memory;
         std::vector<Index> region(stencil.size());
-        separate_regions(stencil, inverse_mass, NodeClusters{}, mode, memory, result.regions, region);
+        separate_regions(stencil, inverse_mass, clusters, mode, memory, result.regions, region);
         result.impulse = impulse;
         result.velocity = velocity;
         result.push_out.assign(velocity.size(), Vec3::Zero());
@@ -65,8 +66,10 @@ struct ContactScene {
         return result;
     }
     RegionInputs inputs() const {
-        return {stencil,          normal,      gap,          surface_velocity, static_friction,
-                dynamic_friction, restitution, inverse_mass, velocity_before,  gravity};
+        RegionInputs all{stencil,          normal,      gap,          surface_velocity, static_friction,
+                         dynamic_friction, restitution, inverse_mass, velocity_before,  gravity};
+        all.clusters = &clusters;
+        return all;
     }
     Vec3 relative_velocity(std::size_t contact, const std::vector<Vec3>& v) const {
         Vec3 u = -surface_velocity[contact];

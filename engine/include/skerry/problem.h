@@ -77,6 +77,12 @@ struct ProblemError {
 };
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
 
+/// Nodes that do not move by their own masses alone: an impulse on one moves all of them.
+struct CoupledNodes {
+    std::vector<Index> node;
+    std::vector<Real> inverse;  // 1/kg, by what, row by row, symmetric
+};
+
 /// Contacts between points of mass: u_i = sum_a weight[a] velocity[node[a]] + offset_i, in world axes. An impulse r_i
 /// adds weight[a] inverse_mass[node[a]] r_i to the velocity of node a.
 struct LumpedContacts {
@@ -87,8 +93,9 @@ struct LumpedContacts {
     std::vector<Vec3> offset;    // m/s: what gaps leave and colliders bring, less half of what a step turns the slip by
     std::vector<Real> friction;  // mu
     // by node
-    std::vector<Real> inverse_mass;  // 1/kg, 0: moved by no impulse
-    std::vector<Vec3> velocity;      // m/s, without the contacts
+    std::vector<Real> inverse_mass;       // 1/kg, 0: moved by no impulse
+    std::vector<Vec3> velocity;           // m/s, without the contacts
+    std::vector<CoupledNodes> coupled{};  // nodes of these have no use for inverse_mass, but that it is not 0
 };
 
 /// The same as general blocks: the frame of a contact is its normal and two tangents that depend on the normal alone,

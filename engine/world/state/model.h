@@ -51,7 +51,8 @@ struct Model {
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
     Ragged<Index> corners;  // by node: element_lanes row + lane of element_nodes; derived: rebuild_derived
-    NodeClusters clusters;  // of the implicit elements; derived: rebuild_clusters
+    // Of the implicit elements. State: the matrices of elements that have stiffened were updated, not made anew.
+    NodeClusters clusters;
     SurfaceTables surface;
     BvhTable bvh;
     BvhLeafTable bvh_leaves;

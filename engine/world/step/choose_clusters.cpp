@@ -8,6 +8,7 @@
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
 
@@ -91,8 +92,7 @@ Found find(Model& model, std::size_t b, Real step, std::span<const Vec3> positio
 void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     const Range blocks = model.bodies.blocks[b];
     const std::span<ElementLane> share = rows_of(model.elements.mass_share, blocks);
-    const ElementLane one{{1, 1, 1, 1, 1, 1, 1, 1}};
-    std::ranges::fill(share, one);
+    start_mass_shares(model.all_elements(), blocks, share);
     std::ranges::fill(rows_of(model.elements.implicit_modulus, blocks), ElementLane{});
     model.bodies.cluster_step[b] = 0;
     note_leeway(model, b);
@@ -130,11 +130,14 @@ Real choose_step(Model& model, std::span<Real> stiffness_sum) {
         model.settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / model.settings.step_safety;
     if (!(shortest > 0) || !std::isfinite(shortest)) return 0;
     Real best = 0, least = cost_of(model, 0, std::min(shortest, longest)) / least_gain;
+    int impossible = 0;  // lengths in a row
     for (int k = 1; k <= candidates; ++k) {
         const Real step = std::min(shortest * std::exp2(k / 2.0), longest);
         if (!(step > shortest)) break;
         const Found found = try_step_length(model, step, stiffness_sum);
-        if (!found.possible) break;
+        impossible = found.possible ? 0 : impossible + 1;
+        if (impossible == 2) break;  // a longer one can need fewer elements, but hardly ever twice
+        if (!found.possible) continue;
         if (const Real cost = cost_of(model, found.entries, step); cost <= least) {
             least = cost;
             best = step;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
@@ -24,24 +25,6 @@ void for_each_element(const ElementInputs& elements, Range blocks, Visit&& visit
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
         for (std::size_t l = 0; l < element_lanes; ++l)
             if (elements.volume[b][l] > 0) visit(b, l);
-}
-
-/// s, the step that each explicit element stands with the present shares; infinite of implicit ones.
-void find_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> mass,
-                std::span<Real> stiffness_sum, std::span<ElementLane> step) {
-    const auto first = static_cast<std::size_t>(blocks.begin), end = static_cast<std::size_t>(blocks.end);
-    for (std::size_t b = first; b < end; ++b) clear_stiffness(elements, b, stiffness_sum);
-    for (std::size_t b = first; b < end; ++b)
-        add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
-                      [](std::size_t) { return true; });
-    LaneQuaternion<Real8> q = no_turn();
-    for (std::size_t b = first; b < end; ++b) {
-        const Real8 bound =
-            frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q);
-        for (std::size_t l = 0; l < element_lanes; ++l)
-            step[b - first][l] =
-                bound[l] > 0 ? step_times_frequency / std::sqrt(bound[l]) : std::numeric_limits<Real>::infinity();
-    }
 }
 
 /// kg m^2, the least moment of inertia of the nodes that the elements have.
@@ -76,33 +59,40 @@ ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks
                                      std::span<const Real> mass, Real step, Real headroom,
                                      std::span<Real> stiffness_sum, const ImplicitOutputs& out) {
     constexpr int rounds_of_sharing = 3;  // between two rounds that give elements up
-    constexpr Real least_share = 1e-6;    // keeps elements that bound nothing from giving all away
+    constexpr Real most_change = 4;       // of a share in a round: what is hopeless is not to starve its neighbours
+    constexpr Real most_volume = 0.75;    // given up
     constexpr Real about_worst = 1.25;    // given up at once: those that stand up to so many times the worst
-    const ElementLane one{{1, 1, 1, 1, 1, 1, 1, 1}};
-    std::ranges::fill(out.mass_share, one);
+    start_mass_shares(elements, blocks, out.mass_share);
     std::ranges::fill(out.modulus, ElementLane{});
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> own(out.mass_share.size());
     const auto share = [&](std::size_t b, std::size_t l) -> Real& { return out.mass_share[b - first][l]; };
     const auto step_of = [&](std::size_t b, std::size_t l) { return own[b - first][l]; };
+    // What does not stand the step with all the mass of its nodes to itself does not with a part.
+    LaneQuaternion<Real8> alone = no_turn();
+    for (auto b = first; b < static_cast<std::size_t>(blocks.end); ++b) {
+        const Real8 bound = frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, {}, alone);
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (bound[l] * step * step > step_times_frequency * step_times_frequency) share(b, l) = 0;
+    }
     for (int round = 1;; ++round) {
-        find_steps(elements, blocks, position, mass, stiffness_sum, own);
-        Real shortest = std::numeric_limits<Real>::infinity(), volume = 0, short_volume = 0;
+        element_steps(elements, blocks, position, mass, stiffness_sum, own);
+        Real shortest = std::numeric_limits<Real>::infinity(), volume = 0, given_up = 0;  // s, m^3
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
             shortest = std::min(shortest, step_of(b, l));
             volume += elements.volume[b][l];
-            if (share(b, l) == 0 || step_of(b, l) < step) short_volume += elements.volume[b][l];
+            if (share(b, l) == 0) given_up += elements.volume[b][l];
         });
+        if (given_up > most_volume * volume) return {.too_many = true};
         if (!(shortest < step)) break;
         const bool gives_up = round % rounds_of_sharing == 0;
-        if (gives_up && 2 * short_volume > volume) return {.too_many = true};
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
             Real& of_element = share(b, l);
             if (of_element == 0) return;
             if (gives_up && step_of(b, l) < std::min(step, about_worst * shortest))
                 of_element = 0;
             else
-                of_element = std::max(least_share, of_element * std::max(1e-3, shortest / step_of(b, l)));
+                of_element *= std::clamp(step / step_of(b, l), 1 / most_change, most_change);
         });
     }
     // implicit elements, and what they add to a rigid turn: beta c V |omega x|^2 <= beta c V omega^2 for each axis

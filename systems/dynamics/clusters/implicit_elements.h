@@ -15,7 +15,7 @@ struct ImplicitOutputs {
 
 struct ImplicitShare {
     Real moment = 0;        // what the clusters add to the least moment of inertia of the body, over that moment
-    bool too_many = false;  // half of the body's volume or more does not stand the step: nothing is found
+    bool too_many = false;  // three quarters of the volume do not stand the step: nothing is found
 };
 
 /// Shares the masses of a body anew, so that every explicit element stands `step` (s) in the shape that it has, and

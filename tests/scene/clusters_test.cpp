@@ -1,0 +1,108 @@
+// Clusters: the few elements that do not stand the step of the others (docs/methods/clusters.md).
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "skerry/world.h"
+#include "tests/support/sliver_box.h"
+
+using namespace skerry;
+using skerry::test::sliver_box;
+
+namespace {
+
+Settings weightless(bool clusters) {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.integrator = Integrator::leapfrog;
+    settings.clusters = clusters;
+    return settings;
+}
+
+MaterialSettings lossless_rubber() {
+    return {.young_modulus = 1e5, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0};
+}
+
+}  // namespace
+
+TEST_CASE("slivers no longer set the step of a body", "[scene][clusters]") {
+    World plain(weightless(false)), clustered(weightless(true));
+    for (World* world : {&plain, &clustered})
+        world->add_body(sliver_box(0.2, 8, 0.01, 0.005), {.material = world->add_material(lossless_rubber())});
+    CHECK(clustered.stable_step() > 1.9 * plain.stable_step());
+    const WorldReport report = clustered.report();
+    CHECK(report.clusters > 0);
+    CHECK(report.implicit_elements > 0);
+    CHECK(report.cluster_nodes * 4 < report.nodes);
+    CHECK(plain.report().clusters == 0);
+}
+
+TEST_CASE("a body without bad elements has no clusters, and the bits that it had", "[scene][clusters]") {
+    std::vector<std::uint64_t> hash;
+    for (const bool clusters : {false, true}) {
+        Settings settings;
+        settings.clusters = clusters;
+        World world(settings);
+        world.add_body(mesh::ball(0.1, 4), {.material = world.add_material({}), .position = {0, 0, 0.11}});
+        world.add_collider(Plane{});
+        REQUIRE(world.advance(0.05).ok());
+        CHECK(world.report().clusters == 0);
+        hash.push_back(world.state_hash());
+    }
+    CHECK(hash[0] == hash[1]);
+}
+
+TEST_CASE("a spinning body with clusters keeps energy, momentum and angular momentum", "[scene][clusters]") {
+    World world(weightless(true));
+    const BodyHandle body =
+        world.add_body(sliver_box(0.2, 8, 0.01, 0.005), {.material = world.add_material(lossless_rubber()),
+                                                        .velocity = {0.3, -0.2, 0.1},
+                                                        .angular_velocity = {4, 3, 2}});
+    const Vec3 angular = world.report().angular_momentum;
+    REQUIRE(world.advance(1).ok());
+    const WorldReport report = world.report();
+    CHECK(report.clusters > 0);
+    CHECK(report.momentum_error_share < 1e-12);
+    CHECK(report.energy_error_share < 1e-4);
+    // that of nodes by their own masses: it wavers with what the clusters have of it
+    CHECK((report.angular_momentum - angular).norm() < 2e-3 * angular.norm());
+    CHECK(world.center_of_mass(body).x() == Approx(0.3).epsilon(1e-6));
+}
+
+TEST_CASE("what hangs from clusters hangs as low as without", "[scene][clusters]") {
+    std::vector<Real> height;
+    for (const bool clusters : {false, true}) {
+        Settings settings;
+        settings.clusters = clusters;
+        World world(settings);
+        MaterialSettings material = lossless_rubber();
+        material.damping = 20;
+        const Mesh mesh = sliver_box(0.2, 6, 0.01, 0.005);
+        const BodyHandle body = world.add_body(mesh, {.material = world.add_material(material)});
+        std::vector<Index> top;
+        for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+            if (mesh.nodes[n].z() > 0.0999) top.push_back(static_cast<Index>(n));
+        world.attach(body, top);
+        REQUIRE(world.advance(1.5).ok());
+        CHECK((world.report().clusters > 0) == clusters);
+        height.push_back(world.center_of_mass(body).z());
+    }
+    CHECK(height[0] < -1e-4);
+    CHECK(height[1] == Approx(height[0]).epsilon(1e-3));
+}
+
+TEST_CASE("bodies with clusters that meet exchange momentum and no more", "[scene][clusters]") {
+    World world(weightless(true));
+    const MaterialHandle rubber = world.add_material(lossless_rubber());
+    for (const Real side : {-1.0, 1.0})
+        world.add_body(
+            sliver_box(0.2, 6, 0.01, 0.005, side > 0 ? 2 : 1),
+            {.material = rubber, .position = {0.11 * side, 0.03 * side, 0}, .velocity = {-0.7 * side, 0, 0}});
+    REQUIRE(world.advance(0.3).ok());
+    const WorldReport report = world.report();
+    CHECK(report.clusters > 1);
+    CHECK(report.contact_sum > 0);
+    CHECK(report.momentum_error_share < 1e-12);
+    CHECK(report.energy_error_share < 2e-3);
+    CHECK(report.max_penetration < 1e-4);
+    CHECK(report.unconverged == 0);
+}
