@@ -55,8 +55,8 @@ TEST_CASE("a spinning body with clusters keeps energy, momentum and angular mome
     World world(weightless(true));
     const BodyHandle body =
         world.add_body(sliver_box(0.2, 8, 0.01, 0.005), {.material = world.add_material(lossless_rubber()),
-                                                        .velocity = {0.3, -0.2, 0.1},
-                                                        .angular_velocity = {4, 3, 2}});
+                                                         .velocity = {0.3, -0.2, 0.1},
+                                                         .angular_velocity = {4, 3, 2}});
     const Vec3 angular = world.report().angular_momentum;
     REQUIRE(world.advance(1).ok());
     const WorldReport report = world.report();

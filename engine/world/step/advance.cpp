@@ -15,7 +15,7 @@ namespace {
 /// In cycles of fine steps it is the coarse ones that count: all elements deform at the pace of the whole.
 constexpr std::uint64_t steps_per_watch = 256;
 /// With clusters steps are several times longer, and explicit elements beside them deform more in each.
-constexpr std::uint64_t steps_per_watch_of_clusters = 64;
+constexpr std::uint64_t steps_per_watch_of_clusters = 128;
 
 StepStatus status_of(StepFault fault) {
     switch (fault) {
