@@ -7,6 +7,7 @@
 #include "engine/world/copy_state.h"
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
+#include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
@@ -72,6 +73,39 @@ void take_steps(World& world, std::uint64_t steps) {
 }
 
 }  // namespace
+
+TEST_CASE("bodies with clusters have the same bits on any number of workers, and their copies go on with them",
+          "[determinism][clusters]") {
+    const auto thrown = [](Backend backend, int threads) {
+        Settings settings;
+        settings.backend = backend;
+        settings.threads = threads;
+        World world(settings);
+        world.add_collider(Plane{});
+        const auto soft = world.add_material({.young_modulus = 2e4, .friction = 0.5});
+        for (int i = 0; i < 3; ++i)
+            world.add_body(sliver_box(0.1, 6, 0.01, 0.005, 1 + static_cast<std::uint64_t>(i)),
+                           {.material = soft, .position = {0.02 * i, 0, 0.06 + 0.11 * i}, .velocity = {0, 0, -3}});
+        return world;
+    };
+    World world = thrown(available_backends().front(), 1);
+    REQUIRE(world.advance(0.03).ok());
+    CHECK(world.report().clusters > 1);
+    CHECK(world.report().contact_sum > 0);
+    for (const Backend backend : available_backends())
+        for (const int threads : {2, 4}) {
+            World other = thrown(backend, threads);
+            REQUIRE(other.advance(0.03).ok());
+            CHECK(other.state_hash() == world.state_hash());
+        }
+    World copy = thrown(available_backends().front(), 2);
+    copy_state(WorldAccess::state_of(world), WorldAccess::state_of(copy));
+    CHECK(copy.state_hash() == world.state_hash());
+    REQUIRE(world.advance(0.03).ok());
+    REQUIRE(copy.advance(0.03).ok());
+    check_same_bits(world, copy);
+    CHECK(copy.state_hash() == world.state_hash());
+}
 
 TEST_CASE("a copy of the state goes on for a thousand steps with the same bits", "[determinism][slow]") {
     // where sleep, warm start, multirate and lists of any age are at work

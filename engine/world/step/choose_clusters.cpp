@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/world/step/step.h"
@@ -14,8 +15,8 @@ namespace skerry {
 
 namespace {
 
-// ns, of a step: an element with its part of nodes and contacts, and an entry of a cluster's matrix. On two machines;
-// only their ratio matters.
+// ns, of a step: an element with its part of nodes and contacts, and an entry of a cluster's matrix. Six thrown meshes
+// took 100 and 1.5 on a busy core; only their ratio matters.
 constexpr Real element_cost = 70, entry_cost = 0.7;
 /// What it has to save of the cost of a simulated second, for results that differ a little.
 constexpr Real least_gain = 1.5;
@@ -26,7 +27,7 @@ constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, a second to inver
 constexpr Real headroom = 4;
 /// In how many times max_strain_step tetrahedra may deform that an implicit element covers.
 constexpr Real leeway = 5;
-constexpr int candidates = 8;  // each sqrt(2) times as long as the one before
+constexpr Real most_lengthening = 16;  // of steps
 
 template <class T>
 std::span<T> rows_of(Column<T>& column, Range rows) {
@@ -71,21 +72,23 @@ void note_leeway(Model& model, std::size_t b) {
             }
 }
 
-/// Finds the implicit elements of a body for a step; no_index entries where there are too many.
 struct Found {
-    bool possible = false;
-    std::size_t entries = 0;
+    bool possible = false;  // neither too many nor too heavy
+    ClusterSizes sizes{};
 };
-Found find(Model& model, std::size_t b, Real step, std::span<const Vec3> position, std::span<Real> stiffness_sum) {
+
+/// Finds the implicit elements of a body for a step, and writes them where that is possible and where it is not.
+Found find(Model& model, std::size_t b, Real step, std::span<const Vec3> position, ImplicitSearch search,
+           std::span<Real> stiffness_sum) {
     const Range blocks = model.bodies.blocks[b];
     const std::span<ElementLane> modulus = rows_of(model.elements.implicit_modulus, blocks);
     const ImplicitShare share =
-        find_implicit_elements(model.all_elements(), blocks, position, model.nodes.mass, step, headroom, stiffness_sum,
-                               {rows_of(model.elements.mass_share, blocks), modulus});
+        find_implicit_elements(model.all_elements(), blocks, position, model.nodes.mass, step, headroom, search,
+                               stiffness_sum, {rows_of(model.elements.mass_share, blocks), modulus});
     if (share.too_many || !(share.moment <= most_moment)) return {};
     const ClusterSizes sizes = cluster_sizes(model.all_elements(), blocks, modulus, model.nodes.inverse_mass);
     if (sizes.largest > largest_cluster) return {};
-    return {true, sizes.entries};
+    return {true, sizes};
 }
 
 /// Every element explicit again, with the masses shared as for a new body.
@@ -107,44 +110,52 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
     return (element_cost * elements + entry_cost * static_cast<Real>(entries)) / step;
 }
 
-/// The entries of the clusters that all bodies would need for a step; possible: none would be too large.
-Found try_step_length(Model& model, Real step, std::span<Real> stiffness_sum) {
-    Found all{.possible = true};
-    for (std::size_t b = 0; b < model.bodies.slot.size() && all.possible; ++b) {
+/// The implicit elements of all bodies for a step.
+struct Plan {
+    Real step = 0;  // s; 0: none, every element is explicit
+    Real cost = 0;  // ns a second
+    bool possible = true;
+    std::size_t entries = 0;
+    std::vector<std::pair<std::size_t, Kept>> body;  // that has some: its row, what its elements are
+};
+
+Plan plan_for(Model& model, Real step, std::span<Real> stiffness_sum) {
+    Plan plan{.step = step, .body = {}};
+    for (std::size_t b = 0; b < model.bodies.slot.size() && plan.possible; ++b) {
         if (!has_elements(model, b) || model.bodies.rest_step[b] >= step) continue;
         const Kept kept(model, b);
-        const Found found = find(model, b, step, model.nodes.rest_position, stiffness_sum);
+        const Found found = find(model, b, step, model.nodes.rest_position, ImplicitSearch::anew, stiffness_sum);
+        plan.possible = found.possible;
+        plan.entries += found.sizes.entries;
+        plan.body.emplace_back(b, Kept(model, b));
         kept.put_back(model, b);
-        all.possible = found.possible;
-        all.entries += found.entries;
     }
-    return all;
+    plan.cost = cost_of(model, plan.entries, step);
+    return plan;
 }
 
-/// s, the step worth having clusters for; 0: none.
-Real choose_step(Model& model, std::span<Real> stiffness_sum) {
+/// Of the steps 2, 4, ... times as long as the shortest stable one, and of one sqrt(2) times as long as the best of
+/// them, the one worth having clusters for.
+Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     Real shortest = std::numeric_limits<Real>::infinity();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (has_elements(model, b)) shortest = std::min(shortest, model.bodies.rest_step[b]);
     const Real longest =
         model.settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / model.settings.step_safety;
-    if (!(shortest > 0) || !std::isfinite(shortest)) return 0;
-    Real best = 0, least = cost_of(model, 0, std::min(shortest, longest)) / least_gain;
-    int impossible = 0;  // lengths in a row
-    for (int k = 1; k <= candidates; ++k) {
-        const Real step = std::min(shortest * std::exp2(k / 2.0), longest);
-        if (!(step > shortest)) break;
-        const Found found = try_step_length(model, step, stiffness_sum);
-        impossible = found.possible ? 0 : impossible + 1;
-        if (impossible == 2) break;  // a longer one can need fewer elements, but hardly ever twice
-        if (!found.possible) continue;
-        if (const Real cost = cost_of(model, found.entries, step); cost <= least) {
-            least = cost;
-            best = step;
-        }
-        if (found.entries == 0 || step == longest)
-            break;  // nothing stands in the way of longer ones: not ours to choose
+    Plan best{.body = {}};
+    if (!(shortest > 0) || !std::isfinite(shortest)) return best;
+    best.cost = cost_of(model, 0, std::min(shortest, longest)) / least_gain;
+    const auto look_at = [&](Real step) {
+        Plan plan = plan_for(model, step, stiffness_sum);
+        const bool possible = plan.possible;
+        if (possible && plan.cost <= best.cost) best = std::move(plan);
+        return possible;
+    };
+    for (Real step = 2 * shortest; step <= most_lengthening * shortest; step *= 2) {
+        if (!look_at(std::min(step, longest)) || !(step < longest)) break;
     }
+    const Real between = (best.step > 0 ? best.step : shortest) * std::sqrt(Real(2));
+    if (between < longest && between < most_lengthening * shortest) look_at(between);
     return best;
 }
 
@@ -155,16 +166,21 @@ bool clusters_allowed(const Settings& settings) {
            settings.contact_regions != ContactRegions::paper_algorithm_1;
 }
 
-bool make_implicit(Model& model, std::size_t body, Real step, std::span<const Vec3> position,
-                   std::span<Real> stiffness_sum) {
+bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
+    constexpr Real inversion_cost = 0.4;  // ns by cube of the width
+    constexpr Real lasts = 128;           // steps, until they may have to be inverted anew
     const Kept kept(model, body);
-    if (!find(model, body, step, position, stiffness_sum).possible) {
-        kept.put_back(model, body);
-        return false;
+    const std::size_t entries = model.clusters.inverse.size();
+    const Found found = find(model, body, step, model.nodes.position, ImplicitSearch::more, stiffness_sum);
+    const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (lasts * step);
+    if (found.possible &&
+        cost_of(model, entries + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {
+        model.bodies.cluster_step[body] = step;
+        note_leeway(model, body);
+        return true;
     }
-    model.bodies.cluster_step[body] = step;
-    note_leeway(model, body);
-    return true;
+    kept.put_back(model, body);
+    return false;
 }
 
 void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
@@ -175,12 +191,13 @@ void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
     const std::span<Real> sums = stiffness_sum.span();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (model.bodies.cluster_step[b] > 0) make_explicit(model, b, sums);
-    const Real step = choose_step(model, sums);
-    if (step > 0)
-        for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-            if (has_elements(model, b) && model.bodies.rest_step[b] < step &&
-                make_implicit(model, b, step, model.nodes.rest_position, sums))
-                model.bodies.rest_step[b] = std::min(step, step_of(model, b, model.nodes.rest_position, sums));
+    const Plan plan = choose_plan(model, sums);
+    for (const auto& [b, elements] : plan.body) {
+        elements.put_back(model, b);
+        model.bodies.cluster_step[b] = plan.step;
+        note_leeway(model, b);
+        model.bodies.rest_step[b] = std::min(plan.step, step_of(model, b, model.nodes.rest_position, sums));
+    }
     model.rebuild_clusters();
     watch_stable_steps(model, stiffness_sum);
 }

@@ -55,7 +55,7 @@ Real watch_stable_steps(Model& model, Column<Real>& stiffness_sum) {
         if (!(bodies.stable_step[b] > 0) || bodies.stable_step[b] * worth_clusters >= goal ||
             !clusters_allowed(model.settings))
             continue;
-        if (!make_implicit(model, b, reserve * goal, model.nodes.position, stiffness_sum)) continue;
+        if (!make_implicit(model, b, reserve * goal, bodies.stable_step[b], stiffness_sum)) continue;
         changed = true;
         bodies.stable_step[b] = now(b);
     }

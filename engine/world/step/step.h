@@ -31,10 +31,9 @@ bool clusters_allowed(const Settings& settings);
 /// After a change of the world: decides, by what a simulated second is likely to cost, how long steps are to be, and
 /// which elements are implicit so that they can be.
 void settle_clusters(Model& model, Column<Real>& stiffness_sum);
-/// Makes the elements implicit that do not stand `step` (s) in the shape `position`. Returns false, and changes
-/// nothing, where they are too many.
-bool make_implicit(Model& model, std::size_t body, Real step, std::span<const Vec3> position,
-                   std::span<Real> stiffness_sum);
+/// Makes the elements implicit that do not stand `step` (s) as they are, beside those that are. Returns false, and
+/// changes nothing, where that makes too many, or where steps of `present` (s), as they are now, cost less.
+bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum);
 /// J, what the inertia of all implicit elements adds to the kinetic energy.
 Real added_energy(const Model& model);
 

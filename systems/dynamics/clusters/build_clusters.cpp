@@ -88,6 +88,7 @@ ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::spa
         while (end < roots.size() && roots[end] == roots[begin]) ++end;
         sizes.largest = std::max(sizes.largest, end - begin);
         sizes.entries += (end - begin) * (end - begin);
+        sizes.cubes += (end - begin) * (end - begin) * (end - begin);
     }
     return sizes;
 }

@@ -21,9 +21,10 @@ struct ClusterInputs {
 /// its moving nodes, and its inverse. Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);
 
-/// How many nodes the largest cluster of a body would have, and the entries of all its matrices.
+/// How many nodes the largest cluster of a body would have, the entries of all its matrices, and the sum of the cubes
+/// of their widths, which is what it takes to invert them.
 struct ClusterSizes {
-    std::size_t largest = 0, entries = 0;
+    std::size_t largest = 0, entries = 0, cubes = 0;
 };
 ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
                            std::span<const Real> inverse_mass);

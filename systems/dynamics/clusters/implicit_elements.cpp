@@ -56,21 +56,24 @@ Real least_moment(const ElementInputs& elements, Range blocks, std::span<const V
 }  // namespace
 
 ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                                     std::span<const Real> mass, Real step, Real headroom,
+                                     std::span<const Real> mass, Real step, Real headroom, ImplicitSearch search,
                                      std::span<Real> stiffness_sum, const ImplicitOutputs& out) {
     constexpr int rounds_of_sharing = 3;  // between two rounds that give elements up
     constexpr Real most_change = 4;       // of a share in a round: what is hopeless is not to starve its neighbours
     constexpr Real most_volume = 0.75;    // given up
     constexpr Real about_worst = 1.25;    // given up at once: those that stand up to so many times the worst
-    start_mass_shares(elements, blocks, out.mass_share);
-    std::ranges::fill(out.modulus, ElementLane{});
+    const bool anew = search == ImplicitSearch::anew;
+    if (anew) {
+        start_mass_shares(elements, blocks, out.mass_share);
+        std::ranges::fill(out.modulus, ElementLane{});
+    }
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> own(out.mass_share.size());
     const auto share = [&](std::size_t b, std::size_t l) -> Real& { return out.mass_share[b - first][l]; };
     const auto step_of = [&](std::size_t b, std::size_t l) { return own[b - first][l]; };
     // What does not stand the step with all the mass of its nodes to itself does not with a part.
     LaneQuaternion<Real8> alone = no_turn();
-    for (auto b = first; b < static_cast<std::size_t>(blocks.end); ++b) {
+    for (auto b = first; anew && b < static_cast<std::size_t>(blocks.end); ++b) {
         const Real8 bound = frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, {}, alone);
         for (std::size_t l = 0; l < element_lanes; ++l)
             if (bound[l] * step * step > step_times_frequency * step_times_frequency) share(b, l) = 0;
@@ -85,13 +88,14 @@ ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks
         });
         if (given_up > most_volume * volume) return {.too_many = true};
         if (!(shortest < step)) break;
-        const bool gives_up = round % rounds_of_sharing == 0;
+        const bool gives_up = !anew || round % rounds_of_sharing == 0;
+        const Real too_short = anew ? std::min(step, about_worst * shortest) : step;
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
             Real& of_element = share(b, l);
             if (of_element == 0) return;
-            if (gives_up && step_of(b, l) < std::min(step, about_worst * shortest))
+            if (gives_up && step_of(b, l) < too_short)
                 of_element = 0;
-            else
+            else if (anew)
                 of_element *= std::clamp(step / step_of(b, l), 1 / most_change, most_change);
         });
     }
@@ -102,7 +106,8 @@ ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks
         const Real8 stiffness = stiffness_of(elements, b, deformation_of(elements, b, position), q);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             if (!(elements.volume[b][l] > 0) || share(b, l) != 0) continue;
-            out.modulus[b - first][l] = headroom * stiffness[l];
+            Real& modulus = out.modulus[b - first][l];
+            if (!(modulus > stiffness[l])) modulus = headroom * stiffness[l];
             added += 2 * inertia_of_stiffness(step) * out.modulus[b - first][l] * elements.volume[b][l];
         }
     }

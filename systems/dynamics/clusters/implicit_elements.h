@@ -18,11 +18,15 @@ struct ImplicitShare {
     bool too_many = false;  // three quarters of the volume do not stand the step: nothing is found
 };
 
+/// anew: all elements start explicit, and share their masses. more: those that are implicit stay so, shares stay, and
+/// every other that does not stand the step becomes implicit: quick, but some would do with another share.
+enum class ImplicitSearch { anew, more };
+
 /// Shares the masses of a body anew, so that every explicit element stands `step` (s) in the shape that it has, and
 /// makes implicit those for which no sharing does. Implicit elements have `headroom` times the stiffness that they have
 /// now. `mass_share` and `modulus` are those of the inputs. Sequential.
 ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                                     std::span<const Real> mass, Real step, Real headroom,
+                                     std::span<const Real> mass, Real step, Real headroom, ImplicitSearch search,
                                      std::span<Real> stiffness_sum, const ImplicitOutputs& out);
 
 /// The largest factor by which an implicit element of the body is stiffer now than it is taken to be; 0 without any.
