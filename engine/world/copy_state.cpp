@@ -35,6 +35,9 @@ void copy_state(WorldState& from, WorldState& to) {
     to.model.settings.backend = backend;
     to.model.settings.threads = threads;
     to.model.for_each_table([](const char*, auto& table) { table.for_each_column(Spoil{}); });
+    // What an element whose law has none of it leaves there comes back when the two are swapped.
+    to.model.elements.rotation_next = from.model.elements.rotation_next;
+    to.model.elements.viscous_strain_next = from.model.elements.viscous_strain_next;
     to.clock = from.clock;
     to.cache = {};
     to.cache.warm_start = from.cache.warm_start;
