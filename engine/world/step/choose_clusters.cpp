@@ -154,7 +154,8 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     for (Real step = 2 * shortest; step <= most_lengthening * shortest; step *= 2) {
         if (!look_at(std::min(step, longest)) || !(step < longest)) break;
     }
-    const Real between = (best.step > 0 ? best.step : shortest) * std::sqrt(Real(2));
+    if (!(best.step > 0)) return best;  // one sqrt(2) times as long could not save least_gain
+    const Real between = best.step * std::sqrt(Real(2));
     if (between < longest && between < most_lengthening * shortest) look_at(between);
     return best;
 }
