@@ -1,6 +1,7 @@
 #include "systems/solver/regions/solve_clustered.h"
 
 #include "systems/solver/methods/run_method.h"
+#include "systems/solver/regions/load_nodes.h"
 
 namespace skerry {
 namespace {
@@ -16,27 +17,14 @@ ClusteredRegion load_clustered(const RegionStage& stage, std::span<const Index> 
     for (const Index c : data.region_clusters[static_cast<std::size_t>(number)])
         room += clusters.nodes[static_cast<std::size_t>(c)].size();
     const std::span<Index> node = data.node.span().subspan(first, room);
-    const std::span<Vec4> velocity = data.velocity.span().subspan(first, room);
-    std::size_t node_count = 0;
-    const auto local = [&](Index global) {
-        Index& place = data.place[global];
-        if (static_cast<std::size_t>(place) < node_count && node[place] == global) return place;
-        place = static_cast<Index>(node_count);
-        node[node_count] = global;
-        velocity[node_count++] = padded(stage.out.velocity_next[global]);
-        return place;
-    };
-    for (const Index c : data.region_clusters[static_cast<std::size_t>(number)])
-        for (const Index n : clusters.nodes[static_cast<std::size_t>(c)]) local(n);
     ClusteredRegion region{.row = row,
                            .base = base,
                            .walk = ThroughClusters(clusters, node),
                            .memory = memory_from(stage, base, row.size(), node, first)};
-    load_contacts(
-        stage, region, [&](std::size_t) -> const auto& { return local; });
-    region.memory.node = node.first(node_count);
-    region.memory.velocity = velocity.first(node_count);
-    region.memory.scratch = region.memory.scratch.first(node_count);
+    load_nodes_and_contacts(stage, node, region, [&](const auto& local) {
+        for (const Index c : data.region_clusters[static_cast<std::size_t>(number)])
+            for (const Index n : clusters.nodes[static_cast<std::size_t>(c)]) local(n);
+    });
     return region;
 }
 

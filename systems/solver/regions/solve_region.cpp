@@ -2,6 +2,7 @@
 
 #include "systems/solver/methods/run_method.h"
 #include "systems/solver/operators/normal_rows.h"
+#include "systems/solver/regions/load_nodes.h"
 
 namespace skerry {
 namespace {
@@ -43,27 +44,11 @@ SolveResult without_freezing(const RegionStage& stage, RegionInOrder& region, So
 
 }  // namespace
 
-// A node's place in the list is remembered by node; regions share no moving node, so none overwrites what another
-// needs, and an entry left from elsewhere shows by the list not agreeing.
 RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, Index base) {
     RegionMemory& data = stage.memory;
     const std::span<Index> node = data.node.span().subspan(4 * static_cast<std::size_t>(base), 4 * row.size());
     RegionInOrder region{.row = row, .base = base, .memory = memory_from(stage, base, row.size(), node)};
-    const std::span<Vec4> velocity = region.memory.velocity;
-    std::size_t node_count = 0;
-    const auto local = [&](Index global) {
-        Index& place = data.place[global];
-        if (static_cast<std::size_t>(place) < node_count && node[place] == global) return place;
-        place = static_cast<Index>(node_count);
-        node[node_count] = global;
-        velocity[node_count++] = padded(stage.out.velocity_next[global]);
-        return place;
-    };
-    load_contacts(
-        stage, region, [&](std::size_t) -> const auto& { return local; });
-    region.memory.node = node.first(node_count);
-    region.memory.velocity = velocity.first(node_count);
-    region.memory.scratch = region.memory.scratch.first(node_count);
+    load_nodes_and_contacts(stage, node, region, [](const auto&) {});
     return region;
 }
 
