@@ -6,19 +6,11 @@
 #include "components/bvh_table.h"
 #include "components/column.h"
 #include "components/column_role.h"
+#include "components/range.h"
 #include "components/step_levels.h"
 #include "components/types.h"
 
 namespace skerry {
-
-/// Rows begin .. end - 1 of some table.
-struct Range {
-    Index begin = 0;
-    Index end = 0;
-
-    Index size() const { return end - begin; }
-    bool operator==(const Range&) const = default;
-};
 
 enum class BodyKind : std::uint8_t {
     deformable,

@@ -8,16 +8,17 @@
 #include "components/column_role.h"
 #include "components/lanes.h"
 #include "components/material_table.h"
+#include "components/ragged.h"
+#include "components/range.h"
 #include "components/types.h"
 
 namespace skerry {
 
 using ElementLane = Lanes<Real, element_lanes>;
-using NodeLane = Lanes<Index, element_lanes>;           // rows of NodeTable
-using TetrahedronNodes = std::array<NodeLane, 4>;       // corner a of lane l: nodes[a][l]
-using ElementGradient = std::array<ElementLane, 3>;     // 1/m, component i of lane l: gradient[i][l]
-using ElementForces = std::array<Vec3, element_lanes>;  // N, by lane
-using ElementRotation = std::array<ElementLane, 4>;     // unit quaternion w, x, y, z
+using NodeLane = Lanes<Index, element_lanes>;        // rows of NodeTable
+using TetrahedronNodes = std::array<NodeLane, 4>;    // corner a of lane l: nodes[a][l]
+using ElementGradient = std::array<ElementLane, 3>;  // 1/m, component i of lane l: gradient[i][l]
+using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y, z
 // Of a symmetric strain: xx, yy, zz, xy, yz, zx; then a volume strain of its own
 using ElementStrain = std::array<ElementLane, 7>;
 
@@ -46,8 +47,8 @@ struct TetrahedronBlockTable {
 /// An element has four nodes or more, one F = sum_k x_k (x) g_k, which is constant in it, and one stress
 /// (docs/methods/elasticity.md 1, 7). A block has a row of ElementNodeTable for every node of that of its elements
 /// which has most; the others repeat their first node with a gradient of zero. Lanes that are left over have volume and
-/// gradients zero, so that they add nothing. Element e of the table is lane e % element_lanes of block
-/// e / element_lanes.
+/// gradients zero and repeat the first node of the block, so that they add nothing. Element e of the table is lane e %
+/// element_lanes of block e / element_lanes.
 struct ElementBlockTable {
     Column<Index> first;                    // row of ElementNodeTable
     Column<Index> count;                    // of rows
@@ -67,6 +68,7 @@ struct ElementBlockTable {
     Column<Index> body;                         // row of BodyTable
     Column<Index> material;                     // row of MaterialTable
     Column<ElementPart> part;
+    Column<std::uint8_t> opens_patch;  // 1: the block is the first of a patch
     // s, stress of the strain rate over that of the strain; 0 but for fine elements among coarse
     Column<Real> viscous_time;
     // within the body: impulses come every 2^level of the body's steps (step_levels.h)
@@ -83,6 +85,7 @@ struct ElementBlockTable {
         visit("body", body, ColumnRole::link);
         visit("material", material, ColumnRole::link);
         visit("part", part, ColumnRole::state);
+        visit("opens_patch", opens_patch, ColumnRole::state);
         visit("viscous_time", viscous_time, ColumnRole::state);
         visit("level", level, ColumnRole::state);
         visit("viscous_strain", viscous_strain, ColumnRole::state);
@@ -98,20 +101,35 @@ struct ElementBlockTable {
 /// The k-th nodes of the elements of a block, k = 0 first: the one whose gradient is minus the sum of all others.
 struct ElementNodeTable {
     Column<NodeLane> node;
+    Column<NodeLane> slot;             // where the node stands among those of the patch, from 0
     Column<ElementGradient> gradient;  // at rest
-    Column<ElementForces> force;       // N, what the elements do to the nodes
-    Column<std::uint8_t> level;        // that of the block
 
-    /// The only list of columns: resize, erase, copy and hash walk it.
+    /// The only list of columns: resize, erase, copy and hash walk it. Derived: slot by build_patches.
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::link);
         visit("gradient", gradient, ColumnRole::state);
-        visit("level", level, ColumnRole::state);
-        visit("force", force, ColumnRole::scratch);
+        visit("slot", slot, ColumnRole::derived);
     }
 };
 
-/// The rows of ElementNodeTable that a block of elements has.
+/// x, y, z and a zero: one register.
+using PaddedVec3 = Lanes<Real, 4>;
+
+/// Patches: blocks of one body and one level that lie close together, so that they have few nodes between them. Forces
+/// are summed up within a patch, in cache, before nodes gather what few patches give them. Made from the blocks by
+/// build_patches, all of them at once: the lists grow and nothing points to them.
+struct ElementPatches {
+    Column<Range> blocks;         // of ElementBlockTable, by patch
+    Column<Range> slots;          // rows of the columns below, by patch
+    Column<Index> node;           // by slot: row of NodeTable
+    Column<std::uint8_t> level;   // by slot: that of the patch
+    Ragged<Index> slots_of_node;  // by node, ascending
+    Column<PaddedVec3> position;  // m, by slot; scratch
+    Column<PaddedVec3> force;     // N, by slot, what the patch does to the node; scratch
+};
+
+/// The rows of ElementNodeTable that a block of elements has. `node`: where its nodes are in the list of positions that
+/// goes with it.
 struct BlockNodes {
     const NodeLane* node;
     const ElementGradient* gradient;

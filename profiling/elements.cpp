@@ -24,31 +24,33 @@ namespace {
 
 using namespace skerry;
 
-/// Elements and their nodes, a tetrahedron.
+/// Elements, their nodes, and slots of the patches, a tetrahedron.
 struct Density {
-    double elements, nodes;
+    double elements, nodes, slots;
 };
 
 /// What one tetrahedron costs, counted in the source. Bytes: of a node of an element its gradient (but for the first)
-/// 24, number 4, force 24 stored and 24 fetched before; of an element volume 8, material 0.5, with a frame 32 + 32 + 32
-/// for the quaternions; positions 4 (0.18 nodes a tetrahedron). Flops: of a node but the first edge 3, F 18, force 15;
-/// of an element 9, and the law; a frame 172 in each of two passes (division and root count as one) and 24.
+/// 24 and slot 4; of a slot its node 4, position and force 32 each stored and 32 fetched before; of an element volume
+/// 8, material 0.5, with a frame 32 + 32 + 32 for the quaternions; positions 4 (0.18 nodes a tetrahedron). Flops: of a
+/// node but the first edge 3, F 18, force 15, of all the sum 3; of an element 9, and the law; a frame 172 in each of
+/// two passes (division and root count as one) and 24.
 struct Cost {
     double bytes, flops;
 };
 Cost element_cost(MaterialModel model, const Density& of) {
     const double others = of.nodes - of.elements;
-    const Cost shared{24 * others + 52 * of.nodes + 8.5 * of.elements + 4, 36 * others + 9 * of.elements};
+    const Cost shared{24 * others + 4 * of.nodes + 132 * of.slots + 8.5 * of.elements + 4,
+                      36 * others + 3 * of.nodes + 9 * of.elements};
     return with_law(model, [&](auto law) -> Cost {
         if constexpr (law.has_frame)
             return {shared.bytes + 96 * of.elements, shared.flops + (2 * 172 + 24 + law.stress_flops) * of.elements};
         return {shared.bytes, shared.flops + law.stress_flops * of.elements};
     });
 }
-/// The gather with its kick: of a node of an element its force 24 and corner 4 bytes, 3 additions; 0.18 nodes of 92
-/// bytes and 15 flops.
+/// The gather with its kick: of a slot its force 32 and number 4 bytes, 3 additions; 0.18 nodes of 92 bytes and 15
+/// flops.
 Cost gather_cost(const Density& of) {
-    return {28 * of.nodes + 17, 3 * of.nodes + 3};
+    return {36 * of.slots + 17, 3 * of.slots + 3};
 }
 
 template <class Work>
@@ -133,7 +135,7 @@ void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_
     const std::vector<Index> of_body(begin.size(), 0);
     predict_velocity(
         executor,
-        {begin, end, of_body, body.corners.view(), body.element_nodes.force, {}, body.mass, body.inverse_mass},
+        {begin, end, of_body, body.patches.slots_of_node.view(), body.patches.force, {}, body.mass, body.inverse_mass},
         body.velocity, 1e-6, body.force, velocity_next);
 }
 
@@ -150,6 +152,7 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
                 density.elements += v > 0 ? 1 / count : 0;
                 density.nodes += v > 0 ? body.elements.count[b] / count : 0;
             }
+        density.slots = static_cast<double>(body.patches.node.size()) / count;
         // Two shapes in turn, deformed by a tenth and 1e-4 rad apart, as a quick step would have it: two passes of the
         // frame.
         std::vector<Vec3> shape[2] = {body.position, body.position};
@@ -161,7 +164,7 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
         std::vector<Vec3> velocity_next = body.velocity;
         const double elements = median_seconds(repeats, [&](int r) {
             compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, 0, body.elements.rotation,
-                                   {.rotation = body.elements.rotation_next}, body.element_nodes.force);
+                                   {.rotation = body.elements.rotation_next}, body.patch_forces());
             swap(body.elements.rotation, body.elements.rotation_next);
         });
         const double gather = median_seconds(repeats, [&](int) { kick(executor, body, velocity_next); });

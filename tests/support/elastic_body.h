@@ -22,7 +22,7 @@ struct ElasticBody {
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
     Range blocks;
-    Ragged<Index> corners;
+    ElementPatches patches;
     Column<MaterialConstants> constants;
     ElementList list;
     std::vector<Index> element_at;  // of the list, by place; no_index in a lane that is left over
@@ -53,13 +53,13 @@ struct ElasticBody {
         }
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
         list = elements_of({mesh.tetrahedra, mesh.nodes, rotation}, zones);
-        const AppendedElements appended = append_elements(list, {}, 0, 0, elements, element_nodes);
+        const AppendedElements appended = append_elements(list, mesh.nodes, {}, 0, 0, elements, element_nodes);
         blocks = appended.blocks;
         element_at = appended.element;
         start_mass_shares(inputs(), blocks, elements.mass_share);
         add_lumped_mass(mesh.tetrahedra, mesh.nodes, density, mass);
         for (Real m : mass) inverse_mass.push_back(1 / m);
-        build_corners(elements, element_nodes, n, corners);
+        build_patches(elements, n, element_nodes, patches);
     }
 
     ElementInputs inputs() const {
@@ -83,10 +83,13 @@ struct ElasticBody {
     Real compute_elements(Executor& executor, Real h = 0) {
         return compute_element_forces(executor, inputs(), position, velocity, h, elements.rotation,
                                       {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
-                                      element_nodes.force);
+                                      patch_forces());
+    }
+    PatchForces patch_forces() {
+        return {patches.blocks, patches.slots, patches.node, element_nodes.slot, patches.position, patches.force};
     }
     void gather(const Vec3& gravity = Vec3::Zero()) {
-        gather_node_forces(corners.view(), element_nodes.force, mass, gravity, load, force);
+        gather_node_forces(patches.slots_of_node.view(), patches.force, mass, gravity, load, force);
     }
     void compute_forces(Executor& executor, const Vec3& gravity = Vec3::Zero()) {
         compute_elements(executor);
@@ -100,9 +103,6 @@ struct ElasticBody {
     }
     std::size_t node(std::size_t element, std::size_t k) const {
         return static_cast<std::size_t>(element_nodes.node[row(element) + k][element % element_lanes]);
-    }
-    Vec3& element_force(std::size_t element, std::size_t k) {
-        return element_nodes.force[row(element) + k][element % element_lanes];
     }
     Vec3 gradient(std::size_t element, std::size_t k) const {
         const ElementGradient& g = element_nodes.gradient[row(element) + k];

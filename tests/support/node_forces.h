@@ -8,15 +8,17 @@
 
 namespace skerry::test {
 
-/// force = sum of the forces of all corners around the node + mass gravity + load.
-inline void gather_node_forces(RaggedView<Index> corners, std::span<const ElementForces> element_force,
+inline Vec3 vector_of(const PaddedVec3& padded) {
+    return {padded[0], padded[1], padded[2]};
+}
+
+/// force = sum of what all patches around the node do to it + mass gravity + load.
+inline void gather_node_forces(RaggedView<Index> slots_of_node, std::span<const PaddedVec3> patch_force,
                                std::span<const Real> mass, const Vec3& gravity, std::span<const Vec3> load,
                                std::span<Vec3> force) {
     for (std::size_t n = 0; n < force.size(); ++n) {
         Vec3 sum = Vec3::Zero();
-        for (const Index corner : corners[n])
-            sum += element_force[static_cast<std::size_t>(corner) / element_lanes]
-                                [static_cast<std::size_t>(corner) % element_lanes];
+        for (const Index slot : slots_of_node[n]) sum += vector_of(patch_force[static_cast<std::size_t>(slot)]);
         force[n] = sum + mass[n] * gravity + load[n];
     }
 }

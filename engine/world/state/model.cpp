@@ -79,11 +79,10 @@ void Model::note_loads() {
 }
 
 void Model::rebuild_derived() {
-    build_corners(elements, element_nodes, nodes.position.size(), corners);
-    for (std::size_t n = 0; n < corners.size(); ++n) {
+    build_patches(elements, nodes.position.size(), element_nodes, patches);
+    for (std::size_t n = 0; n < nodes.position.size(); ++n) {
         unsigned levels = 0;
-        for (const Index corner : corners[n])
-            levels |= 1u << element_nodes.level[static_cast<std::size_t>(corner) / element_lanes];
+        for (const Index slot : patches.slots_of_node[n]) levels |= 1u << patches.level[static_cast<std::size_t>(slot)];
         nodes.levels[n] = static_cast<LevelMask>(levels);
     }
     body_mass.assign(bodies.slot.size(), 0);

@@ -50,7 +50,7 @@ struct Model {
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
-    Ragged<Index> corners;  // by node: element_lanes row + lane of element_nodes; derived: rebuild_derived
+    ElementPatches patches;  // derived: rebuild_derived
     // Of the implicit elements. State: the matrices of elements that have stiffened were updated, not made anew.
     NodeClusters clusters;
     SurfaceTables surface;

@@ -43,10 +43,10 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, compute_element_forces,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
                         read(n.position), read(n.velocity), value(p.h), read(e.rotation), outputs<ElementMemory>(e),
-                        write(m.element_nodes.force));
+                        outputs<PatchForces>(m.patches, m.element_nodes));
     g.stage("dynamics/predict_velocity", predict_velocity,
-            inputs<KickInputs>(k, m.corners, m.element_nodes, n, b, p.gravity, m.loaded, m.any_asleep),
-            read(n.velocity), value(p.h), write(n.force), write(n.velocity_next));
+            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
+            write(n.force), write(n.velocity_next));
     g.stage("dynamics/kick_clusters", kick_clusters, inputs<ClusterKickInputs>(m.clusters, n, b, m.any_asleep),
             read(n.velocity), make(w.scratch.cluster_kick), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),

@@ -11,36 +11,82 @@ namespace skerry {
 
 namespace {
 
-/// Places of the elements of a list, block by block.
-std::vector<Index> places_of(const ElementList& list, std::span<const std::uint8_t> level) {
+using Order = std::span<Index>;  // elements of a list
+
+/// The mean of the nodes of each element.
+std::vector<Vec3> centres_of(const ElementList& list, std::span<const Vec3> rest_position) {
+    std::vector<Vec3> centre(list.size());
+    for (std::size_t e = 0; e < list.size(); ++e) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t k = list.first_node[e]; k < list.first_node[e + 1]; ++k)
+            sum += rest_position[static_cast<std::size_t>(list.node[k])];
+        centre[e] = sum / static_cast<Real>(list.nodes_of(e));
+    }
+    return centre;
+}
+
+/// Halves a group along its longest side until every part is a patch; the parts one after the other.
+void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<std::size_t>& patch_size) {
+    const std::size_t patches = (group.size() + elements_per_patch - 1) / elements_per_patch;
+    if (patches <= 1) {
+        std::ranges::sort(group);
+        if (!group.empty()) patch_size.push_back(group.size());
+        return;
+    }
+    const auto at = [&](Index e) -> const Vec3& { return centre[static_cast<std::size_t>(e)]; };
+    Vec3 low = at(group[0]), high = low;
+    for (const Index e : group) {
+        low = low.cwiseMin(at(e));
+        high = high.cwiseMax(at(e));
+    }
+    Eigen::Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    const std::size_t half = group.size() * (patches / 2) / patches;
+    std::nth_element(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(half), group.end(),
+                     [&](Index a, Index b) { return std::pair(at(a)[axis], a) < std::pair(at(b)[axis], b); });
+    split_into_patches(group.first(half), centre, patch_size);
+    split_into_patches(group.subspan(half), centre, patch_size);
+}
+
+/// Where the elements of a list go.
+struct Places {
+    std::vector<Index> element;             // block by block; no_index in a lane that is left over
+    std::vector<std::uint8_t> opens_patch;  // by block
+};
+
+Places places_of(const ElementList& list, std::span<const Vec3> rest_position, std::span<const std::uint8_t> level) {
+    const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
-    const auto key = [&](Index e) {
-        const auto at = static_cast<std::size_t>(e);
-        return std::pair(level.empty() ? std::uint8_t{0} : level[at], list.part[at]);
-    };
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
-    constexpr std::size_t window = 256;
-    std::vector<Index> places;
+    const auto level_of = [&](Index e) { return level.empty() ? std::uint8_t{0} : level[static_cast<std::size_t>(e)]; };
+    std::ranges::stable_sort(order, {}, level_of);
+    std::vector<std::size_t> patch_size;
     for (std::size_t first = 0; first < order.size();) {
-        const auto like_first = [&](Index e) {
-            const auto at = static_cast<std::size_t>(e), leader = static_cast<std::size_t>(order[first]);
-            return list.part[at] == list.part[leader] && list.material[at] == list.material[leader];
-        };
         std::size_t end = first;
-        while (end < order.size() && like_first(order[end])) ++end;
-        for (std::size_t begin = first; begin < end; begin += window)
-            std::stable_sort(
-                order.begin() + static_cast<std::ptrdiff_t>(begin),
-                order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + window, end)), [&](Index a, Index b) {
-                    const std::uint8_t la = key(a).first, lb = key(b).first;
-                    if (la != lb) return la < lb;
-                    return list.nodes_of(static_cast<std::size_t>(a)) < list.nodes_of(static_cast<std::size_t>(b));
-                });
-        places.insert(places.end(), order.begin() + static_cast<std::ptrdiff_t>(first),
-                      order.begin() + static_cast<std::ptrdiff_t>(end));
-        while (places.size() % element_lanes != 0) places.push_back(no_index);
+        while (end < order.size() && level_of(order[end]) == level_of(order[first])) ++end;
+        split_into_patches(Order(order).subspan(first, end - first), centre, patch_size);
         first = end;
+    }
+    const auto kind = [&](Index e) {
+        const auto at = static_cast<std::size_t>(e);
+        return std::pair(list.part[at], list.material[at]);
+    };
+    const auto key = [&](Index e) { return std::pair(kind(e), list.nodes_of(static_cast<std::size_t>(e))); };
+    Places places;
+    std::size_t first = 0;
+    for (const std::size_t size : patch_size) {
+        const Order patch = Order(order).subspan(first, size);
+        std::ranges::stable_sort(patch, {}, key);
+        const std::size_t first_block = places.opens_patch.size();
+        for (std::size_t i = 0; i < size; ++i) {
+            if (i > 0 && kind(patch[i]) != kind(patch[i - 1]))
+                while (places.element.size() % element_lanes != 0) places.element.push_back(no_index);
+            places.element.push_back(patch[i]);
+        }
+        while (places.element.size() % element_lanes != 0) places.element.push_back(no_index);
+        places.opens_patch.resize(places.element.size() / element_lanes, 0);
+        places.opens_patch[first_block] = 1;
+        first += size;
     }
     return places;
 }
@@ -80,11 +126,13 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
     return {first_block, static_cast<Index>(table.node.size())};
 }
 
-AppendedElements append_elements(const ElementList& list, std::span<const std::uint8_t> level, Index first_node,
-                                 Index body, ElementBlockTable& blocks, ElementNodeTable& nodes) {
+AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
+                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+                                 ElementBlockTable& blocks, ElementNodeTable& nodes) {
     SKERRY_CHECK(level.empty() || level.size() == list.size());
     const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
-    AppendedElements appended{{}, {}, places_of(list, level)};
+    Places places = places_of(list, rest_position, level);
+    AppendedElements appended{{}, {}, std::move(places.element)};
     for (std::size_t place = 0; place < appended.element.size(); place += element_lanes) {
         const std::span<const Index> lanes = std::span(appended.element).subspan(place, element_lanes);
         std::size_t count = 0;
@@ -100,21 +148,20 @@ AppendedElements append_elements(const ElementList& list, std::span<const std::u
         blocks.material[block] = list.material[leader];
         blocks.part[block] = list.part[leader];
         blocks.level[block] = level.empty() ? std::uint8_t{0} : level[leader];
+        blocks.opens_patch[block] = places.opens_patch[place / element_lanes];
         for (Real& w : blocks.rotation[block][0].lane) w = 1;
         blocks.rotation_next[block] = blocks.rotation[block];  // kernels of some laws touch neither, and the step swaps
         for (Real& share : blocks.mass_share[block].lane) share = 1;
-        for (std::size_t k = 0; k < count; ++k) nodes.level[row + k] = blocks.level[block];
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const bool used = lanes[l] != no_index;
-            const auto e = static_cast<std::size_t>(lanes[l]);
+            const std::size_t e = used ? static_cast<std::size_t>(lanes[l]) : leader;
             if (used) blocks.volume[block][l] = list.volume[e];
             const std::size_t own = used ? list.nodes_of(e) : 0;
             for (std::size_t k = 0; k < count; ++k) {
-                const std::size_t at = used ? list.first_node[e] + (k < own ? k : 0) : 0;
-                nodes.node[row + k][l] = first_node + (used ? list.node[at] : 0);
+                const std::size_t at = list.first_node[e] + (k < own ? k : 0);
+                nodes.node[row + k][l] = first_node + list.node[at];
                 for (std::size_t i = 0; i < 3 && k < own; ++i)
                     nodes.gradient[row + k][i][l] = list.gradient[at][static_cast<Eigen::Index>(i)];
-                nodes.force[row + k][l] = Vec3::Zero();
             }
         }
     }
@@ -132,31 +179,60 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
     }
 }
 
-void build_corners(const ElementBlockTable& blocks, const ElementNodeTable& nodes, std::size_t node_count,
-                   Ragged<Index>& corners) {
-    // Counting sort: count, sum up, fill in element order.
-    const auto for_each_corner = [&](auto&& visit) {
-        for (std::size_t b = 0; b < blocks.first.size(); ++b) {
+namespace {
+
+/// For every row the list of items that name it, in their order.
+void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragged<Index>& items) {
+    // Counting sort: count, sum up, fill.
+    items.offset.assign(row_count + 1, 0);
+    for (const Index row : row_of_item) ++items.offset[static_cast<std::size_t>(row) + 1];
+    for (std::size_t r = 0; r < row_count; ++r) items.offset[r + 1] += items.offset[r];
+    items.item.resize(row_of_item.size());
+    for (std::size_t i = 0; i < row_of_item.size(); ++i)
+        items.item[static_cast<std::size_t>(items.offset[static_cast<std::size_t>(row_of_item[i])]++)] =
+            static_cast<Index>(i);
+    for (std::size_t r = row_count; r > 0; --r) items.offset[r] = items.offset[r - 1];
+    items.offset[0] = 0;
+}
+
+}  // namespace
+
+void build_patches(const ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
+                   ElementPatches& patches) {
+    patches.blocks.clear();
+    patches.slots.clear();
+    patches.node.clear();
+    patches.level.clear();
+    std::vector<Index> slot_of_node(node_count, no_index);
+    for (std::size_t begin = 0; begin < blocks.first.size();) {
+        std::size_t end = begin + 1;
+        while (end < blocks.first.size() && !blocks.opens_patch[end]) ++end;
+        const auto first_slot = static_cast<Index>(patches.node.size());
+        for (std::size_t b = begin; b < end; ++b) {
+            SKERRY_CHECK(blocks.body[b] == blocks.body[begin] && blocks.level[b] == blocks.level[begin]);
             const auto first = static_cast<std::size_t>(blocks.first[b]);
-            const auto count = static_cast<std::size_t>(blocks.count[b]);
-            for (std::size_t l = 0; l < element_lanes; ++l) {
-                if (!(blocks.volume[b][l] > 0)) continue;
-                const Index anchor = nodes.node[first][l];
-                for (std::size_t k = 0; k < count; ++k)
-                    if (k == 0 || nodes.node[first + k][l] != anchor)
-                        visit(static_cast<std::size_t>(nodes.node[first + k][l]), (first + k) * element_lanes + l);
-            }
+            for (std::size_t row = first; row < first + static_cast<std::size_t>(blocks.count[b]); ++row)
+                for (std::size_t l = 0; l < element_lanes; ++l) {
+                    const Index n = nodes.node[row][l];
+                    Index& slot = slot_of_node[static_cast<std::size_t>(n)];
+                    if (slot == no_index) {
+                        slot = static_cast<Index>(patches.node.size()) - first_slot;
+                        patches.node.push_back(n);
+                    }
+                    nodes.slot[row][l] = slot;
+                }
         }
-    };
-    corners.offset.assign(node_count + 1, 0);
-    for_each_corner([&](std::size_t n, std::size_t) { ++corners.offset[n + 1]; });
-    for (std::size_t n = 0; n < node_count; ++n) corners.offset[n + 1] += corners.offset[n];
-    corners.item.resize(static_cast<std::size_t>(corners.offset[node_count]));
-    for_each_corner([&](std::size_t n, std::size_t corner) {
-        corners.item[static_cast<std::size_t>(corners.offset[n]++)] = static_cast<Index>(corner);
-    });
-    for (std::size_t n = node_count; n > 0; --n) corners.offset[n] = corners.offset[n - 1];
-    corners.offset[0] = 0;
+        const Range slots{first_slot, static_cast<Index>(patches.node.size())};
+        for (Index s = slots.begin; s < slots.end; ++s)
+            slot_of_node[static_cast<std::size_t>(patches.node[static_cast<std::size_t>(s)])] = no_index;
+        patches.level.resize(patches.node.size(), blocks.level[begin]);
+        patches.blocks.push_back({static_cast<Index>(begin), static_cast<Index>(end)});
+        patches.slots.push_back(slots);
+        begin = end;
+    }
+    patches.position.resize(patches.node.size());
+    patches.force.resize(patches.node.size());
+    sort_by_row(patches.node, node_count, patches.slots_of_node);
 }
 
 }  // namespace skerry

@@ -7,10 +7,13 @@
 
 #include "components/body_table.h"
 #include "components/element_table.h"
-#include "components/ragged.h"
 #include "systems/dynamics/kinds/element_list.h"
 
 namespace skerry {
+
+/// Of a patch: some 10 us of work, well above the cost of handing out a job, and positions and forces of its nodes fit
+/// into the first cache.
+inline constexpr std::size_t elements_per_patch = 256;
 
 /// m, of one tetrahedron.
 Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position);
@@ -25,21 +28,21 @@ struct AppendedElements {
     std::vector<Index> element;  // of the list, by place in the blocks; no_index in a lane that is left over
 };
 
-/// Appends the elements of a new body. They keep their order but for two things: a block has elements of one part and
-/// one material, and among few hundred neighbours of these those with as many nodes stand together, so that few rows
-/// are left over.
-/// `level` of each element of the list, or none: all 0; elements are sorted by level, and a block has the lowest of its
-/// elements.
-AppendedElements append_elements(const ElementList& list, std::span<const std::uint8_t> level, Index first_node,
-                                 Index body, ElementBlockTable& blocks, ElementNodeTable& nodes);
+/// Appends the elements of a new body, patch after patch: compact groups of up to elements_per_patch in space, found by
+/// halving the longest side again and again. Within a patch blocks have elements of one part and one material, those
+/// with as many nodes together, so that few rows are left over; otherwise elements keep their order.
+/// `rest_position`: m, of the body's nodes. `level` of each element of the list, or none: all 0; elements are sorted by
+/// level, and a patch has one.
+AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
+                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+                                 ElementBlockTable& blocks, ElementNodeTable& nodes);
 
 /// Adds rho V / 4 of each tetrahedron to its nodes; `density` by tetrahedron, kg/m^3.
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass);
 
-/// For every node the places (element_lanes * row + lane) where elements have a force for it, in element order. What is
-/// left over is left out.
-void build_corners(const ElementBlockTable& blocks, const ElementNodeTable& nodes, std::size_t node_count,
-                   Ragged<Index>& corners);
+/// Patches, their nodes, and the slots of the nodes of elements. A node has its slots in element order.
+void build_patches(const ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
+                   ElementPatches& patches);
 
 }  // namespace skerry

@@ -14,8 +14,6 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t blocks_per_job = 64;  // 512 tetrahedra, some 4 us: well above the cost of handing out a job
-
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> transposed(const LaneMat3<T>& a) {
     return {{a.c0.x, a.c1.x, a.c2.x}, {a.c0.y, a.c1.y, a.c2.y}, {a.c0.z, a.c1.z, a.c2.z}};
@@ -39,7 +37,9 @@ LaneMat3<T> viscous_stress(const MaterialConstants& material, Real time, const L
 struct Block {
     const ElementInputs& elements;
     std::size_t block;
-    BlockNodes nodes;
+    BlockNodes nodes;  // among the positions and forces of the patch
+    const PaddedVec3* position;
+    PaddedVec3* force;
     MaterialConstants material;
     Real duration;  // in steps
     Real h;         // s, a step
@@ -78,10 +78,9 @@ struct Block {
         return multiply(F, stress(moduli, after));
     }
 
-    [[gnu::always_inline]] void forces_of_part(std::size_t part, std::span<const Vec3> position,
-                                               std::span<const Vec3> velocity,
+    [[gnu::always_inline]] void forces_of_part(std::size_t part, std::span<const Vec3> velocity,
                                                std::span<const ElementRotation> rotation, const ElementMemory& next,
-                                               ElementLane& dissipated, ElementForces* force) const {
+                                               ElementLane& dissipated) const {
         using T = KernelReal;
         const LaneMat3<T> F = deformation_gradient(nodes, part, position);
         const T volume = part_of<T>(elements.volume, part);
@@ -96,11 +95,13 @@ struct Block {
             }
         });
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0)
-            P = P +
-                viscous_stress(material, elements.viscous_time[block], F, deformation_gradient(nodes, part, velocity));
+            P = P + viscous_stress(material, elements.viscous_time[block], F,
+                                   deformation_gradient(elements.nodes_of(block), part, velocity));
         if (material.relaxes() && !next.viscous_strain.empty())
             P = P + relax(F, part, next.viscous_strain[block], dissipated);
-        write_forces(P, nodes, part, duration * volume, force);
+        for_each_force(P, nodes, part, duration * volume, [&](Index k, const LaneVec3<T>& f) {
+            add_lanes(f, nodes.node[k].lane + lanes_of<T> * part, force);
+        });
     }
 };
 
@@ -110,30 +111,43 @@ Real sum_of(const ElementLane& lanes) {
     return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
 }
 
+/// Positions of the nodes of a patch side by side, and forces zero.
+void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVec3* to, PaddedVec3* force) {
+    for (std::size_t s = 0; s < node.size(); ++s) {
+        const Vec3& x = position[static_cast<std::size_t>(node[s])];
+        to[s] = {{x[0], x[1], x[2], 0}};
+        force[s] = {};
+    }
+}
+
 }  // namespace
 
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
-                            const ElementMemory& next, std::span<ElementForces> force) {
-    SKERRY_CHECK(force.size() == elements.node.size() && rotation.size() == elements.blocks() &&
-                 next.rotation.size() == elements.blocks());
-    parallel_for(executor, elements.blocks(), blocks_per_job, [&](std::size_t begin, std::size_t end) {
-        if (elements.schedule.none_active(begin, end)) {
-            if (!next.relaxed.empty()) std::fill(next.relaxed.begin() + begin, next.relaxed.begin() + end, Real{0});
-            return;
-        }
-        for (std::size_t b = begin; b < end; ++b) {
-            const Real duration = elements.schedule.duration(b);
+                            const ElementMemory& next, const PatchForces& patches) {
+    SKERRY_CHECK(patches.force.size() == patches.node.size() && patches.position.size() == patches.node.size());
+    SKERRY_CHECK(rotation.size() == elements.blocks() && next.rotation.size() == elements.blocks());
+    parallel_for(executor, patches.blocks.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t p = first; p < last; ++p) {
+            const auto begin = static_cast<std::size_t>(patches.blocks[p].begin),
+                       end = static_cast<std::size_t>(patches.blocks[p].end);
+            const Real duration = elements.schedule.duration(begin);
             if (duration == 0) {
-                if (!next.relaxed.empty()) next.relaxed[b] = 0;
+                if (!next.relaxed.empty()) std::fill(next.relaxed.begin() + begin, next.relaxed.begin() + end, Real{0});
                 continue;
             }
-            const Block block{elements, b, elements.nodes_of(b), elements.material_of(b), duration, h};
-            ElementForces* const rows = force.data() + static_cast<std::size_t>(elements.first[b]);
-            ElementLane dissipated{};
-            for (std::size_t part = 0; part < kernel_parts; ++part)
-                block.forces_of_part(part, position, velocity, rotation, next, dissipated, rows);
-            if (!next.relaxed.empty()) next.relaxed[b] = sum_of(dissipated);
+            const auto slot = static_cast<std::size_t>(patches.slots[p].begin);
+            PaddedVec3 *const x = patches.position.data() + slot, *const force = patches.force.data() + slot;
+            fetch(patches.node.subspan(slot, static_cast<std::size_t>(patches.slots[p].size())), position, x, force);
+            for (std::size_t b = begin; b < end; ++b) {
+                BlockNodes nodes = elements.nodes_of(b);
+                nodes.node = patches.slot.data() + static_cast<std::size_t>(elements.first[b]);
+                const Block block{elements, b, nodes, x, force, elements.material_of(b), duration, h};
+                ElementLane dissipated{};
+                for (std::size_t part = 0; part < kernel_parts; ++part)
+                    block.forces_of_part(part, velocity, rotation, next, dissipated);
+                if (!next.relaxed.empty()) next.relaxed[b] = sum_of(dissipated);
+            }
         }
     });
     const auto relaxes = [](const MaterialConstants& material) { return material.relaxes(); };

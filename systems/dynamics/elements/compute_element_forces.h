@@ -64,6 +64,24 @@ struct ElementInputs {
     }
 };
 
+/// The patches and where their sums go.
+struct PatchForces {
+    std::span<const Range> blocks, slots;
+    std::span<const Index> node;     // by slot
+    std::span<const NodeLane> slot;  // by row of ElementNodeTable
+    std::span<PaddedVec3> position;  // m, by slot; scratch
+    std::span<PaddedVec3> force;     // N, by slot
+
+    static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
+        return {.blocks = binder.read(patches.blocks),
+                .slots = binder.read(patches.slots),
+                .node = binder.read(patches.node),
+                .slot = binder.read(nodes.slot),
+                .position = binder.write(patches.position),
+                .force = binder.write(patches.force)};
+    }
+};
+
 /// What elements will remember of this step.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
@@ -77,13 +95,14 @@ struct ElementMemory {
     }
 };
 
-/// force[row][lane]: N, on the nodes of each element, from the first Piola-Kirchhoff stress P(F),
-/// F = sum_k (x_k - x_0) (x) g_k: f_k = -V P g_k, f_0 = -(f_1 + f_2 + ...). Corotational elements start the extraction
-/// of their frame from `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Blocks
-/// that are not active keep what they had; those that are active for several steps at once get so many times the force.
-/// Parallel over blocks of lanes.
+/// Sums over each patch what its elements do to its nodes, from the first Piola-Kirchhoff stress P(F),
+/// F = sum_k (x_k - x_0) (x) g_k: f_k = -V P g_k, f_0 = -(f_1 + f_2 + ...). In the order of the blocks, and lane by
+/// lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
+/// `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Patches that are not active
+/// keep what they had; those that are active for several steps at once get so many times the force. Parallel over
+/// patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
-                            const ElementMemory& next, std::span<ElementForces> force);
+                            const ElementMemory& next, const PatchForces& patches);
 
 }  // namespace skerry

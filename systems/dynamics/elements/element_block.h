@@ -13,6 +13,9 @@ namespace skerry {
 [[gnu::always_inline]] inline Real4 load_position(const Vec3* at) {
     return half_at(at->data());
 }
+[[gnu::always_inline]] inline Real4 load_position(const PaddedVec3* at) {
+    return *reinterpret_cast<const Real4*>(at->lane);
+}
 
 /// One node of as many lanes as the kernel takes at once, in the order in which the transposes below want them. A
 /// full-width load per node and a few shuffles, in place of three gathers, which cost a load per lane each.
@@ -22,7 +25,8 @@ struct Corner {
     Real8 pair[4];
 };
 
-[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t, const Vec3* position) {
+template <class Position>
+[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t, const Position* position) {
     const auto pair = [&](std::size_t l) {
         return __builtin_shufflevector(load_position(position + node[l]), load_position(position + node[l + 4]), 0, 1,
                                        2, 3, 4, 5, 6, 7);
@@ -51,23 +55,13 @@ struct Corner {
             __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13),
             __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
-
-/// x, y and z of the lanes one after the other.
-[[gnu::always_inline]] inline void store_forces(const LaneVec3<Real8>& f, std::size_t, ElementForces& force) {
-    const Real8 xy_low = __builtin_shufflevector(f.x, f.y, 0, 8, -1, 1, 9, -1, 2, 10);
-    const Real8 xy_middle = __builtin_shufflevector(f.x, f.y, -1, 3, 11, -1, 4, 12, -1, 5);
-    const Real8 xy_high = __builtin_shufflevector(f.x, f.y, 13, -1, 6, 14, -1, 7, 15, -1);
-    const Real8 out[3] = {__builtin_shufflevector(xy_low, f.z, 0, 1, 8, 3, 4, 9, 6, 7),
-                          __builtin_shufflevector(xy_middle, f.z, 10, 1, 2, 11, 4, 5, 12, 7),
-                          __builtin_shufflevector(xy_high, f.z, 0, 13, 2, 3, 14, 5, 6, 15)};
-    for (std::size_t k = 0; k < 3; ++k) *reinterpret_cast<Real8InMemory*>(force[0].data() + 8 * k) = out[k];
-}
 #else
 struct Corner {
     Real4 lane[4];  // x, y, z, next node's x
 };
 
-[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t part, const Vec3* position) {
+template <class Position>
+[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t part, const Position* position) {
     const Index* const of = node.lane + 4 * part;
     return {{load_position(position + of[0]), load_position(position + of[1]), load_position(position + of[2]),
              load_position(position + of[3])}};
@@ -92,17 +86,6 @@ struct Corner {
     const Real4 high23 = __builtin_shufflevector(d2, d3, 1, 5, 3, 7);
     return {__builtin_shufflevector(low01, low23, 0, 1, 4, 5), __builtin_shufflevector(high01, high23, 0, 1, 4, 5),
             __builtin_shufflevector(low01, low23, 2, 3, 6, 7)};
-}
-
-/// x, y and z of the lanes one after the other.
-[[gnu::always_inline]] inline void store_forces(const LaneVec3<Real4>& f, std::size_t part, ElementForces& force) {
-    const Real4 xy = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // x0 y0 x2 y2
-    const Real4 zx = __builtin_shufflevector(f.z, f.x, 0, 5, 2, 7);  // z0 x1 z2 x3
-    const Real4 yz = __builtin_shufflevector(f.y, f.z, 1, 5, 3, 7);  // y1 z1 y3 z3
-    Real* const out = force[4 * part].data();
-    store_half(__builtin_shufflevector(xy, zx, 0, 1, 4, 5), out);
-    store_half(__builtin_shufflevector(yz, xy, 0, 1, 6, 7), out + 4);
-    store_half(__builtin_shufflevector(zx, yz, 2, 3, 6, 7), out + 8);
 }
 #endif
 
@@ -139,9 +122,9 @@ template <class Part>
 }
 
 /// The columns of Ds: corners 1 to 3 minus corner 0.
-template <class Load>
+template <class Position, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> edges_of_part(const NodeLane* node, std::size_t part,
-                                                                 const Vec3* position, Load&& load_nodes) {
+                                                                 const Position* position, Load&& load_nodes) {
     const Corner corner0 = load_nodes(node[0], part, position);
     return {edge(load_nodes(node[1], part, position), corner0), edge(load_nodes(node[2], part, position), corner0),
             edge(load_nodes(node[3], part, position), corner0)};
@@ -151,7 +134,7 @@ template <class Load>
 inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3> position) {
     const bool clear = clear_of_end(node.data(), 4, position);
     return joined([&](std::size_t part) {
-        return clear ? edges_of_part(node.data(), part, position.data(), load_corner)
+        return clear ? edges_of_part(node.data(), part, position.data(), load_corner<Vec3>)
                      : edges_of_part(node.data(), part, position.data(), load_corner_near_end);
     });
 }
@@ -166,9 +149,9 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
 }
 
 /// sum_k (x_k - x_0) (x) g_k
-template <class Load>
+template <class Position, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
-                                                                    const Vec3* position, Load&& load_nodes) {
+                                                                    const Position* position, Load&& load_nodes) {
     const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
     if (block.count == 4) {
         const LaneMat3<KernelReal> d = edges_of_part(block.node, part, position, load_nodes);
@@ -190,8 +173,13 @@ template <class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         std::span<const Vec3> position) {
     if (clear_of_end(block.node, block.count, position)) [[likely]]
-        return gradient_of_part(block, part, position.data(), load_corner);
+        return gradient_of_part(block, part, position.data(), load_corner<Vec3>);
     return gradient_of_part(block, part, position.data(), load_corner_near_end);
+}
+/// The same where every position is padded.
+[[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
+                                                                        const PaddedVec3* position) {
+    return gradient_of_part(block, part, position, load_corner<PaddedVec3>);
 }
 
 /// The same of all lanes.
@@ -199,19 +187,20 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...), row by row into `force`, of a part of a block.
-[[gnu::always_inline]] inline void write_forces(const LaneMat3<KernelReal>& P, const BlockNodes& block,
-                                                std::size_t part, const KernelReal& volume, ElementForces* force) {
+/// f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...) of a part of a block: take(k, f_k), lanes side by side.
+template <class Take>
+[[gnu::always_inline]] inline void for_each_force(const LaneMat3<KernelReal>& P, const BlockNodes& block,
+                                                  std::size_t part, const KernelReal& volume, Take&& take) {
     const LaneMat3<KernelReal> Q = (-volume) * P;
     const auto on_node = [&](Index k) {
         const LaneVec3<KernelReal> g = load_gradient<KernelReal>(block.gradient[k], part);
         return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
     };
     LaneVec3<KernelReal> sum = on_node(1);
-    store_forces(sum, part, force[1]);
+    take(Index{1}, sum);
     const auto add = [&](Index k) {
         const LaneVec3<KernelReal> f = on_node(k);
-        store_forces(f, part, force[k]);
+        take(k, f);
         sum = sum + f;
     };
     if (block.count == 4) {
@@ -220,7 +209,30 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
     } else {
         for (Index k = 2; k < block.count; ++k) add(k);
     }
-    store_forces({-sum.x, -sum.y, -sum.z}, part, force[0]);
+    take(Index{0}, LaneVec3<KernelReal>{-sum.x, -sum.y, -sum.z});
+}
+
+/// Adds f of lane l to force[node[l]], one lane after the other: two may have the same node.
+[[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* node, PaddedVec3* force) {
+    const Real4 zero{};
+    const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // x0 y0 x2 y2
+    const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
+    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);  // z0 0 z2 0
+    const Real4 z13 = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
+    const auto add = [&](Index to, const Real4& lane) {
+        auto& sum = *reinterpret_cast<Real4*>(force[to].lane);
+        sum = sum + lane;
+    };
+    add(node[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));
+    add(node[1], __builtin_shufflevector(xy13, z13, 0, 1, 4, 5));
+    add(node[2], __builtin_shufflevector(xy02, z02, 2, 3, 6, 7));
+    add(node[3], __builtin_shufflevector(xy13, z13, 2, 3, 6, 7));
+}
+[[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real8>& f, const Index* node, PaddedVec3* force) {
+    const auto low = [](const Real8& x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); };
+    const auto high = [](const Real8& x) { return __builtin_shufflevector(x, x, 4, 5, 6, 7); };
+    add_lanes(LaneVec3<Real4>{low(f.x), low(f.y), low(f.z)}, node, force);
+    add_lanes(LaneVec3<Real4>{high(f.x), high(f.y), high(f.z)}, node + 4, force);
 }
 
 }  // namespace skerry

@@ -15,36 +15,36 @@
 namespace skerry {
 
 /// Which element forces count in this step. With empty spans all do.
-struct ActiveCorners {
+struct ActiveSlots {
     std::span<const LevelMask> body_active = {};  // BodyTable
     std::span<const LevelMask> node_levels = {};  // NodeTable
-    std::span<const std::uint8_t> level = {};     // ElementNodeTable
+    std::span<const std::uint8_t> level = {};     // ElementPatches, by slot
 };
 
 struct KickInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
-    RaggedView<Index> corners;                                  // by node: element_lanes * row + lane
-    // of ElementNodeTable
-    std::span<const ElementForces> element_force;
-    ActiveCorners active;
+    // of ElementPatches
+    RaggedView<Index> slots_of_node;
+    std::span<const PaddedVec3> patch_force;
+    ActiveSlots active;
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
     std::span<const Vec3> load = {};                 // N; empty: none
     std::span<const Index> body_pinned_count = {};   // BodyTable; empty: any node may be without freedom
     std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are passed over; empty: none
 
-    /// `corners`: by node. `loaded`: some node has a load. `any_asleep`: some body rests.
-    static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const Ragged<Index>& corners,
-                           const ElementNodeTable& element, const NodeTable& node, const BodyTable& body,
-                           const Vec3& gravity, const bool& loaded, const bool& any_asleep) {
+    /// `loaded`: some node has a load. `any_asleep`: some body rests.
+    static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const ElementPatches& patches,
+                           const NodeTable& node, const BodyTable& body, const Vec3& gravity, const bool& loaded,
+                           const bool& any_asleep) {
         return {.block_begin = binder.read(block.begin),
                 .block_end = binder.read(block.end),
                 .block_body = binder.read(block.body),
-                .corners = binder.read(corners),
-                .element_force = binder.read(element.force),
+                .slots_of_node = binder.read(patches.slots_of_node),
+                .patch_force = binder.read(patches.force),
                 .active = {.body_active = binder.read(body.active),
                            .node_levels = binder.read(node.levels),
-                           .level = binder.read(element.level)},
+                           .level = binder.read(patches.level)},
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass),
                 .gravity = binder.value(gravity),
@@ -54,8 +54,8 @@ struct KickInputs {
     }
 };
 
-/// velocity_next = velocity + h F inverse_mass, with F = sum of the element forces of the corners around the node that
-/// are due, in a fixed order, + mass gravity + load. Nodes without freedom (inverse mass 0) keep their velocity; of
+/// velocity_next = velocity + h F inverse_mass, with F = sum of what the patches around the node that are due do to it,
+/// in a fixed order, + mass gravity + load. Nodes without freedom (inverse mass 0) keep their velocity; of
 /// them alone F is written to `force`: what holds them is its opposite. One pass, since F of all nodes, kept and read
 /// again, took as long as the kick itself. Parallel over node blocks.
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real h,

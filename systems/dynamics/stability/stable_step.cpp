@@ -115,7 +115,6 @@ void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<con
 Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> inverse_mass, int iterations) {
     std::vector<Vec3> u(position.size()), next(position.size());
-    std::vector<ElementForces> force;
     // A start that no symmetry of the mesh makes orthogonal to the mode looked for.
     for (std::size_t n = 0; n < u.size(); ++n)
         u[n] = Vec3(std::sin(12.9898 * static_cast<Real>(n + 1)), std::sin(78.233 * static_cast<Real>(n + 1)),
@@ -129,13 +128,14 @@ Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks,
             const BlockNodes nodes = elements.nodes_of(b);
             const KernelReal one = KernelReal{} + 1.0, zero{};
             const LaneMat3<KernelReal> identity{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-            force.resize(static_cast<std::size_t>(nodes.count));
             for (std::size_t part = 0; part < kernel_parts; ++part)
-                write_forces(Linear::stress(material, identity + deformation_gradient(nodes, part, u)), nodes, part,
-                             load_part<KernelReal>(elements.volume[b], part), force.data());
-            for (Index k = 0; k < nodes.count; ++k)
-                for (std::size_t l = 0; l < element_lanes; ++l)
-                    next[static_cast<std::size_t>(nodes.node[k][l])] -= force[static_cast<std::size_t>(k)][l];
+                for_each_force(
+                    Linear::stress(material, identity + deformation_gradient(nodes, part, u)), nodes, part,
+                    load_part<KernelReal>(elements.volume[b], part), [&](Index k, const LaneVec3<KernelReal>& f) {
+                        const std::size_t first = part * lanes_of<KernelReal>;
+                        for (std::size_t l = 0; l < lanes_of<KernelReal>; ++l)
+                            next[static_cast<std::size_t>(nodes.node[k][first + l])] -= Vec3(f.x[l], f.y[l], f.z[l]);
+                    });
         }
         Real energy = 0, size = 0, largest = 0;
         for (std::size_t n = 0; n < u.size(); ++n) {

@@ -41,8 +41,8 @@ TEST_CASE("lanes that are left over have no volume, no gradient and a node of th
     ElementNodeTable nodes;
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra) == Range{0, 1});
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 8, tetrahedra) == Range{1, 2});
-    CHECK(append_elements(list, {}, 0, 0, elements, nodes).blocks == Range{0, 1});
-    const AppendedElements second = append_elements(list, {}, 8, 1, elements, nodes);
+    CHECK(append_elements(list, mesh.nodes, {}, 0, 0, elements, nodes).blocks == Range{0, 1});
+    const AppendedElements second = append_elements(list, mesh.nodes, {}, 8, 1, elements, nodes);
     CHECK(second.blocks == Range{1, 2});
     CHECK(second.nodes == Range{4, 8});
     CHECK(elements.body[1] == 1);
@@ -53,7 +53,7 @@ TEST_CASE("lanes that are left over have no volume, no gradient and a node of th
         CHECK(tetrahedra.volume[1][l] == 0);
         for (std::size_t a = 0; a < 4; ++a) {
             CHECK(tetrahedra.node[1][a][l] == 8);
-            CHECK(nodes.node[4 + a][l] == 8);
+            CHECK(nodes.node[4 + a][l] == nodes.node[4][0]);
             for (std::size_t i = 0; i < 3; ++i) CHECK(nodes.gradient[4 + a][i][l] == 0);
         }
         CHECK(elements.rotation[1][0][l] == 1);
@@ -68,11 +68,12 @@ TEST_CASE("no tetrahedra make no blocks", "[unit]") {
     ElementBlockTable elements;
     ElementNodeTable nodes;
     CHECK(append_tetrahedra({}, {}, 0, tetrahedra) == Range{0, 0});
-    CHECK(append_elements({}, {}, 0, 0, elements, nodes).blocks == Range{0, 0});
-    Ragged<Index> corners;
-    build_corners(elements, nodes, 3, corners);
-    CHECK(corners.size() == 3);
-    CHECK(corners[1].empty());
+    CHECK(append_elements({}, {}, {}, 0, 0, elements, nodes).blocks == Range{0, 0});
+    ElementPatches patches;
+    build_patches(elements, 3, nodes, patches);
+    CHECK(patches.blocks.empty());
+    CHECK(patches.slots_of_node.size() == 3);
+    CHECK(patches.slots_of_node[1].empty());
 }
 
 TEST_CASE("a mirrored tetrahedron is refused", "[unit]") {
@@ -82,21 +83,62 @@ TEST_CASE("a mirrored tetrahedron is refused", "[unit]") {
         CHECK_THROWS_AS(elements_of({mesh.tetrahedra, mesh.nodes}, kind), CheckFailed);
 }
 
-TEST_CASE("corners list every use of a node once, in element order", "[unit]") {
-    const ElasticBody body(jittered_box({2, 2, 3}, 0.1, 0, 1), rubber());
-    std::size_t total = 0;
-    for (std::size_t n = 0; n < body.position.size(); ++n) {
-        const std::span<const Index> corners = body.corners[n];
-        total += corners.size();
-        const auto element_of = [&](Index c) {
-            const auto row = static_cast<std::size_t>(c) / 8;
-            return row / 4 * 8 + static_cast<std::size_t>(c) % 8;
-        };
-        CHECK(std::is_sorted(corners.begin(), corners.end(),
-                             [&](Index a, Index b) { return element_of(a) < element_of(b); }));
-        for (Index c : corners)
-            CHECK(body.element_nodes.node[static_cast<std::size_t>(c) / 8][static_cast<std::size_t>(c) % 8] ==
-                  static_cast<Index>(n));
+TEST_CASE("a patch has every node of its elements once, and a node its patches in order", "[unit]") {
+    const ElementKind kind = GENERATE(ElementKind::linear, ElementKind::edge_node_smoothed);
+    const ElasticBody body(jittered_box({7, 6, 5}, 0.1, 0.1, 1), rubber(), Mat3::Identity(), kind);
+    const ElementPatches& patches = body.patches;
+    REQUIRE(patches.blocks.size() > 3);
+    CHECK(patches.blocks[0].begin == 0);
+    CHECK(patches.blocks.back().end == static_cast<Index>(body.elements.first.size()));
+    std::vector<int> times(body.position.size(), 0);
+    for (std::size_t p = 0; p < patches.blocks.size(); ++p) {
+        if (p > 0) CHECK(patches.blocks[p].begin == patches.blocks[p - 1].end);
+        const Range slots = patches.slots[p];
+        std::vector<Index> own(patches.node.begin() + slots.begin, patches.node.begin() + slots.end);
+        std::vector<Index> sorted = own;
+        std::sort(sorted.begin(), sorted.end());
+        CHECK(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
+        std::size_t elements = 0;
+        for (auto b = static_cast<std::size_t>(patches.blocks[p].begin);
+             b < static_cast<std::size_t>(patches.blocks[p].end); ++b) {
+            for (const Real volume : body.elements.volume[b].lane) elements += volume > 0;
+            for (Index k = 0; k < body.elements.count[b]; ++k) {
+                const auto row = static_cast<std::size_t>(body.elements.first[b] + k);
+                for (std::size_t l = 0; l < element_lanes; ++l)
+                    CHECK(own[static_cast<std::size_t>(body.element_nodes.slot[row][l])] ==
+                          body.element_nodes.node[row][l]);
+            }
+        }
+        CHECK(elements <= elements_per_patch);
+        CHECK(elements >= elements_per_patch / 2);
+        // compact: neighbours share their nodes
+        CHECK(own.size() < elements);
     }
-    CHECK(total == 4 * 72);
+    for (std::size_t n = 0; n < body.position.size(); ++n) {
+        const std::span<const Index> slots = patches.slots_of_node[n];
+        CHECK(std::is_sorted(slots.begin(), slots.end()));
+        for (const Index s : slots) CHECK(patches.node[static_cast<std::size_t>(s)] == static_cast<Index>(n));
+        times[n] += static_cast<int>(slots.size());
+    }
+    CHECK(std::accumulate(times.begin(), times.end(), std::size_t{0}) == patches.node.size());
+}
+
+TEST_CASE("a patch has one level", "[unit]") {
+    const test::TetMesh mesh = jittered_box({5, 5, 5}, 0.1, 0.1, 1);
+    const ElementList list = elements_of({mesh.tetrahedra, mesh.nodes}, ElementKind::linear);
+    std::vector<std::uint8_t> level;
+    for (std::size_t e = 0; e < list.size(); ++e) level.push_back(static_cast<std::uint8_t>(e % 3));
+    ElementBlockTable blocks;
+    ElementNodeTable nodes;
+    const AppendedElements appended = append_elements(list, mesh.nodes, level, 0, 0, blocks, nodes);
+    ElementPatches patches;
+    build_patches(blocks, mesh.nodes.size(), nodes, patches);
+    CHECK(patches.blocks.size() == 3);  // 250 elements each
+    CHECK(std::is_sorted(blocks.level.begin(), blocks.level.end()));
+    for (std::size_t place = 0; place < appended.element.size(); ++place)
+        if (const Index e = appended.element[place]; e != no_index)
+            CHECK(blocks.level[place / element_lanes] == level[static_cast<std::size_t>(e)]);
+    for (std::size_t p = 0; p < 3; ++p)
+        for (Index s = patches.slots[p].begin; s < patches.slots[p].end; ++s)
+            CHECK(patches.level[static_cast<std::size_t>(s)] == p);
 }

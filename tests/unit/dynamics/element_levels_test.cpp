@@ -29,7 +29,16 @@ struct SliverBody : ElasticBody {
     void compute(const ElementInputs& inputs) {
         compute_element_forces(*executor, inputs, position, velocity, 1e-3, elements.rotation,
                                {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
-                               element_nodes.force);
+                               patch_forces());
+    }
+    /// Gives every block a level, in a patch of its own.
+    template <class LevelOf>
+    void set_levels(LevelOf&& level_of) {
+        for (std::size_t b = 0; b < elements.level.size(); ++b) {
+            elements.level[b] = static_cast<std::uint8_t>(level_of(b));
+            elements.opens_patch[b] = 1;
+        }
+        build_patches(elements, position.size(), element_nodes, patches);
     }
 };
 
@@ -61,35 +70,34 @@ TEST_CASE("blocks that are not due keep their force, those due for four steps ge
     SliverBody body;
     const std::vector<Index> of_body(body.elements.first.size(), 0);
     const std::vector<std::uint8_t> body_level{1};
-    for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
+    body.set_levels([](std::size_t b) { return b % 2; });
     ElementInputs inputs = body.inputs();
     body.compute(inputs);
-    const Column<ElementForces> once = body.element_nodes.force;
-    for (ElementForces& forces : body.element_nodes.force) forces.fill(Vec3(1, 2, 3));
+    const Column<PaddedVec3> once = body.patches.force;
+    for (PaddedVec3& force : body.patches.force) force = {{1, 2, 3, 0}};
     inputs.schedule = {body.elements.level, of_body, body_level, {}};
     inputs.schedule.active.duration.fill(0);
     inputs.schedule.active.duration[2] = 4;  // level 1 of a body of level 1
     body.compute(inputs);
-    for (std::size_t row = 0; row < once.size(); ++row)
-        for (std::size_t l = 0; l < element_lanes; ++l)
-            CHECK(body.element_nodes.force[row][l] == (row / 4 % 2 == 1 ? Vec3(4 * once[row][l]) : Vec3(1, 2, 3)));
+    for (std::size_t slot = 0; slot < once.size(); ++slot) {
+        const Vec3 force = vector_of(body.patches.force[slot]);
+        if (body.patches.level[slot] == 1)
+            CHECK((force - 4 * vector_of(once[slot])).norm() <= 1e-14 * force.norm());
+        else
+            CHECK(force == Vec3(1, 2, 3));
+    }
 }
 
 TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[unit]") {
     SliverBody body;
-    body.compute(body.inputs());
     const std::size_t nodes = body.position.size();
     std::vector<LevelMask> levels(nodes, 0);
     const std::size_t block_count = body.elements.level.size();
-    for (std::size_t b = 0; b < block_count; ++b) {
-        body.elements.level[b] = static_cast<std::uint8_t>(4 * b / block_count);  // sorted, as a body sorts them
-        for (std::size_t a = 0; a < 4; ++a) {
-            body.element_nodes.level[4 * b + a] = body.elements.level[b];
-            for (std::size_t l = 0; l < element_lanes; ++l)
-                if (body.elements.volume[b][l] > 0)
-                    levels[body.node(8 * b + l, a)] |= static_cast<LevelMask>(1u << body.elements.level[b]);
-        }
-    }
+    body.set_levels([&](std::size_t b) { return 4 * b / block_count; });  // sorted, as a body sorts them
+    body.compute(body.inputs());
+    for (std::size_t slot = 0; slot < body.patches.node.size(); ++slot)
+        levels[static_cast<std::size_t>(body.patches.node[slot])] |=
+            static_cast<LevelMask>(1u << body.patches.level[slot]);
     for (Vec3& f : body.load) f = random_vector(body.random);
     const Vec3 gravity = GENERATE(Vec3(0, 0, -9.81), Vec3(0, 0, 0));
     const bool loaded = GENERATE(true, false), held = GENERATE(true, false);
@@ -106,9 +114,9 @@ TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[uni
         KickInputs inputs{begin,
                           end,
                           of_block,
-                          body.corners.view(),
-                          body.element_nodes.force,
-                          {due, levels, body.element_nodes.level},
+                          body.patches.slots_of_node.view(),
+                          body.patches.force,
+                          {due, levels, body.patches.level},
                           body.mass,
                           body.inverse_mass,
                           gravity};
@@ -117,11 +125,9 @@ TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[uni
         predict_velocity(*body.executor, inputs, body.velocity, h, body.force, next);
         for (std::size_t n = 0; n < nodes; ++n) {
             Vec3 sum = Vec3::Zero();
-            for (const Index corner : body.corners[n]) {
-                const auto row = static_cast<std::size_t>(corner) / element_lanes;
-                if ((mask >> body.element_nodes.level[row] & 1) != 0)
-                    sum += body.element_nodes.force[row][static_cast<std::size_t>(corner) % element_lanes];
-            }
+            for (const Index slot : body.patches.slots_of_node[n])
+                if ((mask >> body.patches.level[static_cast<std::size_t>(slot)] & 1) != 0)
+                    sum += vector_of(body.patches.force[static_cast<std::size_t>(slot)]);
             sum = sum + body.mass[n] * gravity + body.load[n];
             if (body.inverse_mass[n] == 0) CHECK(body.force[n] == sum);
             const Vec3 expected = body.inverse_mass[n] == 0 ? body.velocity[n]
@@ -141,9 +147,16 @@ TEST_CASE("all elements due, the kick has the bits of forces gathered first", "[
     const Vec3 gravity(1, 2, -9.81);
     constexpr Real h = 1e-3;
     std::vector<Vec3> next(body.position.size(), Vec3::Zero()), expected = next, held = next;
-    KickInputs inputs{
-        begin,   end,      of_block, body.corners.view(), body.element_nodes.force, {}, body.mass, body.inverse_mass,
-        gravity, body.load};
+    KickInputs inputs{begin,
+                      end,
+                      of_block,
+                      body.patches.slots_of_node.view(),
+                      body.patches.force,
+                      {},
+                      body.mass,
+                      body.inverse_mass,
+                      gravity,
+                      body.load};
     predict_velocity(*body.executor, inputs, body.velocity, h, held, next);
     body.gather(gravity);
     kick(body.force, body.inverse_mass, body.velocity, h, expected);
@@ -183,14 +196,13 @@ TEST_CASE("viscosity gives no force and no torque as a whole, takes energy, and 
     const auto viscous_part = [&] {
         inputs.viscous_time = {};
         body.compute(inputs);
-        const Column<ElementForces> elastic = body.element_nodes.force;
+        body.gather();
+        const std::vector<Vec3> elastic = body.force;
         inputs.viscous_time = time;
         body.compute(inputs);
-        for (std::size_t row = 0; row < elastic.size(); ++row)
-            for (std::size_t l = 0; l < element_lanes; ++l) body.element_nodes.force[row][l] -= elastic[row][l];
-        std::vector<Vec3> force(body.position.size(), Vec3::Zero());
-        for (std::size_t n = 0; n < force.size(); ++n)
-            for (const Index corner : body.corners[n]) force[n] += (&body.element_nodes.force[0][0])[corner];
+        body.gather();
+        std::vector<Vec3> force = body.force;
+        for (std::size_t n = 0; n < force.size(); ++n) force[n] -= elastic[n];
         return force;
     };
     Real size = 0, power = 0;
@@ -221,7 +233,7 @@ TEST_CASE("frames and strains are kept of blocks that were due", "[unit]") {
     for (Real& share : body.elements.relaxing_share) share = 0.1;
     const std::vector<Index> of_body(body.elements.first.size(), 0);
     const std::vector<std::uint8_t> body_level{0};
-    for (std::size_t b = 0; b < body.elements.level.size(); ++b) body.elements.level[b] = b % 2;
+    body.set_levels([](std::size_t b) { return b % 2; });
     ElementInputs inputs = body.inputs();
     inputs.schedule = {body.elements.level, of_body, body_level, {}};
     inputs.schedule.active.duration.fill(0);
