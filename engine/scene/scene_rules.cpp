@@ -199,7 +199,7 @@ const Rule<Settings>& rule_of<Settings>() {
                   .unit = "m/s",
                   .limits = above(0)})
             .key("max_strain_step", &S::max_strain_step,
-                 {.meaning = "a step that moves nodes by more than this fraction of an element is refused",
+                 {.meaning = "a step in which F of an element changes by more (Frobenius norm) is tried again, shorter",
                   .limits = above(0)})
             .key("sleep_speed", &S::sleep_speed,
                  {.meaning = "bodies slower than this for sleep_time rest with all that they touch, until something "

@@ -102,8 +102,8 @@ void list_checks(WorldState& w, TaskGraph& g) {
     StepFindings& found = w.scratch.findings;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/check_state", found.verdict, check_state,
-                        inputs<CheckInputs>(k, b, n, m.tetrahedra, pushed), value(p.h), value(p.max_strain_step),
-                        write(k.max_speed_squared), write(b.max_speed));
+                        inputs<CheckInputs>(k, b, n, m.tetrahedra, m.elements, m.element_nodes, pushed), value(p.h),
+                        value(p.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
     const auto if_possible =
         only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; }, read(found.verdict));
     g.stage_with_result("dynamics/find_inversions", found.inversions, find_inversions,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/world/step/step.h"
+#include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -25,8 +26,6 @@ constexpr Real most_moment = 0.01;
 constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, a second to invert
 /// Implicit elements are taken to be so much stiffer than they are, so that they may deform for a while.
 constexpr Real headroom = 4;
-/// In how many times max_strain_step tetrahedra may deform that an implicit element covers.
-constexpr Real leeway = 5;
 constexpr Real most_lengthening = 16;  // of steps
 
 template <class T>
@@ -68,7 +67,7 @@ void note_leeway(Model& model, std::size_t b) {
         if (modulus[place / element_lanes][place % element_lanes] > 0)
             for (const Index t : covered[place]) {
                 const auto at = static_cast<std::size_t>(t);
-                of[at / element_lanes][at % element_lanes] = leeway;
+                of[at / element_lanes][at % element_lanes] = implicit_leeway;
             }
 }
 

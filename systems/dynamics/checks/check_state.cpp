@@ -119,6 +119,18 @@ Fastest fastest_element(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
+/// Whether F of any element of a block changes faster than `rate` (1/s), implicit ones by their leeway.
+bool any_element_deforms_faster(const CheckInputs& state, std::size_t block, Real rate) {
+    const auto first = static_cast<std::size_t>(state.element_first[block]);
+    const BlockNodes nodes{&state.element_node[first], &state.element_gradient[first], state.element_count[block]};
+    LaneMat3<Real8> change = deformation_gradient(nodes, state.velocity_next);
+    if (!state.push_out.empty()) change = change + deformation_gradient(nodes, state.push_out);
+    const Real8 is_implicit =
+        load(state.element_implicit_modulus[block]) > 0.0 ? Real8{} + implicit_leeway : Real8{} + 1.0;
+    const Real8 limit = rate * is_implicit;
+    return !all(inner_product(change, change) <= limit * limit);
+}
+
 /// Relative to the mean velocity of the body: a coarser measure, for a body whose elements are not given.
 Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude) {
     Vec3 sum = Vec3::Zero();
@@ -161,6 +173,14 @@ Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t 
         if (!any_exceeds(executor, count, element_blocks_per_job,
                          [&](std::size_t row) { return any_deforms_faster(state, begin + row, rate); }))
             return {};
+        if (!state.body_element_blocks.empty()) {
+            const Range of_body = state.body_element_blocks[body];
+            const auto first_block = static_cast<std::size_t>(of_body.begin);
+            if (!any_exceeds(
+                    executor, static_cast<std::size_t>(of_body.size()), element_blocks_per_job,
+                    [&](std::size_t row) { return any_element_deforms_faster(state, first_block + row, rate); }))
+                return {};
+        }
         for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_element(state, begin + row));
     }
     return fastest.rate_squared > rate * rate ? fastest : Fastest{};

@@ -36,10 +36,18 @@ struct CheckInputs {
     std::span<const ElementLane> tetrahedron_altitude = {};   // m
     std::span<const ElementLane> tetrahedron_leeway = {};     // in times max_strain_step; empty: 1
     std::span<const Range> body_blocks = {};  // BodyTable; empty: bodies are judged as one tetrahedron each
+    // ElementBlockTable, ElementNodeTable; empty: tetrahedra are the elements
+    std::span<const Range> body_element_blocks = {};
+    std::span<const Index> element_first = {}, element_count = {};
+    std::span<const NodeLane> element_node = {};
+    std::span<const ElementGradient> element_gradient = {};
+    std::span<const ElementLane> element_implicit_modulus = {};
 
     /// `pushed`: some contact pushes.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
-                            const NodeTable& node, const TetrahedronBlockTable& tetrahedron, const bool& pushed) {
+                            const NodeTable& node, const TetrahedronBlockTable& tetrahedron,
+                            const ElementBlockTable& element, const ElementNodeTable& element_node,
+                            const bool& pushed) {
         return {.block_begin = binder.read(block.begin),
                 .block_end = binder.read(block.end),
                 .block_body = binder.read(block.body),
@@ -52,16 +60,26 @@ struct CheckInputs {
                 .tetrahedron_node = binder.read(tetrahedron.node),
                 .tetrahedron_altitude = binder.read(tetrahedron.altitude),
                 .tetrahedron_leeway = binder.read(tetrahedron.leeway),
-                .body_blocks = binder.read(body.tetrahedron_blocks)};
+                .body_blocks = binder.read(body.tetrahedron_blocks),
+                .body_element_blocks = binder.read(body.blocks),
+                .element_first = binder.read(element.first),
+                .element_count = binder.read(element.count),
+                .element_node = binder.read(element_node.node),
+                .element_gradient = binder.read(element_node.gradient),
+                .element_implicit_modulus = binder.read(element.implicit_modulus)};
     }
 };
 
+/// In how many times max_strain_step implicit elements may deform, and the tetrahedra that they cover.
+inline constexpr Real implicit_leeway = 5;
+
 /// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is
-/// not finite, or a tetrahedron whose F would change by more than `max_strain_step` (Frobenius norm) in this step,
-/// which is looked at where two of its corners move apart by more than this fraction of its smallest altitude. Common
-/// motion and slow turns of a large body do no harm and are not counted. Without `body_blocks` a node is compared with
-/// the mean velocity of its body instead, and its way with the smallest altitude of the body, which refuses a quick
-/// turn of a large body, too. Parallel over node blocks.
+/// not finite, or an element whose F would change by more than `max_strain_step` (Frobenius norm) in this step. That F
+/// is a mean over tetrahedra, so elements are looked at where F of a tetrahedron would change by as much, and these
+/// where two corners move apart by more than this fraction of the smallest altitude. What is blamed is the tetrahedron
+/// that deforms fastest. Common motion and slow turns of a large body do no harm and are not counted. Without
+/// `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the smallest altitude
+/// of the body, which refuses a quick turn of a large body, too. Parallel over node blocks.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
                         std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
 

@@ -53,24 +53,99 @@ Real least_moment(const ElementInputs& elements, Range blocks, std::span<const V
     return spread[0] + spread[1];
 }
 
+/// Steps that the elements of a body stand in one shape, while their masses are shared this way and that. The bound is
+/// 9x9 matrices; how it changes with the masses follows that of the trace of sum_k g_k g_k^T / m_k closely, which is
+/// one product a node.
+class SharedSteps {
+public:
+    SharedSteps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> mass,
+                std::span<Real> stiffness_sum)
+        : elements_(elements),
+          blocks_(blocks),
+          position_(position),
+          mass_(mass),
+          stiffness_sum_(stiffness_sum),
+          step_(static_cast<std::size_t>(blocks.size())),
+          measured_(step_.size()),
+          trace_(step_.size()) {}
+
+    Real of(std::size_t b, std::size_t l) const { return step_[row(b)][l]; }
+    bool is_exact() const { return exact_; }
+
+    /// By the bound.
+    void measure() {
+        element_steps(elements_, blocks_, position_, mass_, stiffness_sum_, step_);
+        measured_ = step_;
+        for_each_block([&](std::size_t b) { trace_[row(b)] = trace_of(b); });
+        exact_ = true;
+    }
+    /// From what was measured last.
+    void estimate() {
+        for_each_block([&](std::size_t b) { clear_stiffness(elements_, b, stiffness_sum_); });
+        for_each_block([&](std::size_t b) {
+            add_stiffness(elements_, b, deformation_of(elements_, b, position_), stiffness_sum_,
+                          [](std::size_t) { return true; });
+        });
+        for_each_block([&](std::size_t b) {
+            const ElementLane trace = trace_of(b);
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                step_[row(b)][l] = measured_[row(b)][l] * std::sqrt(trace_[row(b)][l] / trace[l]);
+        });
+        exact_ = false;
+    }
+
+private:
+    std::size_t row(std::size_t b) const { return b - static_cast<std::size_t>(blocks_.begin); }
+    template <class Visit>
+    void for_each_block(Visit&& visit) const {
+        for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) visit(b);
+    }
+    /// Of elements that share masses, but for a factor that stays what it is while the shape does.
+    ElementLane trace_of(std::size_t b) const {
+        const BlockNodes nodes = elements_.nodes_of(b);
+        ElementLane sum{};
+        for (Index k = 0; k < nodes.count; ++k) {
+            const LaneVec3<Real8> g = load_gradient(nodes.gradient[k]);
+            const Real8 size = dot(g, g);
+            for (std::size_t l = 0; l < element_lanes; ++l) {
+                const auto n = static_cast<std::size_t>(nodes.node[k][l]);
+                if (size[l] > 0 && mass_[n] > 0) sum[l] += stiffness_sum_[n] / mass_[n];
+            }
+        }
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const Real share = elements_.mass_share[b][l];
+            sum[l] = share > 0 && sum[l] > 0 ? sum[l] / share : 1;
+        }
+        return sum;
+    }
+
+    const ElementInputs& elements_;
+    Range blocks_;
+    std::span<const Vec3> position_;
+    std::span<const Real> mass_;
+    std::span<Real> stiffness_sum_;
+    std::vector<ElementLane> step_, measured_, trace_;  // by block
+    bool exact_ = false;
+};
+
 }  // namespace
 
 ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                      std::span<const Real> mass, Real step, Real headroom, ImplicitSearch search,
                                      std::span<Real> stiffness_sum, const ImplicitOutputs& out) {
     constexpr int rounds_of_sharing = 3;  // between two rounds that give elements up
-    constexpr Real most_change = 4;       // of a share in a round: what is hopeless is not to starve its neighbours
-    constexpr Real most_volume = 0.75;    // given up
-    constexpr Real about_worst = 1.25;    // given up at once: those that stand up to so many times the worst
+    constexpr int rounds_of_estimates = 12;
+    constexpr Real most_change = 4;     // of a share in a round: what is hopeless is not to starve its neighbours
+    constexpr Real most_volume = 0.75;  // given up
+    constexpr Real about_worst = 1.25;  // given up at once: those that stand up to so many times the worst
     const bool anew = search == ImplicitSearch::anew;
     if (anew) {
         start_mass_shares(elements, blocks, out.mass_share);
         std::ranges::fill(out.modulus, ElementLane{});
     }
     const auto first = static_cast<std::size_t>(blocks.begin);
-    std::vector<ElementLane> own(out.mass_share.size());
+    SharedSteps own(elements, blocks, position, mass, stiffness_sum);
     const auto share = [&](std::size_t b, std::size_t l) -> Real& { return out.mass_share[b - first][l]; };
-    const auto step_of = [&](std::size_t b, std::size_t l) { return own[b - first][l]; };
     // What does not stand the step with all the mass of its nodes to itself does not with a part.
     LaneQuaternion<Real8> alone = no_turn();
     for (auto b = first; anew && b < static_cast<std::size_t>(blocks.end); ++b) {
@@ -78,25 +153,31 @@ ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks
         for (std::size_t l = 0; l < element_lanes; ++l)
             if (bound[l] * step * step > step_times_frequency * step_times_frequency) share(b, l) = 0;
     }
+    bool found_enough = false;
     for (int round = 1;; ++round) {
-        element_steps(elements, blocks, position, mass, stiffness_sum, own);
+        const bool gives_up = !anew || round % rounds_of_sharing == 0;
+        if (!anew || round % rounds_of_estimates == 1 || found_enough)
+            own.measure();
+        else
+            own.estimate();
         Real shortest = std::numeric_limits<Real>::infinity(), volume = 0, given_up = 0;  // s, m^3
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
-            shortest = std::min(shortest, step_of(b, l));
+            shortest = std::min(shortest, own.of(b, l));
             volume += elements.volume[b][l];
             if (share(b, l) == 0) given_up += elements.volume[b][l];
         });
         if (given_up > most_volume * volume) return {.too_many = true};
-        if (!(shortest < step)) break;
-        const bool gives_up = !anew || round % rounds_of_sharing == 0;
+        found_enough = !(shortest < step);
+        if (found_enough && own.is_exact()) break;
+        if (found_enough) continue;  // says the estimate
         const Real too_short = anew ? std::min(step, about_worst * shortest) : step;
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
             Real& of_element = share(b, l);
             if (of_element == 0) return;
-            if (gives_up && step_of(b, l) < too_short)
+            if (gives_up && own.of(b, l) < too_short)
                 of_element = 0;
             else if (anew)
-                of_element *= std::clamp(step / step_of(b, l), 1 / most_change, most_change);
+                of_element *= std::clamp(step / own.of(b, l), 1 / most_change, most_change);
         });
     }
     // implicit elements, and what they add to a rigid turn: beta c V |omega x|^2 <= beta c V omega^2 for each axis

@@ -187,3 +187,82 @@ TEST_CASE("a world without bodies and a body without nodes are sound", "[unit]")
     CHECK(check_state(*executor, inputs, 0.01, 0.2, {}, speed).fault == StepFault::none);
     CHECK(speed[0] == 0);
 }
+
+namespace {
+
+/// A box whose nodes move at random, so that tetrahedra deform faster than the means of them.
+struct TrembleState {
+    test::ElasticBody body;
+    std::vector<Index> begin{0}, end, of_body{0};
+    std::vector<Range> node_blocks{{0, 1}}, tetrahedron_blocks, element_blocks;
+    std::vector<Real> altitude{0.01}, speed = std::vector<Real>(1), block_speed = std::vector<Real>(1);
+    std::vector<Vec3> rest;
+
+    explicit TrembleState(ElementKind kind)
+        : body(test::jittered_box({4, 3, 3}, 0.1, 0.1, 1), material_constants(MaterialModel::linear, 1e5, 0.3, 1000),
+               Mat3::Identity(), kind),
+          end{static_cast<Index>(body.position.size())},
+          tetrahedron_blocks{{0, static_cast<Index>(body.tetrahedra.node.size())}},
+          element_blocks{body.blocks},
+          rest(body.position) {
+        std::mt19937_64 random(2);
+        for (Vec3& v : body.velocity) v = test::random_vector(random);
+        body.position = body.velocity;  // of which deformation() makes F'
+    }
+    Real rate_of(std::size_t element) const { return body.deformation(element).norm(); }
+    /// 1/s, and the element.
+    std::pair<Real, std::size_t> fastest() const {
+        std::pair<Real, std::size_t> found{0, 0};
+        for (std::size_t e = 0; e < element_lanes * body.elements.first.size(); ++e)
+            if (body.volume(e) > 0) found = std::max(found, std::pair(rate_of(e), e));
+        return found;
+    }
+    StepVerdict check(Real rate) {
+        const auto executor = make_executor(Backend::serial, 1);
+        CheckInputs inputs{begin, end, of_body, node_blocks, altitude, body.velocity, body.velocity, {}};
+        inputs.rest_position = rest;
+        inputs.tetrahedron_node = body.tetrahedra.node;
+        inputs.tetrahedron_altitude = body.tetrahedra.altitude;
+        inputs.tetrahedron_leeway = body.tetrahedra.leeway;
+        inputs.body_blocks = tetrahedron_blocks;
+        inputs.body_element_blocks = element_blocks;
+        inputs.element_first = body.elements.first;
+        inputs.element_count = body.elements.count;
+        inputs.element_node = body.element_nodes.node;
+        inputs.element_gradient = body.element_nodes.gradient;
+        inputs.element_implicit_modulus = body.elements.implicit_modulus;
+        return check_state(*executor, inputs, 1, rate, block_speed, speed);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("what deforms too fast is an element, and the fastest tetrahedron is blamed", "[unit]") {
+    TrembleState tetrahedra(ElementKind::linear), edges(ElementKind::edge_smoothed);
+    const auto [of_tetrahedra, fastest] = tetrahedra.fastest();
+    const Real of_edges = edges.fastest().first;
+    REQUIRE(of_edges < 0.9 * of_tetrahedra);
+    CHECK(tetrahedra.check(1.01 * of_tetrahedra).fault == StepFault::none);
+    const StepVerdict too_fast = tetrahedra.check(0.5 * of_tetrahedra);
+    CHECK(too_fast.fault == StepFault::too_fast);
+    CHECK(too_fast.value == Approx(of_tetrahedra));
+    CHECK(edges.check(1.01 * of_edges).fault == StepFault::none);  // though tetrahedra are faster
+    const StepVerdict of_smoothed = edges.check(0.5 * of_edges);
+    CHECK(of_smoothed.fault == StepFault::too_fast);
+    CHECK(of_smoothed.value == Approx(of_tetrahedra));
+    CHECK(of_smoothed.tetrahedron == too_fast.tetrahedron);
+}
+
+TEST_CASE("an implicit element may deform five times as fast", "[unit]") {
+    TrembleState state(ElementKind::edge_smoothed);
+    for (ElementLane& of : state.body.tetrahedra.leeway) of = {{5, 5, 5, 5, 5, 5, 5, 5}};
+    const auto [rate, fastest] = state.fastest();
+    CHECK(state.check(0.3 * rate).fault == StepFault::none);  // tetrahedra do not: nothing is asked of elements
+    for (ElementLane& of : state.body.tetrahedra.leeway) of = {{1, 1, 1, 1, 1, 1, 1, 1}};
+    REQUIRE(state.check(0.99 * rate).fault == StepFault::too_fast);
+    state.body.elements.implicit_modulus[fastest / element_lanes][fastest % element_lanes] = 1;
+    CHECK(state.check(0.99 * rate).fault == StepFault::none);
+    for (ElementLane& of : state.body.elements.implicit_modulus) of = {{1, 1, 1, 1, 1, 1, 1, 1}};
+    CHECK(state.check(0.21 * rate).fault == StepFault::none);
+    CHECK(state.check(0.19 * rate).fault == StepFault::too_fast);
+}

@@ -1,0 +1,193 @@
+// Implicit elements and their matrices against dense ones made by the textbook (docs/methods/clusters.md 2, 3).
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+
+#include "systems/dynamics/clusters/build_clusters.h"
+#include "systems/dynamics/clusters/implicit_elements.h"
+#include "systems/dynamics/clusters/stiffen_clusters.h"
+#include "systems/dynamics/stability/stable_step.h"
+#include "tests/support/elastic_body.h"
+#include "tests/support/sliver_box.h"
+
+using namespace skerry;
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+/// A box with slivers, the implicit elements of which are found for a step that it does not stand.
+struct SliverBox {
+    test::ElasticBody body;
+    std::vector<Range> body_blocks;
+    std::vector<Real> stiffness_sum, cluster_step;
+    Real plain_step;
+    ImplicitShare share;
+    NodeClusters clusters;
+
+    SliverBox(MaterialModel model, ElementKind kind, Real longer)
+        : body(mesh(), material_constants(model, 1e5, 0.4, 1000), Mat3::Identity(), kind),
+          body_blocks{body.blocks},
+          stiffness_sum(body.position.size()),
+          plain_step(stable_step(body.inputs(), body.blocks, body.position, body.mass, stiffness_sum).step) {
+        cluster_step = {longer * plain_step};
+        share = find_implicit_elements(body.inputs(), body.blocks, body.position, body.mass, cluster_step[0], 4,
+                                       ImplicitSearch::anew, stiffness_sum,
+                                       {body.elements.mass_share, body.elements.implicit_modulus});
+        build();
+    }
+    static test::TetMesh mesh() {
+        const Mesh box = test::sliver_box(0.2, 4, 0.05, 0.01);
+        return {box.nodes, box.tetrahedra};
+    }
+    void build() {
+        build_clusters(body.inputs(),
+                       {body_blocks, cluster_step, body.elements.implicit_modulus, body.mass, body.inverse_mass},
+                       clusters);
+    }
+    /// What explicit elements stand now.
+    Real explicit_step() {
+        return stable_step(body.inputs(), body.blocks, body.position, body.mass, stiffness_sum).step;
+    }
+    /// A of all nodes, by its definition.
+    Matrix inertia() const {
+        const auto n = static_cast<Eigen::Index>(body.position.size());
+        Matrix A = Matrix::Zero(n, n);
+        for (Eigen::Index i = 0; i < n; ++i) A(i, i) = body.mass[static_cast<std::size_t>(i)];
+        const Real beta = std::pow(cluster_step[0] / 1.8, 2);
+        for (std::size_t e = 0; e < element_lanes * body.elements.first.size(); ++e) {
+            const Real modulus = body.elements.implicit_modulus[e / element_lanes][e % element_lanes];
+            for (std::size_t k = 0; k < body.node_count(e) && modulus > 0; ++k)
+                for (std::size_t j = 0; j < body.node_count(e); ++j)
+                    A(static_cast<Eigen::Index>(body.node(e, k)), static_cast<Eigen::Index>(body.node(e, j))) +=
+                        beta * modulus * body.volume(e) * body.gradient(e, k).dot(body.gradient(e, j));
+        }
+        return A;
+    }
+    /// The same, by node and component, with the clusters' inverses and the masses of all others.
+    Matrix inverse_inertia() const {
+        const auto n = static_cast<Eigen::Index>(body.position.size());
+        Matrix inverse = Matrix::Zero(n, n);
+        for (Index i = 0; i < static_cast<Index>(n); ++i) {
+            const Index cluster = clusters.cluster(i);
+            if (cluster == no_index) {
+                inverse(i, i) = body.inverse_mass[static_cast<std::size_t>(i)];
+                continue;
+            }
+            const std::span<const Index> nodes = clusters.nodes[static_cast<std::size_t>(cluster)];
+            const std::span<const Real> row = clusters.row(cluster, clusters.place[static_cast<std::size_t>(i)]);
+            for (std::size_t k = 0; k < nodes.size(); ++k) inverse(i, nodes[k]) = row[k];
+        }
+        return inverse;
+    }
+    /// K at rest by differences of the forces, which are linear there to a part in 1e-6.
+    Matrix stiffness() {
+        const auto executor = make_executor(Backend::serial, 1);
+        const auto n = static_cast<Eigen::Index>(body.position.size());
+        Matrix K(3 * n, 3 * n);
+        constexpr Real way = 1e-7;
+        const std::vector<Vec3> rest = body.position;
+        for (Eigen::Index i = 0; i < 3 * n; ++i) {
+            Real& x = body.position[static_cast<std::size_t>(i / 3)][i % 3];
+            const Real at = x;
+            std::vector<Vec3> force[2];
+            for (const int side : {0, 1}) {
+                x = at + (side == 0 ? -way : way);
+                body.compute_forces(*executor);
+                force[side] = body.force;
+            }
+            x = at;
+            for (Eigen::Index k = 0; k < 3 * n; ++k)
+                K(k, i) = (force[0][static_cast<std::size_t>(k / 3)][k % 3] -
+                           force[1][static_cast<std::size_t>(k / 3)][k % 3]) /
+                          (2 * way);
+        }
+        return (K + K.transpose()) / 2;
+    }
+};
+
+Matrix by_component(const Matrix& by_node) {
+    Matrix all = Matrix::Zero(3 * by_node.rows(), 3 * by_node.cols());
+    for (Eigen::Index i = 0; i < by_node.rows(); ++i)
+        for (Eigen::Index k = 0; k < by_node.cols(); ++k)
+            for (Eigen::Index c = 0; c < 3; ++c) all(3 * i + c, 3 * k + c) = by_node(i, k);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("with clusters the exact highest frequency stands the step", "[unit][clusters]") {
+    const auto kind = GENERATE(ElementKind::linear, ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
+    const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
+    INFO(name_of(kind) << ", " << name_of(model));
+    SliverBox box(model, kind, 2);
+    REQUIRE_FALSE(box.share.too_many);
+    REQUIRE_FALSE(box.clusters.empty());
+    const Real step = std::min(box.explicit_step(), box.cluster_step[0]);
+    CHECK(step > 1.99 * box.plain_step);
+    const Matrix K = box.stiffness();
+    const Real highest =
+        Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(K, by_component(box.inertia()), Eigen::EigenvaluesOnly)
+            .eigenvalues()
+            .maxCoeff();
+    CHECK(step * std::sqrt(highest) <= 1.8);
+    // what the clusters are for
+    const Matrix M = by_component(
+        Matrix(Eigen::Map<const Eigen::VectorXd>(box.body.mass.data(), static_cast<Eigen::Index>(box.body.mass.size()))
+                   .asDiagonal()));
+    const Real of_masses =
+        Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(K, M, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+    CHECK(highest < of_masses);
+}
+
+TEST_CASE("clusters have the inverse of the inertia that implicit elements add", "[unit][clusters]") {
+    const SliverBox box(MaterialModel::stable_neo_hookean, ElementKind::edge_node_smoothed, 3);
+    const Matrix product = box.inertia() * box.inverse_inertia();
+    CHECK((product - Matrix::Identity(product.rows(), product.cols())).cwiseAbs().maxCoeff() < 1e-10);
+}
+
+TEST_CASE("an element that stiffens raises its part of the inverse, and what is needed is known", "[unit][clusters]") {
+    SliverBox box(MaterialModel::stable_neo_hookean, ElementKind::edge_node_smoothed, 3);
+    const Column<ElementLane> before = box.body.elements.implicit_modulus;
+    const std::vector<std::uint8_t> asleep{0}, resting{1};
+    std::mt19937_64 random(4);
+    for (Vec3& v : box.body.velocity) v = test::random_vector(random);
+    const auto stiffen = [&](const std::vector<std::uint8_t>& rest) {
+        return stiffen_clusters(
+            box.body.inputs(),
+            {box.body_blocks, box.cluster_step, rest, box.body.position, box.body.velocity, box.body.inverse_mass},
+            box.body.elements.implicit_modulus, box.clusters);
+    };
+    const auto kinetic = [&] {
+        const Matrix A = box.inertia();
+        Real energy = 0;
+        for (Eigen::Index c = 0; c < 3; ++c) {
+            Eigen::VectorXd v(A.rows());
+            for (Eigen::Index i = 0; i < A.rows(); ++i) v[i] = box.body.velocity[static_cast<std::size_t>(i)][c];
+            energy += v.dot(A * v) / 2;
+        }
+        return energy;
+    };
+    CHECK(stiffen(asleep) == 0);  // at rest they have what they need
+    CHECK(box.body.elements.implicit_modulus[0][0] == before[0][0]);
+    // two and a half times as long one way: the law's Hessian grows with the square
+    for (Vec3& x : box.body.position) x.z() *= 2.5;
+    CHECK(worst_stiffening(box.body.inputs(), box.body.blocks, box.body.position, box.body.elements.implicit_modulus) >
+          1);
+    CHECK(stiffen(resting) == 0);
+    const Real energy = kinetic();
+    const Real booked = stiffen(asleep);
+    int raised = 0;
+    for (std::size_t b = 0; b < before.size(); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const Real now = box.body.elements.implicit_modulus[b][l];
+            CHECK(now >= before[b][l]);
+            raised += now > before[b][l];
+        }
+    CHECK(raised > 5);
+    CHECK(worst_stiffening(box.body.inputs(), box.body.blocks, box.body.position, box.body.elements.implicit_modulus) <
+          0.95);
+    CHECK(booked == Approx(kinetic() - energy).epsilon(1e-9));
+    const Matrix product = box.inertia() * box.inverse_inertia();
+    CHECK((product - Matrix::Identity(product.rows(), product.cols())).cwiseAbs().maxCoeff() < 1e-9);
+}
