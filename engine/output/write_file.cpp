@@ -1,5 +1,7 @@
 #include "engine/output/write_file.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <fstream>
 #include <system_error>
@@ -28,7 +30,55 @@ struct Temporary {
     }
 };
 
+const char* name_of(std::filesystem::file_type type) {
+    switch (type) {
+        case std::filesystem::file_type::directory:
+            return "a folder";
+        case std::filesystem::file_type::block:
+            return "a block device";
+        case std::filesystem::file_type::socket:
+            return "a socket";
+        default:
+            return "something that is no file";
+    }
+}
+
+/// Where the bytes go: what the name stands for behind symbolic links.
+struct Target {
+    std::filesystem::path path;
+    bool takes_bytes = false;  // a pipe or a terminal, say: there is nothing to replace
+    std::filesystem::perms permissions = std::filesystem::perms::unknown;  // of the file that is there
+};
+
+Target target_of(const std::filesystem::path& file) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status found = fs::status(file, error);
+    if (found.type() == fs::file_type::character || found.type() == fs::file_type::fifo) return {file, true};
+    if (fs::exists(found) && found.type() != fs::file_type::regular)
+        complain(file, name_of(found.type()), "a file that can be written");
+    if (found.type() == fs::file_type::none)
+        complain(file, "\"" + error.message() + "\"", "a file that can be written");
+    Target target{file};
+    constexpr int most_links = 40;
+    for (int links = 0; links < most_links && fs::is_symlink(fs::symlink_status(target.path, error)); ++links) {
+        const fs::path to = fs::read_symlink(target.path, error);
+        target.path = to.is_absolute() ? to : target.path.parent_path() / to;
+    }
+    if (!fs::exists(found)) return target;
+    // renaming needs no right to write the file that goes, but who protected it meant to keep it
+    constexpr fs::perms any_may_write = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+    if ((found.permissions() & any_may_write) == fs::perms::none || access(target.path.c_str(), W_OK) != 0)
+        complain(file, "a file that is protected against writing", "a file that can be replaced");
+    target.permissions = found.permissions();
+    return target;
+}
+
 }  // namespace
+
+void require_replaceable(const std::filesystem::path& file) {
+    target_of(file);
+}
 
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
@@ -39,16 +89,21 @@ void make_folder(const std::filesystem::path& folder) {
 }
 
 void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write) {
-    if (file.has_parent_path()) make_folder(file.parent_path());
-    const Temporary temporary{std::filesystem::path(file) += ".part"};
+    const Target target = target_of(file);
+    if (target.path.has_parent_path()) make_folder(target.path.parent_path());
+    const Temporary temporary{target.takes_bytes ? std::filesystem::path()
+                                                 : std::filesystem::path(target.path) += ".part"};
     errno = 0;
-    std::ofstream out(temporary.path, std::ios::binary | std::ios::trunc);
+    std::ofstream out(target.takes_bytes ? target.path : temporary.path, std::ios::binary | std::ios::trunc);
     if (!out) complain(file, "\"" + what(errno) + "\"", "a file that can be written");
     write(out);
     out.close();
     if (!out) complain(file, "\"" + what(errno) + "\" while writing", "room for the whole file");
+    if (target.takes_bytes) return;
     std::error_code error;
-    std::filesystem::rename(temporary.path, file, error);
+    if (target.permissions != std::filesystem::perms::unknown)
+        std::filesystem::permissions(temporary.path, target.permissions, error);
+    if (!error) std::filesystem::rename(temporary.path, target.path, error);
     if (error) complain(file, "\"" + error.message() + "\"", "a file that can be replaced");
 }
 

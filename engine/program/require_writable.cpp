@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "engine/output/write_file.h"
 #include "skerry/error.h"
 
 namespace skerry {
@@ -34,7 +35,31 @@ void require_writable_file(const std::filesystem::path& file) {
     std::error_code error;
     if (file.filename().empty() || std::filesystem::is_directory(file, error))
         refuse(file, "a folder", "a file to write");
+    require_replaceable(file);
     require_writable_folder(std::filesystem::absolute(file).parent_path());
+}
+
+void require_distinct(std::span<const NamedFile> files) {
+    const auto place = [](const std::filesystem::path& file) {
+        std::error_code error;
+        const std::filesystem::path found = std::filesystem::weakly_canonical(file, error);
+        return error ? std::filesystem::absolute(file) : found;
+    };
+    for (std::size_t i = 0; i < files.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) {
+            if (files[i].file.empty() || files[k].file.empty() || place(files[i].file) != place(files[k].file))
+                continue;
+            std::error_code error;
+            const std::filesystem::file_status found = std::filesystem::status(files[i].file, error);
+            if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) continue;  // /dev/null
+            Complaint{.file = files[i].file.string(),
+                      .object = files[i].name,
+                      .field = {},
+                      .found = "the same file as " + std::string(files[k].name),
+                      .expected = "one of its own",
+                      .hint = {}}
+                .raise();
+        }
 }
 
 }  // namespace skerry

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <ostream>
@@ -12,6 +14,7 @@
 #include "engine/program/require_writable.h"
 #include "engine/program/run_result.h"
 #include "jobs/executor.h"
+#include "skerry/error.h"
 #include "skerry/output.h"
 
 namespace skerry {
@@ -82,8 +85,24 @@ struct Course {
 Course course_of(const RunOptions& options, const Scene& scene) {
     Course course{options.seconds.value_or(scene.seconds), scene.frame_step, 1};
     if (options.frames_per_second) course.frame_step = 1 / *options.frames_per_second;
-    if (!scene.probes.empty())
-        course.samples = std::max(1, static_cast<int>(std::lround(course.frame_step / scene.probe_step)));
+    const auto complain_of = [&](const char* field, double count, const char* expected, const char* hint) {
+        char found[64];
+        std::snprintf(found, sizeof found, "%g of them", count);
+        Complaint{.file = options.scene.string(),
+                  .object = "run",
+                  .field = field,
+                  .found = found,
+                  .expected = expected,
+                  .hint = hint}
+            .raise();
+    };
+    constexpr double most = 1e9;
+    if (const double frames = course.seconds / course.frame_step; !(frames <= most))
+        complain_of("frames", frames, "at most 1e9", "seconds times frames per second: seconds, frame_step");
+    if (scene.probes.empty()) return course;
+    const double samples = std::min(course.frame_step, course.seconds) / scene.probe_step;
+    if (!(samples <= most)) complain_of("samples of the probes in a frame", samples, "at most 1e9", "probe_step");
+    course.samples = std::max(1, static_cast<int>(std::lround(samples)));
     return course;
 }
 
@@ -102,7 +121,7 @@ void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool sh
     ProbeRecorder probes(scene);
     World& world = scene.world;
     constexpr double slack = 1e-9;  // of a frame: 0.1 s are six frames of 1/60 s, not seven
-    const auto frame_count = static_cast<long>(std::ceil(course.seconds / course.frame_step - slack));
+    const auto frame_count = std::max(1L, static_cast<long>(std::ceil(course.seconds / course.frame_step - slack)));
     output.add_frame(world);
     result.peak_kinetic_energy = world.energy().kinetic;
     for (long frame = 0; frame < frame_count && result.status == "ok"; ++frame) {
@@ -162,10 +181,15 @@ int run(const RunOptions& options) {
         if (!folder->empty()) require_writable_folder(*folder);
     for (const auto* file : {&options.stats, &options.page, &options.trace})
         if (!file->empty()) require_writable_file(*file);
+    const std::array<NamedFile, 4> files{{{"the scene", options.scene},
+                                          {"--page", options.page},
+                                          {"--stats", options.stats},
+                                          {"--trace", options.trace}}};
+    require_distinct(files);
+    const Course course = course_of(options, scene);
     FrameOutput output(options, scene);
     if (!options.trace.empty()) world.set_tracing(true);
 
-    const Course course = course_of(options, scene);
     ProblemExport problems(options, scene.name);
     if (!options.problems.empty()) problems.watch(world, steps_of(course, world));
 

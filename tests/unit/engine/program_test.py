@@ -8,6 +8,7 @@ import pathlib
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -155,6 +156,72 @@ class ProgramTest(unittest.TestCase):
         self.assert_refused("run", endless, "--stats", self.folder, said=["a folder"])
         # One bad output among good ones: the good ones do not appear either.
         self.assert_refused("run", endless, "--out", self.folder / "out", "--stats", blocked, said=["no folder"])
+
+    def test_only_files_are_replaced_and_links_stay(self):
+        quick = self.write("quick.json", {**SCENE, "seconds": 0.01})
+        target, link = self.write("target.json", "old"), self.folder / "link.json"
+        link.symlink_to("target.json")
+        target.chmod(0o640)
+        self.skerry("run", quick, "--quiet", "--stats", link)
+        self.assertTrue(link.is_symlink())
+        self.assertEqual(json.loads(target.read_text())["status"], "ok")
+        self.assertEqual(target.stat().st_mode & 0o777, 0o640)
+        ahead = self.folder / "ahead.json"
+        ahead.symlink_to("later.json")
+        self.skerry("run", quick, "--quiet", "--stats", ahead)
+        self.assertEqual(json.loads((self.folder / "later.json").read_text())["status"], "ok")
+        self.assertTrue(ahead.is_symlink())
+        shown = self.skerry("run", quick, "--quiet", "--stats", "/dev/stdout")
+        self.assertEqual(json.loads(shown.stdout)["status"], "ok")
+        self.skerry("run", quick, "--quiet", "--stats", "/dev/null", "--trace", "/dev/null")
+        self.assertTrue(pathlib.Path("/dev/null").is_char_device())
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
+        self.skerry("run", quick, "--quiet", "--stats", pipe)
+        self.assertEqual(json.loads(reader.communicate(timeout=60)[0])["status"], "ok")
+        self.assertTrue(pipe.is_fifo())
+
+    def test_what_is_protected_or_something_else_is_not_replaced(self):
+        protected = self.write("protected.json", "precious")
+        protected.chmod(0o444)
+        endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
+        self.assert_refused("run", endless, "--stats", protected, said=["protected.json", "protected against writing"])
+        self.assertEqual(protected.read_text(), "precious")
+        with socket.socket(socket.AF_UNIX) as made:
+            made.bind(str(self.folder / "socket"))
+            self.assert_refused("run", endless, "--page", self.folder / "socket", said=["found a socket"])
+        if pathlib.Path("/dev/full").exists():
+            full = self.skerry("run", self.write("q.json", {**SCENE, "seconds": 0.01}), "--quiet", "--stats",
+                               "/dev/full", code=2)
+            self.assertIn("No space left", full.stderr)
+            self.assertTrue(pathlib.Path("/dev/full").is_char_device())
+
+    def test_no_output_takes_the_place_of_another_or_of_the_scene(self):
+        endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
+        before = endless.read_text()
+        same = self.folder / "same"
+        other = self.folder / "." / "sub" / ".." / "same"
+        self.assert_refused("run", endless, "--stats", same, "--trace", other, said=["--trace", "--stats"])
+        self.assert_refused("run", endless, "--page", endless, said=["--page", "the scene"])
+        link = self.folder / "link.json"
+        link.symlink_to(endless)
+        self.assert_refused("run", endless, "--stats", link, said=["--stats", "the scene"])
+        self.assertEqual(endless.read_text(), before)
+
+    def test_times_that_cannot_be_counted_are_refused_and_the_shortest_is_simulated(self):
+        self.assert_refused("run", self.write("long.json", {**SCENE, "seconds": 1e300}),
+                            said=["long.json", "frames", "1e9"])
+        self.assert_refused("run", self.scene, "--frames-per-second", "1e300", said=["frames", "1e9"])
+        self.assert_refused("run", self.write("fine.json", {**SCENE, "probe_step": 1e-13}),
+                            said=["samples", "probe_step"])
+        for name, scene, flags in (("nano", SCENE, ["--seconds", "1e-11"]),
+                                   ("coarse", {**SCENE, "seconds": 0.01, "frame_step": 1e300}, [])):
+            stats = self.folder / f"{name}.stats"
+            self.skerry("run", self.write(f"{name}.json", scene), "--quiet", "--stats", stats, *flags)
+            found = json.loads(stats.read_text())
+            self.assertGreater(found["steps"], 0, name)
+            self.assertAlmostEqual(found["seconds_simulated"] / (1e-11 if flags else 0.01), 1, places=9)
 
     def test_bad_command_lines_are_refused(self):
         for arguments in (["run"], ["fly"], [], ["run", self.scene, "--seconds", "-1"],
