@@ -1,8 +1,13 @@
 #include "engine/world/validate.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "engine/mesh/labels.h"
 #include "engine/mesh/require_positive.h"
@@ -136,6 +141,46 @@ void validate(const MaterialSettings& material, const Settings& settings) {
             material.bulk_viscosity, "a number from 0 to 1");
 }
 
+namespace {
+
+/// A side of a tetrahedron: its nodes ascending, and which way round they are seen from outside.
+struct Side {
+    std::array<Index, 3> node;
+    bool turned;
+    Index tetrahedron;
+
+    bool operator<(const Side& other) const { return std::tie(node, turned) < std::tie(other.node, other.turned); }
+};
+
+/// On each side of a face lies at most one tetrahedron: otherwise they lie in each other, and the face, which more than
+/// one of them has, would be no surface that anything could touch.
+void require_apart(const Mesh& mesh, const std::string& object) {
+    constexpr std::array<std::array<std::size_t, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+    std::vector<Side> sides;
+    sides.reserve(4 * mesh.tetrahedra.size());
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (const auto& corner : outward) {
+            Side side{{}, false, static_cast<Index>(t)};
+            for (std::size_t k = 0; k < 3; ++k) side.node[k] = mesh.tetrahedra[t][corner[k]];
+            for (const auto& [low, high] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)})
+                if (auto& a = side.node[static_cast<std::size_t>(low)], &b = side.node[static_cast<std::size_t>(high)];
+                    a > b) {
+                    std::swap(a, b);
+                    side.turned = !side.turned;
+                }
+            sides.push_back(side);
+        }
+    std::ranges::stable_sort(sides, std::less<>());
+    for (std::size_t i = 1; i < sides.size(); ++i)
+        if (!(sides[i - 1] < sides[i]))
+            refuse(object, "mesh",
+                   "tetrahedra " + std::to_string(sides[i - 1].tetrahedron) + " and " +
+                       std::to_string(sides[i].tetrahedron) + " on the same side of a face that both have",
+                   "one on each side at most");
+}
+
+}  // namespace
+
 void validate(const Mesh& mesh, const BodySettings& body) {
     const std::string object = titled("body", body.name);
     if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
@@ -148,6 +193,7 @@ void validate(const Mesh& mesh, const BodySettings& body) {
                 refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner),
                        "rows of its nodes");
     mesh::require_positive(mesh, object);
+    require_apart(mesh, object);
     require_labels(mesh, body.materials, object);
     require_finite(object, "position", body.position);
     require_finite(object, "rotation", body.rotation);
