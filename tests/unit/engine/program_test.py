@@ -201,7 +201,7 @@ class ProgramTest(unittest.TestCase):
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
         before = endless.read_text()
         same = self.folder / "same"
-        other = self.folder / "." / "sub" / ".." / "same"
+        other = f"{self.folder}/./sub/../same"
         self.assert_refused("run", endless, "--stats", same, "--trace", other, said=["--trace", "--stats"])
         self.assert_refused("run", endless, "--page", endless, said=["--page", "the scene"])
         link = self.folder / "link.json"
