@@ -144,23 +144,25 @@ void validate(const MaterialSettings& material, const Settings& settings) {
 namespace {
 
 /// A side of a tetrahedron: its nodes ascending, and which way round they are seen from outside.
-struct Side {
+struct OutwardSide {
     std::array<Index, 3> node;
     bool turned;
     Index tetrahedron;
 
-    bool operator<(const Side& other) const { return std::tie(node, turned) < std::tie(other.node, other.turned); }
+    bool operator<(const OutwardSide& other) const {
+        return std::tie(node, turned) < std::tie(other.node, other.turned);
+    }
 };
 
 /// On each side of a face lies at most one tetrahedron: otherwise they lie in each other, and the face, which more than
 /// one of them has, would be no surface that anything could touch.
 void require_apart(const Mesh& mesh, const std::string& object) {
     constexpr std::array<std::array<std::size_t, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-    std::vector<Side> sides;
+    std::vector<OutwardSide> sides;
     sides.reserve(4 * mesh.tetrahedra.size());
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (const auto& corner : outward) {
-            Side side{{}, false, static_cast<Index>(t)};
+            OutwardSide side{{}, false, static_cast<Index>(t)};
             for (std::size_t k = 0; k < 3; ++k) side.node[k] = mesh.tetrahedra[t][corner[k]];
             for (const auto& [low, high] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)})
                 if (auto& a = side.node[static_cast<std::size_t>(low)], &b = side.node[static_cast<std::size_t>(high)];
