@@ -85,23 +85,23 @@ struct Course {
 Course course_of(const RunOptions& options, const Scene& scene) {
     Course course{options.seconds.value_or(scene.seconds), scene.frame_step, 1};
     if (options.frames_per_second) course.frame_step = 1 / *options.frames_per_second;
-    const auto complain_of = [&](const char* field, double count, const char* expected, const char* hint) {
+    const auto complain_of = [&](const char* field, double count, const char* hint) {
         char found[64];
         std::snprintf(found, sizeof found, "%g of them", count);
         Complaint{.file = options.scene.string(),
                   .object = "run",
                   .field = field,
                   .found = found,
-                  .expected = expected,
+                  .expected = "at most 1e9",
                   .hint = hint}
             .raise();
     };
     constexpr double most = 1e9;
     if (const double frames = course.seconds / course.frame_step; !(frames <= most))
-        complain_of("frames", frames, "at most 1e9", "seconds times frames per second: seconds, frame_step");
+        complain_of("frames", frames, "seconds times frames per second: seconds, frame_step");
     if (scene.probes.empty()) return course;
     const double samples = std::min(course.frame_step, course.seconds) / scene.probe_step;
-    if (!(samples <= most)) complain_of("samples of the probes in a frame", samples, "at most 1e9", "probe_step");
+    if (!(samples <= most)) complain_of("samples of the probes in a frame", samples, "probe_step");
     course.samples = std::max(1, static_cast<int>(std::lround(samples)));
     return course;
 }

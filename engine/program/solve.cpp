@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
@@ -66,6 +67,8 @@ void print(const SolveOptions& options, const ContactProblem& problem, const Pro
 }  // namespace
 
 int solve(const SolveOptions& options) {
+    const std::array<NamedFile, 2> files{{{"the problem", options.problem}, {"--reactions", options.reactions}}};
+    require_distinct(files);
     const ContactProblem problem = read_problem(options.problem);
     if (!options.reactions.empty()) require_writable_file(options.reactions);
     const ProblemSolution solution = solve_problem(problem, options.settings);

@@ -125,9 +125,8 @@ bool any_element_deforms_faster(const CheckInputs& state, std::size_t block, Rea
     const BlockNodes nodes{&state.element_node[first], &state.element_gradient[first], state.element_count[block]};
     LaneMat3<Real8> change = deformation_gradient(nodes, state.velocity_next);
     if (!state.push_out.empty()) change = change + deformation_gradient(nodes, state.push_out);
-    const Real8 is_implicit =
-        load(state.element_implicit_modulus[block]) > 0.0 ? Real8{} + implicit_leeway : Real8{} + 1.0;
-    const Real8 limit = rate * is_implicit;
+    const Real8 leeway = load(state.element_implicit_modulus[block]) > 0.0 ? Real8{} + implicit_leeway : Real8{} + 1.0;
+    const Real8 limit = rate * leeway;
     return !all(inner_product(change, change) <= limit * limit);
 }
 

@@ -75,11 +75,11 @@ inline constexpr Real implicit_leeway = 5;
 
 /// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is
 /// not finite, or an element whose F would change by more than `max_strain_step` (Frobenius norm) in this step. That F
-/// is a mean over tetrahedra, so elements are looked at where F of a tetrahedron would change by as much, and these
-/// where two corners move apart by more than this fraction of the smallest altitude. What is blamed is the tetrahedron
-/// that deforms fastest. Common motion and slow turns of a large body do no harm and are not counted. Without
-/// `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the smallest altitude
-/// of the body, which refuses a quick turn of a large body, too. Parallel over node blocks.
+/// is a mean over tetrahedra, so elements are looked at where F of a tetrahedron would change by as much (by its leeway
+/// more), and these where two corners move apart by more than this fraction of the smallest altitude. What is blamed is
+/// the tetrahedron that deforms fastest. Common motion and slow turns of a large body do no harm and are not counted.
+/// Without `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the smallest
+/// altitude of the body, which refuses a quick turn of a large body, too. Parallel over node blocks.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
                         std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
 

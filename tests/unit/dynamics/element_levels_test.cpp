@@ -88,7 +88,7 @@ TEST_CASE("blocks that are not due keep their force, those due for four steps ge
     }
 }
 
-TEST_CASE("nodes are kicked by the corners that are due and nothing else", "[unit]") {
+TEST_CASE("nodes are kicked by the patches that are due and nothing else", "[unit]") {
     SliverBody body;
     const std::size_t nodes = body.position.size();
     std::vector<LevelMask> levels(nodes, 0);

@@ -21,7 +21,7 @@ struct Nodes {
     std::vector<Vec3> position, velocity, next, push, load, origin, force;
     std::vector<Real> mass, inverse_mass, displacement_squared;
     std::vector<Index> begin, end, body;
-    Ragged<Index> corners;
+    Ragged<Index> slots_of_node;
     std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
 
     explicit Nodes(std::size_t count) {
@@ -29,7 +29,7 @@ struct Nodes {
             column->assign(count, Vec3::Zero());
         mass.assign(count, 1);
         inverse_mass.assign(count, 1);
-        corners.offset.assign(count + 1, 0);
+        slots_of_node.offset.assign(count + 1, 0);
         for (std::size_t n = 0; n < count; n += 3) {
             begin.push_back(static_cast<Index>(n));
             end.push_back(static_cast<Index>(std::min(n + 3, count)));
@@ -38,7 +38,7 @@ struct Nodes {
         displacement_squared.resize(begin.size());
     }
     void predict(Real h, const Vec3& gravity = Vec3::Zero(), bool loaded = true) {
-        KickInputs inputs{begin, end, body, corners.view(), {}, {}, mass, inverse_mass, gravity};
+        KickInputs inputs{begin, end, body, slots_of_node.view(), {}, {}, mass, inverse_mass, gravity};
         if (loaded) inputs.load = load;
         predict_velocity(*executor, inputs, velocity, h, force, next);
     }

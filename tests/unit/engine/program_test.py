@@ -413,6 +413,12 @@ class ProgramTest(unittest.TestCase):
         self.skerry("run", self.scene, "--quiet", "--export-problems", self.folder / folder, *flags)
         return sorted(path.name for path in (self.folder / folder).iterdir())
 
+    def test_reactions_do_not_take_the_place_of_their_problem(self):
+        problem = self.folder / "problems" / self.exported("problems")[0]
+        before = problem.read_bytes()
+        self.assert_refused("solve", problem, "--reactions", problem, said=["--reactions", "the problem"])
+        self.assertEqual(problem.read_bytes(), before)
+
     def test_contact_problems_of_a_run_are_written_and_solved(self):
         names = self.exported("problems")
         self.assertTrue(1 <= len(names) <= 21, names)  # a 20th of the steps each, of which some have no contacts
