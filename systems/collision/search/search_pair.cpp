@@ -8,7 +8,9 @@
 #include "components/check.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/search/leaf_features.h"
 #include "systems/collision/tree/leaf_boxes.h"
+#include "systems/geometry/closest_lanes.h"
 #include "systems/geometry/closest_points.h"
 
 namespace skerry {
@@ -20,6 +22,8 @@ constexpr Real infinite = std::numeric_limits<Real>::infinity();
 // Two trees over at most 2^31 triangles are at most 2 * 32 levels deep together, and a level leaves at most two waiting
 // pairs.
 constexpr std::size_t max_waiting = 192;
+
+constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
 
 template <std::size_t Size>
 bool share_node(const std::array<Index, Size>& a, Index node) {
@@ -101,94 +105,89 @@ private:
         const unsigned of_a = lanes_near(a, box_b, radius_squared_);
         if (of_a == 0) return;
         const unsigned of_b = lanes_near(b, box_a, radius_squared_);
-        compare_points(a, of_a, b, false);
-        compare_points(b, of_b, a, true);
-        list_edges(a, of_a, box_b, edges_[0]);
-        if (edges_[0].count == 0) return;
-        list_edges(b, of_b, box_a, edges_[1]);
-        for (std::size_t i = 0; i < edges_[0].count; ++i) compare_edge(edges_[0], i, edges_[1], 0);
+        compare_points(a, of_a, b, corners_[1], false);
+        compare_points(b, of_b, a, corners_[0], true);
+        const LeafEdges &own = edges_of(a, edges_[0]), &other = edges_of(b, edges_[1]);
+        std::array<unsigned, 3> near;
+        if (!any_near(other, box_a, near)) return;
+        for (std::size_t group = 0; group < own.groups(); ++group)
+            for_each_lane(lanes_below(distance_squared(own.box[group], box_b), edge_radius_squared_),
+                          [&](std::size_t lane) { compare_edge(own, leaf_lanes * group + lane, other, near); });
     }
 
     /// A leaf with itself: points against all triangles, and every pair of edges once.
     void compare_within(Index a) {
-        const unsigned all = (1U << node(a).count) - 1;
-        compare_points(a, all, a, false);
-        list_edges(a, all, boxes_.node[a], edges_[0]);
-        for (std::size_t i = 0; i < edges_[0].count; ++i) compare_edge(edges_[0], i, edges_[0], i + 1);
+        compare_points(a, (1U << node(a).count) - 1, a, corners_[0], false);
+        const LeafEdges& own = edges_of(a, edges_[0]);
+        for (std::size_t i = 0; i < own.count; ++i) {
+            std::array<unsigned, 3> later;
+            for (unsigned group = 0; group < later.size(); ++group) {
+                const unsigned first = leaf_lanes * group;
+                later[group] = i < first ? all_lanes : (all_lanes << (i - first)) << 1;
+            }
+            compare_edge(own, i, own, later);
+        }
+    }
+
+    const LeafEdges& edges_of(Index a, LeafEdges& kept) const {
+        if (kept.leaf != node(a).leaf) kept.fill(inputs_, node(a).leaf);
+        return kept;
+    }
+
+    /// Which edges are near a box.
+    bool any_near(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
+        unsigned any = 0;
+        for (std::size_t group = 0; group < edges.groups(); ++group)
+            any |= near[group] = lanes_below(distance_squared(edges.box[group], box), edge_radius_squared_);
+        return any != 0;
     }
 
     /// The points that the triangles in `lanes` own, with the triangles of the other leaf.
-    void compare_points(Index owner, unsigned lanes, Index other, bool of_second) {
+    void compare_points(Index owner, unsigned lanes, Index other, LeafCorners& corners, bool of_second) {
         for_each_lane(lanes, [&](std::size_t lane) {
             const Index row = leaf_triangle(owner)[lane];
             for (std::size_t k = 0; k < 3; ++k) {
                 if (!(triangle_.owned_vertices[row] >> k & 1)) continue;
                 const Index n = triangle_.node[row][k];
-                const Aabb point{position(n), position(n)};
-                for_each_lane(lanes_near(other, point, radius_squared_), [&](std::size_t j) {
-                    compare_point(n, triangle_.vertex[row][k], leaf_triangle(other)[j], of_second);
-                });
+                const unsigned near = lanes_near(other, {position(n), position(n)}, radius_squared_);
+                if (near != 0) compare_point(n, triangle_.vertex[row][k], near, other, corners, of_second);
             }
         });
     }
 
-    void compare_point(Index n, Index vertex, Index triangle, bool of_second) {
-        const auto& corner = triangle_.node[triangle];
-        const Real squared =
-            closest_point_on_triangle(position(n), position(corner[0]), position(corner[1]), position(corner[2]))
-                .distance_squared;
-        if (!(squared < radius_squared_) || (self_ && excluded_at_rest(n, corner))) return;
-        add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin,
-                                    triangle - triangles(of_second).begin),
-             vertex, triangle},
-            squared, pair_.scale.zone);
-    }
-
-    /// Edges of a leaf, their boxes side by side.
-    struct LeafEdges {
-        std::array<LeafBoxes, 3> box;  // eight at a time; lanes behind the last edge are empty
-        std::array<Index, 3 * leaf_lanes> edge;
-        std::array<std::array<Index, 2>, 3 * leaf_lanes> node;
-        std::size_t count;
-    };
-
-    /// The edges that the triangles in `lanes` own, of those that are near a box.
-    void list_edges(Index leaf, unsigned lanes, const Aabb& near, LeafEdges& out) const {
-        out.count = 0;
-        for_each_lane(lanes, [&](std::size_t lane) {
-            const Index row = leaf_triangle(leaf)[lane];
-            const auto& corner = triangle_.node[row];
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (!(triangle_.owned_edges[row] >> k & 1)) continue;
-                const std::array<Index, 2> ends{corner[k], corner[(k + 1) % 3]};
-                const Aabb box = edge_box(ends);
-                if (!(distance_squared(box, near) < edge_radius_squared_)) continue;
-                set_lane(out.box[out.count / leaf_lanes], out.count % leaf_lanes, box);
-                out.edge[out.count] = triangle_.edge[row][k];
-                out.node[out.count++] = ends;
-            }
+    /// A point with some triangles of a leaf.
+    void compare_point(Index n, Index vertex, unsigned near, Index other, LeafCorners& corners, bool of_second) {
+        if (corners.leaf != node(other).leaf) corners.fill(inputs_, node(other).leaf);
+        Lanes<Real, leaf_lanes> squared;
+        store(point_triangle_distance(spread(position(n)), load(corners.corner[0]), load(corners.corner[1]),
+                                      load(corners.corner[2]))
+                  .distance_squared,
+              squared);
+        for_each_lane(near & lanes_below(load(squared), radius_squared_), [&](std::size_t lane) {
+            const Index triangle = leaf_triangle(other)[lane];
+            if (self_ && excluded_at_rest(n, triangle_.node[triangle])) return;
+            add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin,
+                                        triangle - triangles(of_second).begin),
+                 vertex, triangle},
+                squared[lane], pair_.scale.zone);
         });
-        for (std::size_t i = out.count; i % leaf_lanes != 0; ++i)
-            set_lane(out.box[i / leaf_lanes], i % leaf_lanes, empty_box());
     }
 
-    /// Edge i of one list with those of the other from `first` on.
-    void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, std::size_t first) {
+    /// Edge i of one leaf with some of another.
+    void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& with) {
         const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
-        for (std::size_t group = first - first % leaf_lanes; group < b.count; group += leaf_lanes) {
-            unsigned lanes = lanes_below(distance_squared(b.box[group / leaf_lanes], box), edge_radius_squared_);
-            if (group < first) lanes &= ~0U << (first - group);
-            for_each_lane(lanes, [&](std::size_t lane) { compare_edges(a, i, b, group + lane); });
+        const LaneVec3<Real8> a0 = spread(position(a.node[i][0])), a1 = spread(position(a.node[i][1]));
+        for (std::size_t group = 0; group < b.groups(); ++group) {
+            unsigned lanes = with[group];
+            if (lanes != 0) lanes &= lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
+            if (lanes == 0) continue;
+            Lanes<Real, leaf_lanes> squared;
+            store(segment_distance_squared(a0, a1, load(b.end[group][0]), load(b.end[group][1])), squared);
+            for_each_lane(lanes & lanes_below(load(squared), edge_radius_squared_), [&](std::size_t lane) {
+                const std::size_t j = leaf_lanes * group + lane;
+                if (!self_ || !excluded_at_rest(a.node[i], b.node[j])) add_edges(a.edge[i], b.edge[j], squared[lane]);
+            });
         }
-    }
-
-    void compare_edges(const LeafEdges& a, std::size_t i, const LeafEdges& b, std::size_t j) {
-        const auto &na = a.node[i], &nb = b.node[j];
-        const Real squared =
-            closest_points_of_segments(position(na[0]), position(na[1]), position(nb[0]), position(nb[1]))
-                .distance_squared;
-        if (!(squared < edge_radius_squared_) || (self_ && excluded_at_rest(na, nb))) return;
-        add_edges(a.edge[i], b.edge[j], squared);
     }
 
     void add_edges(Index a, Index b, Real squared) {
@@ -196,11 +195,6 @@ private:
         const Index first = a - inputs_.body.edges[pair_.first].begin,
                     second = b - inputs_.body.edges[pair_.second].begin;
         add({edge_edge_feature(first, second), a, b}, squared, pair_.scale.edge_depth);
-    }
-
-    Aabb edge_box(const std::array<Index, 2>& edge) const {
-        const Vec3 &a = position(edge[0]), &b = position(edge[1]);
-        return {a.cwiseMin(b), a.cwiseMax(b)};
     }
 
     Range vertices(bool of_second) const { return inputs_.body.vertices[of_second ? pair_.second : pair_.first]; }
@@ -238,7 +232,9 @@ private:
     const Real radius_squared_;
     const Real edge_radius_squared_;  // edges are looked at less deep
     const bool self_;
-    std::array<LeafEdges, 2> edges_;  // of the two leaves at hand
+    // of the leaves last at hand, of the first tree and of the second: of two leaves compared often one stays
+    std::array<LeafEdges, 2> edges_;
+    std::array<LeafCorners, 2> corners_;
     std::array<std::array<Index, 2>, max_waiting> waiting_;
     std::size_t waiting_count_ = 0;
 };

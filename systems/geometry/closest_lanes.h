@@ -1,0 +1,75 @@
+// Distances of eight pairs of features at a time: twins of closest_points.h that know how far, not where.
+#pragma once
+
+#include "systems/geometry/lane_vec3.h"
+
+namespace skerry {
+
+/// x within [0, 1]; 0 where it is not a number.
+[[gnu::always_inline]] inline Real8 clamped_to_unit(const Real8& x) {
+    const Real8 zero{}, one = zero + 1.0;
+    const Real8 low = x > zero ? x : zero;
+    return low < one ? low : one;
+}
+
+/// m^2, of the points a0 a1 and b0 b1 of two segments each (Ericson, Real-Time Collision Detection, 5.1.9). Not a
+/// number where a position is none.
+[[gnu::always_inline]] inline Real8 segment_distance_squared(const LaneVec3<Real8>& a0, const LaneVec3<Real8>& a1,
+                                                             const LaneVec3<Real8>& b0, const LaneVec3<Real8>& b1) {
+    constexpr Real noise_sine_squared = 1e-14;  // below it the crossing of the lines is rounding
+    const Real8 zero{}, one = zero + 1.0;
+    const LaneVec3<Real8> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
+    const Real8 a = dot(ea, ea), e = dot(eb, eb), b = dot(ea, eb), c = dot(ea, r), f = dot(eb, r);
+    const Real8 denominator = a * e - b * b;  // |ea x eb|^2
+    // The crossing of the lines, clamped to the first segment; then to the second, and back.
+    const Real8 crossing = clamped_to_unit((b * f - c * e) / denominator);
+    const Real8 free_s = denominator > noise_sine_squared * a * e ? crossing : zero;
+    const Real8 along = (b * free_s + f) / e, free_t = e > zero ? along : zero;
+    const auto before = free_t <= zero, beyond = free_t > one;
+    const Real8 t = before ? zero : (beyond ? one : free_t);
+    const Real8 back = clamped_to_unit((t * b - c) / a), end_s = a > zero ? back : zero;
+    const Real8 s = (before | beyond) ? end_s : free_s;
+    const LaneVec3<Real8> apart = r + s * ea - t * eb;
+    return dot(apart, apart);
+}
+
+/// m^2, of the points p and the segments that begin at p - from and go along `edge`.
+[[gnu::always_inline]] inline Real8 point_segment_distance_squared(const LaneVec3<Real8>& from,
+                                                                   const LaneVec3<Real8>& edge) {
+    const Real8 zero{}, squared = dot(edge, edge);
+    const Real8 along = clamped_to_unit(dot(from, edge) / squared), s = squared > zero ? along : zero;
+    const LaneVec3<Real8> apart = from - s * edge;
+    return dot(apart, apart);
+}
+
+/// How far points are from triangles, and on which side.
+struct PointTriangleLanes {
+    Real8 distance_squared;  // m^2; not a number where a position is none
+    Real8 height;            // m^3: twice the area times the height above the plane, above 0 on the side of the normal
+};
+
+/// Of the points p and the triangles abc. One lower than 1e-6 of its longest edge counts as its three edges.
+[[gnu::always_inline]] inline PointTriangleLanes point_triangle_distance(const LaneVec3<Real8>& p,
+                                                                         const LaneVec3<Real8>& a,
+                                                                         const LaneVec3<Real8>& b,
+                                                                         const LaneVec3<Real8>& c) {
+    constexpr Real min_height_squared = 1e-12;  // over the square of the longest edge
+    const Real8 zero{};
+    const LaneVec3<Real8> ab = b - a, bc = c - b, ca = a - c, ap = p - a, bp = p - b, cp = p - c;
+    const LaneVec3<Real8> normal = cross(ab, bc);
+    const Real8 area_squared = dot(normal, normal), height = dot(normal, ap);
+    const Real8 ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);
+    const Real8 two = ab2 > bc2 ? ab2 : bc2, longest_squared = two > ca2 ? two : ca2;
+    const Real8 to_ab = point_segment_distance_squared(ap, ab), to_bc = point_segment_distance_squared(bp, bc),
+                to_ca = point_segment_distance_squared(cp, ca);
+    const Real8 nearer = to_ab < to_bc ? to_ab : to_bc, to_edges = nearer < to_ca ? nearer : to_ca;
+    // Above the face: on the inner side of all three edges.
+    const auto above = (dot(cross(normal, ab), ap) > zero) & (dot(cross(normal, bc), bp) > zero) &
+                       (dot(cross(normal, ca), cp) > zero) &
+                       (area_squared > min_height_squared * longest_squared * longest_squared);
+    const Real8 to_plane = height * height / area_squared;
+    // A minimum passes over what is not a number, a sum does not.
+    return {(above ? to_plane : to_edges) + 0.0 * (ab2 + bc2 + ca2), height};
+}
+
+}  // namespace skerry
