@@ -17,6 +17,15 @@ enum class BodyKind : std::uint8_t {
     kinematic,  // a mesh collider: nodes without elements, moved by its collider
 };
 
+/// A frame that moves with a body without turning. Distances between bodies, and within one, change by what nodes move
+/// in their frames and by what the frames move against each other: common motion costs nothing.
+struct MovingFrame {
+    Vec3 velocity = Vec3::Zero();  // m/s, the mean of the nodes' when the displacement was last zero
+    Vec3 offset = Vec3::Zero();    // m, how far it has come since then
+    Vec3 position = Vec3::Zero();  // m, how far since distances were forgotten
+    Real path = 0;                 // m, the length of that way
+};
+
 struct BodyTable {
     Column<std::uint32_t> slot;  // handle slot of the body, or of the collider that a kinematic body belongs to
     Column<BodyKind> kind;
@@ -50,13 +59,16 @@ struct BodyTable {
     Column<std::uint8_t> asleep;
     // s, for how long no node has been as fast as sleep_speed
     Column<Real> still_time;
-    Column<Real> max_speed;     // m/s, of this step's motion
+    Column<Real> max_speed;  // m/s, of this step's motion
+    Column<MovingFrame> frame;
+    // In the frame:
+    Column<Real> frame_speed;   // m/s, greatest of this step's motion
     Column<Real> displacement;  // m, greatest distance of a node from its displacement origin
     // m: since any earlier time no node has come further than the growth of travel plus twice the displacement then
     Column<Real> travel;
     Column<Real> uninverted_until;  // m: the least of the body's tetrahedra
 
-    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines; displacement, travel and
+    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines; frame to
     /// uninverted_until by ContactCache::forget_distances.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
@@ -88,6 +100,8 @@ struct BodyTable {
         visit("asleep", asleep, ColumnRole::state);
         visit("still_time", still_time, ColumnRole::state);
         visit("max_speed", max_speed, ColumnRole::state);
+        visit("frame", frame, ColumnRole::derived);
+        visit("frame_speed", frame_speed, ColumnRole::derived);
         visit("displacement", displacement, ColumnRole::derived);
         visit("travel", travel, ColumnRole::derived);
         visit("uninverted_until", uninverted_until, ColumnRole::derived);

@@ -27,7 +27,8 @@ struct NodeBlockTable {
     Column<Index> body;   // row of BodyTable
     // m^2/s^2, of velocity_next + push_out, by check_state; not a number if any node's is not finite
     Column<Real> max_speed_squared;
-    Column<Real> displacement_squared;  // m^2, by advance_positions
+    Column<Real> frame_speed_squared;   // the same in the body's frame
+    Column<Real> displacement_squared;  // m^2, in the body's frame, by advance_positions
     Column<NodeBlockSums> sums;         // by damp_velocity
 
     /// Derived: displacement_squared by ContactCache::forget_distances.
@@ -36,6 +37,7 @@ struct NodeBlockTable {
         visit("end", end, ColumnRole::link);
         visit("body", body, ColumnRole::link);
         visit("max_speed_squared", max_speed_squared, ColumnRole::scratch);
+        visit("frame_speed_squared", frame_speed_squared, ColumnRole::scratch);
         visit("displacement_squared", displacement_squared, ColumnRole::derived);
         visit("sums", sums, ColumnRole::scratch);
     }

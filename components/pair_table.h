@@ -41,8 +41,15 @@ struct PairTable {
     Column<Index> first;        // row of BodyTable; never a kinematic body
     Column<Index> second;       // row of BodyTable, or of ColliderTable
     Column<std::uint8_t> idle;  // neither partner moves in this step: no contacts are looked for, last ones are kept
-    // m: sum of both travels and of what this step may add to the closing, written in every step
-    Column<Real> travel_bound;
+    Column<Vec3> frame_apart;   // m, difference of the positions of both frames, two bodies
+    Column<Real> frame_path;    // m, the length of the way of one frame as the other sees it
+    Column<Real> travel;  // m: sum of both travels and of that way; of a body's whole way to a collider. In every step
+    Column<Real> travel_bound;  // m: with what this step may add to the closing
+    // m: what this step may close by the greatest speeds, which are state; frames are not, and decide no contact
+    Column<Real> closing;
+    // m: how far a try of this step moved it, further than its list was good for; below 0 where the list was made for
+    // that
+    Column<Real> longer_motion;
     Column<Real> valid_until;    // m: the list holds while travel_bound is below this
     Column<std::uint8_t> fresh;  // searched for this step: what its nodes drifted before takes nothing from the list
     Column<PairState> state;     // as last searched; apart stays apart, find_crossings sees to it
@@ -56,7 +63,7 @@ struct PairTable {
     Column<Real> block_nearest;
 
     /// Of the columns with one row per pair. State is which pairs overlap: a search finds again what is apart. Derived:
-    /// valid_until, with the lists, by ContactCache::forget_distances.
+    /// valid_until, with the lists, and what is known of frames by ContactCache::forget_distances.
     void for_each_row_column(auto&& visit) {
         visit("key", key, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
@@ -64,8 +71,13 @@ struct PairTable {
         visit("second", second, ColumnRole::link);
         visit("state", state, ColumnRole::state);
         visit("valid_until", valid_until, ColumnRole::derived);
+        visit("frame_apart", frame_apart, ColumnRole::derived);
+        visit("frame_path", frame_path, ColumnRole::derived);
         visit("idle", idle, ColumnRole::scratch);
+        visit("travel", travel, ColumnRole::scratch);
         visit("travel_bound", travel_bound, ColumnRole::scratch);
+        visit("closing", closing, ColumnRole::scratch);
+        visit("longer_motion", longer_motion, ColumnRole::scratch);
         visit("fresh", fresh, ColumnRole::scratch);
     }
     std::size_t size() const { return key.size(); }
@@ -85,6 +97,8 @@ struct FoundPair {
     Index second;
     Real valid_until;  // m
     PairState state;
+    Vec3 frame_apart;  // m
+    Real frame_path;   // m
 };
 
 /// Features that would have gone through each other in a try of this step. The step is tried again with them as
@@ -93,6 +107,7 @@ struct CrossingTable {
     Column<ContactRow> row;                 // in key order; empty once a step is taken
     std::vector<Column<ContactRow>> found;  // of the last try, by block of find_contacts
     Column<ContactRow> merged;              // working memory
+    bool beyond_lists = false;              // of the last try: some pair moved further than its list is good for
     bool last_try = false;                  // what crosses now is let through, and its pair counts as overlapping
     std::uint64_t tested = 0;               // features, since the world was made
     std::uint64_t hits = 0;                 // of these, crossings that were stopped
@@ -107,7 +122,9 @@ struct BoundingSphere {
 
 /// Working memory of the searches, kept between steps so that a steady state allocates nothing.
 struct SearchMemory {
-    Column<Real> body_travel_bound;      // m: travel and what this step may close, by body
+    Column<Real> body_travel_bound;  // m: travel, path of the frame and what this step may close, by body
+    // m: what this step may close, by body: in its frame, and with the motion of the frame
+    Column<Real> body_frame_reach, body_reach;
     Column<Real> collider_travel_bound;  // m, the same by collider
     // m: no point of it near a body is further from its origin, until the next broad search
     Column<Real> collider_extent;

@@ -18,10 +18,16 @@ namespace {
 constexpr std::size_t trees_per_block = 4;  // a refit takes microseconds
 
 void bound_body_travels(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool measure,
-                        Column<Real>& travel_bound) {
-    travel_bound.resize(inputs.body.slot.size());
-    for (std::size_t b = 0; b < travel_bound.size(); ++b)
-        travel_bound[b] = inputs.body.travel[b] + body_reach(inputs, settings, static_cast<Index>(b), measure, h);
+                        SearchMemory& memory) {
+    memory.body_travel_bound.resize(inputs.body.slot.size());
+    memory.body_frame_reach.resize(inputs.body.slot.size());
+    memory.body_reach.resize(inputs.body.slot.size());
+    for (std::size_t b = 0; b < inputs.body.slot.size(); ++b) {
+        const BodyReach reach = body_reach(inputs, settings, static_cast<Index>(b), measure, h);
+        memory.body_travel_bound[b] = inputs.body.travel[b] + inputs.body.frame[b].path + reach.in_world;
+        memory.body_frame_reach[b] = reach.in_frame;
+        memory.body_reach[b] = reach.in_world;
+    }
 }
 
 void bound_collider_travels(const CollisionInputs& inputs, Real h, SearchMemory& memory) {
@@ -46,14 +52,29 @@ bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     return below;
 }
 
-void list_expired(const CollisionInputs& inputs, bool all, SearchMemory& memory, PairTable& pairs) {
+/// How far a pair may have come, and may come in this step.
+void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Real h, Index p, PairTable& pairs) {
+    const Index a = pairs.first[p], b = pairs.second[p];
+    if (pairs.kind[p] == PairKind::collider) {
+        pairs.travel[p] = inputs.body.travel[a] + inputs.body.frame[a].path + inputs.collider.travel[b];
+        pairs.travel_bound[p] = memory.body_travel_bound[a] + memory.collider_travel_bound[b];
+        pairs.closing[p] = pairs.travel_bound[p] - pairs.travel[p];
+        return;
+    }
+    const Vec3 apart = inputs.body.frame[a].position - inputs.body.frame[b].position;
+    pairs.frame_path[p] += (apart - pairs.frame_apart[p]).norm();
+    pairs.frame_apart[p] = apart;
+    pairs.travel[p] = inputs.body.travel[a] + inputs.body.travel[b] + pairs.frame_path[p];
+    pairs.travel_bound[p] =
+        pairs.travel[p] + memory.body_frame_reach[a] + memory.body_frame_reach[b] + frame_reach(inputs, a, b, h);
+    pairs.closing[p] = memory.body_reach[a] + memory.body_reach[b];
+}
+
+void list_expired(const CollisionInputs& inputs, Real h, bool all, SearchMemory& memory, PairTable& pairs) {
     memory.expired.clear();
     pairs.fresh.resize(pairs.size());
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const Real own = memory.body_travel_bound[pairs.first[p]];
-        pairs.travel_bound[p] =
-            own + (pairs.kind[p] == PairKind::collider ? memory.collider_travel_bound[pairs.second[p]]
-                                                       : memory.body_travel_bound[pairs.second[p]]);
+        bound_travel(inputs, memory, h, static_cast<Index>(p), pairs);
         pairs.fresh[p] = all || !(pairs.travel_bound[p] < pairs.valid_until[p]);
         if (pairs.fresh[p]) memory.expired.push_back(static_cast<Index>(p));
     }
@@ -85,21 +106,22 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
     });
 }
 
-/// What both partners may close in this step, m. Not travel_bound minus travel: a shape that turns may have travelled
-/// without bounds.
-Real closing(const CollisionInputs& inputs, const SearchMemory& memory, const PairToSearch& pair, Real h) {
-    const auto of_body = [&](Index b) { return memory.body_travel_bound[b] - inputs.body.travel[b]; };
-    return of_body(pair.first) + (pair.kind == PairKind::collider
-                                      ? collider_reach(inputs, pair.second, memory.collider_extent[pair.second], h)
-                                      : of_body(pair.second));
+/// What both partners may close in this step, m.
+Real closing(const CollisionInputs& inputs, const SearchMemory& memory, const PairTable& pairs, Index p, Real h) {
+    if (pairs.kind[p] != PairKind::collider) return pairs.travel_bound[p] - pairs.travel[p];
+    // Not the difference here: a shape that turns may have travelled without bounds.
+    const Index body = pairs.first[p], collider = pairs.second[p];
+    return memory.body_reach[body] + collider_reach(inputs, collider, memory.collider_extent[collider], h);
 }
 
 void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, const BvhBoxes& boxes,
                   Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
-    pair.travel_base = pair_travel_base(inputs, pair.kind, pair.first, pair.second);
-    pair.margin = settings.pair_skin * pair.scale.edge + closing(inputs, memory, pair, h);
+    pair.travel_base = pair_travel_base(inputs, pairs, p);
+    pair.margin =
+        settings.pair_skin * pair.scale.edge + std::max(closing(inputs, memory, pairs, p, h), pairs.longer_motion[p]);
+    pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
     if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart)
@@ -137,7 +159,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     const std::size_t body_count = inputs.body.slot.size(), collider_count = inputs.collider.slot.size();
     const bool afresh = !settings.use_budgets || search.body_valid_until.size() != body_count ||
                         search.collider_valid_until.size() != collider_count;
-    bound_body_travels(inputs, settings, h, afresh, memory.body_travel_bound);
+    bound_body_travels(inputs, settings, h, afresh, memory);
     bool broad = afresh;
     if (!afresh) {
         bound_collider_travels(inputs, h, memory);
@@ -147,7 +169,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
         find_pairs(executor, inputs, settings, h, afresh, search, pairs);
         bound_collider_travels(inputs, h, memory);  // of a plane that turns, by where the bodies are now
     }
-    list_expired(inputs, afresh, memory, pairs);
+    list_expired(inputs, h, afresh, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
     refit_trees(executor, inputs, box, leaf_box, memory);

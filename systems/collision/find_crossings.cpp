@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <limits>
 
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
@@ -42,6 +44,7 @@ public:
           kind_(pairs.kind[p]),
           first_(pairs.first[p]),
           second_(pairs.second[p]),
+          travel_(pairs.travel[p]),
           candidates_(pairs.candidates[p].span()),
           asleep_until_(pairs.asleep_until[p].span()),
           found_(found) {}
@@ -49,10 +52,9 @@ public:
     /// Looks at the candidates that can have met by `travel_bound`. Returns how many were tested.
     std::uint64_t run(Index begin, Index end, Real travel_bound) {
         scale_ = pair_scale(inputs_, kind_, first_, second_);
-        const Real travel = pair_travel(inputs_, kind_, first_, second_);
         std::uint64_t tested = 0;
         for (Index c = begin; c < end; ++c)
-            if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel);
+            if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel_);
         return tested;
     }
 
@@ -124,6 +126,7 @@ private:
     const std::uint64_t key_;
     const PairKind kind_;
     const Index first_, second_;
+    const Real travel_;
     std::span<const Candidate> candidates_;
     std::span<const Real> asleep_until_;
     Column<ContactRow>& found_;
@@ -137,8 +140,11 @@ struct PairReach {
 };
 
 PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
-    const Real motion = h * (inputs.body.max_speed[pairs.first[p]] + inputs.body.max_speed[pairs.second[p]]);
-    return {motion, pair_travel(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) + motion};
+    const BodyTable& body = inputs.body;
+    const Index a = pairs.first[p], b = pairs.second[p];
+    const Real motion =
+        h * (body.frame_speed[a] + body.frame_speed[b] + (body.frame[a].velocity - body.frame[b].velocity).norm());
+    return {motion, pairs.travel[p] + motion};
 }
 
 bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
@@ -166,18 +172,25 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const StepMotion& mot
     return tested;
 }
 
-/// Pairs that move further than their list is good for.
-Index count_beyond_lists(const CollisionInputs& inputs, const PairTable& pairs, Real h) {
+/// Has the lists of pairs made anew that move further than they are good for. Returns how many; those whose list was
+/// made for such a motion already are added to `hopeless`.
+Index extend_lists(const CollisionInputs& inputs, Real h, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
         if (pairs.kind[p] == PairKind::collider || pairs.state[p] != PairState::apart) continue;
         // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. Where the list was made from the very
         // positions of this step nothing has moved since, d0 is not lost, and T + m is the bound.
-        const Real drifted = pairs.fresh[p]
-                                 ? pair_travel(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) -
-                                       pair_travel_base(inputs, pairs.kind[p], pairs.first[p], pairs.second[p])
-                                 : 0;
-        count += !(reach_of(inputs, pairs, p, h).travel_bound < pairs.valid_until[p] + drifted);
+        const Real drifted =
+            pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
+        const PairReach reach = reach_of(inputs, pairs, p, h);
+        if (reach.travel_bound < pairs.valid_until[p] + drifted) continue;
+        if (!(reach.motion > -pairs.longer_motion[p]) || !std::isfinite(reach.motion)) {
+            ++hopeless;
+            continue;
+        }
+        pairs.longer_motion[p] = reach.motion;
+        pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();
+        ++count;
     }
     return count;
 }
@@ -196,7 +209,15 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
                      std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs,
                      CrossingTable& crossings) {
     const std::size_t blocks = pairs.block.size() > 0 ? pairs.block.size() - 1 : 0;
-    if (!settings.continuous || blocks == 0) return 0;
+    crossings.beyond_lists = false;
+    if (!settings.continuous) return 0;
+    Index hopeless = 0;
+    const Index extended = extend_lists(inputs, h, pairs, hopeless);
+    if (extended > 0) {
+        crossings.beyond_lists = true;
+        return extended;
+    }
+    if (blocks == 0) return crossings.last_try ? 0 : hopeless;
     if (crossings.found.size() < blocks) crossings.found.resize(blocks);
     const StepMotion motion{velocity_next, push_out, h};
     std::atomic<std::uint64_t> tested{0};
@@ -217,7 +238,7 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
         merge_rows(crossings.found, crossings.row, true, crossings.merged);
         crossings.row.swap(crossings.merged);
     }
-    return static_cast<Index>(hits) + count_beyond_lists(inputs, pairs, h);
+    return static_cast<Index>(hits) + hopeless;
 }
 
 }  // namespace skerry

@@ -38,7 +38,9 @@ public:
           first_(pairs.first[p]),
           second_(pairs.second[p]),
           apart_(pairs.state[p] == PairState::apart && settings.continuous),
+          closing_(pairs.closing[p]),
           travel_bound_(pairs.travel_bound[p]),
+          travel_base_(pair_travel_base(inputs, pairs, p)),
           candidates_(pairs.candidates[p].span()),
           asleep_until_(pairs.asleep_until[p].span()),
           found_(found) {}
@@ -89,8 +91,8 @@ private:
             const Real distance = found.distance[i];
             const bool far = !(distance <= std::max(near_, zone));
             // Of surfaces that are apart nothing has come through the other.
-            const bool out_of_reach = surfaces_ == Surfaces::apart && (found.behind >> i & 1) == 0 &&
-                                      !within_reach(distance, found.speed[i]);
+            const bool out_of_reach =
+                surfaces_ == Surfaces::apart && (found.behind >> i & 1) == 0 && !within_reach(distance, found.speed[i]);
             if (!far && !out_of_reach) {
                 wake(waiting_[i]);
                 continue;
@@ -116,11 +118,9 @@ private:
     void prepare() {
         scale_ = pair_scale(inputs_, kind_, first_, second_);
         surface_ = pair_surface(inputs_, kind_, first_, second_);
-        travel_base_ = pair_travel_base(inputs_, kind_, first_, second_);
         // Without a shell touching surfaces may overlap by rounding.
         surfaces_ = apart_ && scale_.contact_distance > 0 ? Surfaces::apart : Surfaces::may_overlap;
-        const Real closing = travel_bound_ - pair_travel(inputs_, kind_, first_, second_);
-        near_ = scale_.contact_distance + (closing >= 0 ? closing : 0);
+        near_ = scale_.contact_distance + (closing_ >= 0 ? closing_ : 0);
         prepared_ = true;
     }
 
@@ -221,7 +221,7 @@ private:
     const PairKind kind_;
     const Index first_, second_;
     const bool apart_;
-    const Real travel_bound_;
+    const Real closing_, travel_bound_, travel_base_;
     std::span<const Candidate> candidates_;
     std::span<Real> asleep_until_;
     Column<ContactRow>& found_;
@@ -233,7 +233,6 @@ private:
     Surfaces surfaces_ = Surfaces::may_overlap;
     PairScale scale_;
     SurfaceProperties surface_;
-    Real travel_base_ = 0;
     Real near_ = 0;
 };
 

@@ -93,7 +93,12 @@ struct CollisionWorld {
     /// Moves every node by h velocity and keeps the books of the engine.
     void drift(Real h) {
         for (std::size_t n = 0; n < nodes.position.size(); ++n) nodes.position[n] += h * nodes.velocity[n];
-        for (std::size_t b = 0; b < body.slot.size(); ++b) body.travel[b] += h * body.max_speed[b];
+        for (std::size_t b = 0; b < body.slot.size(); ++b) {
+            MovingFrame& frame = body.frame[b];
+            frame.position += h * frame.velocity;
+            frame.path += h * frame.velocity.norm();
+            body.travel[b] += h * body.frame_speed[b];
+        }
         for (std::size_t c = 0; c < collider.slot.size(); ++c) {
             RigidMotion& motion = collider.motion[c];
             motion.position += h * motion.velocity;
@@ -103,9 +108,21 @@ struct CollisionWorld {
 
     void measure_speed() {
         for (std::size_t b = 0; b < body.slot.size(); ++b) {
-            body.max_speed[b] = 0;
-            for (Index n = body.nodes[b].begin; n < body.nodes[b].end; ++n)
+            body.max_speed[b] = body.frame_speed[b] = 0;
+            for (Index n = body.nodes[b].begin; n < body.nodes[b].end; ++n) {
                 body.max_speed[b] = std::max(body.max_speed[b], nodes.velocity[n].norm());
+                body.frame_speed[b] =
+                    std::max(body.frame_speed[b], (nodes.velocity[n] - body.frame[b].velocity).norm());
+            }
+        }
+    }
+
+    /// Frames go with their bodies from now on.
+    void follow_bodies() {
+        for (std::size_t b = 0; b < body.slot.size(); ++b) {
+            Vec3 sum = Vec3::Zero();
+            for (Index n = body.nodes[b].begin; n < body.nodes[b].end; ++n) sum += nodes.velocity[n];
+            body.frame[b].velocity = sum / body.nodes[b].size();
         }
     }
 

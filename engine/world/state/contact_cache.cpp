@@ -20,6 +20,8 @@ void ContactCache::forget_distances(Model& model) {
     std::ranges::fill(model.node_blocks.displacement_squared, 0);
     std::ranges::fill(model.bodies.displacement, 0);
     std::ranges::fill(model.bodies.travel, 0);
+    std::ranges::fill(model.bodies.frame, MovingFrame{});
+    std::ranges::copy(model.bodies.max_speed, model.bodies.frame_speed.begin());
     std::ranges::fill(model.colliders.travel, 0);
     // Not empty columns, which would say that what is known of the pairs' sides is wrong, too.
     constexpr Real long_ago = -std::numeric_limits<Real>::infinity();
@@ -32,6 +34,11 @@ void ContactCache::forget_distances(Model& model) {
     for (auto& list : pairs.candidates) list.clear();
     for (auto& list : pairs.asleep_until) list.clear();
     pairs.travel_bound.resize(pairs.size());
+    pairs.travel.resize(pairs.size());
+    pairs.closing.resize(pairs.size());
+    pairs.longer_motion.assign(pairs.size(), 0);
+    pairs.frame_apart.assign(pairs.size(), Vec3::Zero());
+    pairs.frame_path.assign(pairs.size(), 0);
     pairs.valid_until.assign(pairs.size(), long_ago);
 }
 

@@ -103,7 +103,7 @@ void list_checks(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/check_state", found.verdict, check_state,
                         inputs<CheckInputs>(k, b, n, m.tetrahedra, m.elements, m.element_nodes, pushed), value(p.h),
-                        value(p.max_strain_step), write(k.max_speed_squared), write(b.max_speed));
+                        value(p.max_strain_step), outputs<SpeedOutputs>(k, b));
     const auto if_possible =
         only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; }, read(found.verdict));
     g.stage_with_result("dynamics/find_inversions", found.inversions, find_inversions,
@@ -136,7 +136,7 @@ void list_commit(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/advance_positions", advance_positions,
             inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h), value(p.integrator),
             outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
-    g.stage("dynamics/measure_displacement", measure_displacement, inputs<DisplacementInputs>(k, b, n),
+    g.stage("dynamics/measure_displacement", measure_displacement, inputs<DisplacementInputs>(k, b, n), value(p.h),
             outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
                         inputs<RestInputs>(b, n), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),

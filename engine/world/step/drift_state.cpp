@@ -10,11 +10,11 @@ namespace skerry {
 
 namespace {
 
-void measure_displacement_of(Executor& executor, Model& model, SearchMemory& search) {
+void measure_displacement_of(Executor& executor, Model& model, Real seconds, SearchMemory& search) {
     NodeTable& n = model.nodes;
     NodeBlockTable& k = model.node_blocks;
     BodyTable& b = model.bodies;
-    measure_displacement(executor, DisplacementInputs::bind({}, k, b, n),
+    measure_displacement(executor, DisplacementInputs::bind({}, k, b, n), seconds,
                          DisplacementOutputs::bind({}, n, search.rebase, b));
 }
 
@@ -33,7 +33,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     const bool pushed = false;  // by contacts, which are not of this part of the step
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
                       Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
-    measure_displacement_of(executor, model, search);
+    measure_displacement_of(executor, model, seconds, search);
     add_collider_travel(std::abs(seconds), search.collider_extent, c);
     clock.time += seconds;
     clock.offset = offset;
@@ -44,10 +44,11 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
     NodeBlockTable& k = model.node_blocks;
     for (std::size_t b = 0; b < k.begin.size(); ++b) {
         const auto first = static_cast<std::size_t>(k.begin[b]), count = static_cast<std::size_t>(k.end[b]) - first;
-        k.displacement_squared[b] = block_displacement_squared(n.position.span().subspan(first, count),
-                                                               n.displacement_origin.span().subspan(first, count));
+        k.displacement_squared[b] = block_displacement_squared(
+            n.position.span().subspan(first, count), n.displacement_origin.span().subspan(first, count),
+            model.bodies.frame[static_cast<std::size_t>(k.body[b])].offset);
     }
-    measure_displacement_of(executor, model, search);
+    measure_displacement_of(executor, model, 0, search);  // frames stay where they have come to
 }
 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders) {

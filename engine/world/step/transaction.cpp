@@ -133,8 +133,9 @@ void note_try(const Model& model, const StepScratch& scratch, Tries& tries, Step
 }
 
 /// The table of StepOutcome.
-StepOutcome judge(const StepScratch& scratch, const StepPlan& plan, Tries& tries) {
+StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, Tries& tries) {
     const StepFindings& found = scratch.findings;
+    if (beyond_lists) return StepOutcome::again_with_longer_lists;
     const bool crosses = found.crossings > 0;
     if (scratch.taken()) return StepOutcome::committed;
     if (crosses && ++tries.with_crossings < tries_at_one_length) return StepOutcome::again_with_crossings;
@@ -155,14 +156,16 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
         tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
     world.cache.crossings.last_try = tries.letting_through;
+    world.cache.crossings.beyond_lists = false;
     const bool ran = run_stages(world);
-    const StepOutcome outcome = judge(scratch, plan, tries);
+    const StepOutcome outcome = judge(scratch, world.cache.crossings.beyond_lists, plan, tries);
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);
             note_step(world.model, plan, tries, world.record.limits);
             tries = {.longest = tries.longest * step_growth, .limit = tries.limit, .body = tries.body};
             return outcome;
+        case StepOutcome::again_with_longer_lists:
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
@@ -185,6 +188,7 @@ void StepTransaction::begin_try(const Model& model) {
     asleep_.resize(model.bodies.asleep.size());
     std::ranges::copy(model.bodies.asleep, asleep_.begin());
     copy(model.bodies.max_speed, max_speed_);
+    copy(model.bodies.frame_speed, frame_speed_);
     driven_velocity_.resize(model.attachments.node.size());
     for (std::size_t i = 0; i < driven_velocity_.size(); ++i)
         driven_velocity_[i] = model.nodes.velocity[static_cast<std::size_t>(model.attachments.node[i])];
@@ -192,6 +196,7 @@ void StepTransaction::begin_try(const Model& model) {
 
 void StepTransaction::roll_back_try(Model& model) const {
     std::ranges::copy(max_speed_, model.bodies.max_speed.begin());
+    std::ranges::copy(frame_speed_, model.bodies.frame_speed.begin());
     for (std::size_t i = 0; i < driven_velocity_.size(); ++i)
         model.nodes.velocity[static_cast<std::size_t>(model.attachments.node[i])] = driven_velocity_[i];
     if (model.any_asleep) keep_at_rest(model.bodies, model.nodes.velocity_next);

@@ -25,10 +25,11 @@ struct WorldState;
 ///      '---- not finite, too far, too fast at the shortest length ---------------> refused
 enum class StepOutcome {
     committed,
-    again_with_crossings,   // what crossed is a contact of the next try, which is as long
-    again_shorter,          // the next try is half as long
-    again_letting_through,  // the next try takes what crosses, and reports it
-    refused,                // world.scratch.findings say who is to blame
+    again_with_longer_lists,  // the same try: what was near enough to cross was not known
+    again_with_crossings,     // what crossed is a contact of the next try, which is as long
+    again_shorter,            // the next try is half as long
+    again_letting_through,    // the next try takes what crosses, and reports it
+    refused,                  // world.scratch.findings say who is to blame
 };
 
 /// What is left of the tries of the present step, and of those before it, for the next one.
@@ -48,7 +49,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 ///
 ///     what                                      written by             undone by
 ///     nodes.velocity of held and led nodes      drive_nodes            a copy, of the start of the try
-///     bodies.max_speed                          check_state            a copy, of the start of the try
+///     bodies.max_speed, bodies.frame_speed      check_state            a copy, of the start of the try
 ///     nodes.velocity_next of bodies at rest     solve_regions          zero, which it is as long as they rest
 ///     nodes.position, nodes.velocity, time      drift_to (leapfrog)    a copy, of the start of the call
 ///     clock.cycle, bodies.level between cycles  plan_step              nothing: written again before it is read
@@ -69,11 +70,11 @@ public:
     void roll_back_call(Model& model, Clock& clock) const;
 
 private:
-    Column<std::uint8_t> asleep_;       // bodies.asleep
-    Column<Real> max_speed_;            // m/s, bodies.max_speed
-    Column<Vec3> driven_velocity_;      // m/s, of attachments.node
-    Real time_ = 0;                     // s
-    Column<Vec3> position_, velocity_;  // m, m/s, of all nodes
+    Column<std::uint8_t> asleep_;           // bodies.asleep
+    Column<Real> max_speed_, frame_speed_;  // m/s, bodies.max_speed, bodies.frame_speed
+    Column<Vec3> driven_velocity_;          // m/s, of attachments.node
+    Real time_ = 0;                         // s
+    Column<Vec3> position_, velocity_;      // m, m/s, of all nodes
 };
 
 }  // namespace skerry

@@ -2,13 +2,14 @@
 // Verlet lists, with a travel in place of a time to live. For a pair P at a present moment,
 //
 //   D(t)      the distance of two of its features, or of its bodies
-//   T(t)      the sum of both partners' travels (BodyTable, ColliderTable)
+//   T(t)      the sum of both partners' travels, each in its frame (BodyTable), and of the way that one frame has made
+//             as the other sees it; to a collider the body's travel, the way of its frame and the collider's travel
 //   d0        the sum of both partners' displacements when something was noted, at time 0
 //   T0 = T(0) - 2 d0                       (pair_travel_base)
 //   F = T(t) + closing                     (travel_bound; closing: what both may come nearer within the step that
 //   begins)
 //
-// 1. Motion:      D(t) >= D(0) - (T(t) - T0). (measure_displacement.h)
+// 1. Motion:      D(t) >= D(0) - (T(t) - T0). (measure_displacement.h; common motion of both is no motion)
 // 2. Contact:     a candidate of gap g is a contact of this step only if g <= reach(h, its own relative speed).
 // 3. Front:       T(t) + reach <= F for every candidate of the pair: the pair's speeds are at least the candidate's.
 // 4. Asleep:      F < T0 + g(0) implies g(t) > reach, by 1 and 3: asleep_until = T0 + g(0), one comparison.
@@ -16,7 +17,7 @@
 //                 can be a contact: valid_until = T0 + m.
 // 6. Broad phase: if all pairs of bodies a, b are listed whose boxes, grown by margins m_a and m_b and their contact
 //                 distances, overlap at time 0, the list holds while F_b < T_b(0) - 2 d_b(0) + m_b for every body b
-//                 alone: body_valid_until.
+//                 alone, T_b with the way of its frame: body_valid_until.
 //
 // F covers the step that begins, so that lists need no further margin for it. Travels are sums of rounded numbers; the
 // constant part of reach is larger than their rounding by many orders.
@@ -60,17 +61,14 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
 /// body's.
 SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second);
 
-/// Sum of the travels of both partners, m.
-inline Real pair_travel(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
-    const Real own = inputs.body.travel[first];
-    return own + (kind == PairKind::collider ? inputs.collider.travel[second] : inputs.body.travel[second]);
+/// Sum of what both partners have moved in their frames since their origins were set, m.
+inline Real pair_displacement(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
+    return inputs.body.displacement[first] + (kind == PairKind::collider ? 0 : inputs.body.displacement[second]);
 }
 
 /// T0, m: what is noted now of a distance holds while travel_bound is below T0 plus that distance.
-inline Real pair_travel_base(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
-    const Real displacement =
-        inputs.body.displacement[first] + (kind == PairKind::collider ? 0 : inputs.body.displacement[second]);
-    return pair_travel(inputs, kind, first, second) - 2 * displacement;
+inline Real pair_travel_base(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
+    return pairs.travel[p] - 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]);
 }
 
 }  // namespace skerry

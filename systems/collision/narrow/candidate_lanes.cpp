@@ -58,16 +58,15 @@ CandidateDistances edge_edge_distances(const CollisionInputs& inputs, std::span<
     for (std::size_t l = 0; l < candidate_lanes; ++l) {
         const Candidate& candidate = candidates[static_cast<std::size_t>(row[l])];
         const std::array<Index, 2>&a = inputs.surface.edges.node[candidate.first],
-              &b = inputs.surface.edges.node[candidate.second];
+                                &b = inputs.surface.edges.node[candidate.second];
         for (std::size_t k = 0; k < 2; ++k) {
             first[k][l] = a[k];
             second[k][l] = b[k];
         }
     }
     CandidateDistances out;
-    store(square_root(
-              segment_distance_squared(gather(inputs.position, first[0]), gather(inputs.position, first[1]),
-                                       gather(inputs.position, second[0]), gather(inputs.position, second[1]))),
+    store(square_root(segment_distance_squared(gather(inputs.position, first[0]), gather(inputs.position, first[1]),
+                                               gather(inputs.position, second[0]), gather(inputs.position, second[1]))),
           out.distance);
     const LaneVec3<Real8> a0 = gather(inputs.velocity, first[0]), a1 = gather(inputs.velocity, first[1]);
     const LaneVec3<Real8> b0 = gather(inputs.velocity, second[0]), b1 = gather(inputs.velocity, second[1]);

@@ -57,7 +57,7 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
                 is_movable(body, static_cast<Index>(b)) ? settings.broad_skin / 2 * body.mean_edge[b] : common_travel;
             search.body_valid_until[b] = memory.body_travel_bound[b] - 2 * body.displacement[b] + travel;
             fit(inputs, static_cast<Index>(b), memory.box[b], memory.sphere[b]);
-            const Real margin = memory.body_travel_bound[b] - body.travel[b] + travel + body.contact_distance[b] / 2;
+            const Real margin = memory.body_reach[b] + travel + body.contact_distance[b] / 2;
             widen(memory.box[b], margin);
             memory.sphere[b].radius += margin;
         }
@@ -177,7 +177,11 @@ private:
 
     /// A new pair is searched at once: only that tells how far apart the two really are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second) {
-        memory_.pairs.push_back({key, kind, first, second, -std::numeric_limits<Real>::infinity(), PairState::unknown});
+        const Vec3 apart = kind == PairKind::collider
+                               ? Vec3(Vec3::Zero())
+                               : Vec3(inputs_.body.frame[first].position - inputs_.body.frame[second].position);
+        memory_.pairs.push_back(
+            {key, kind, first, second, -std::numeric_limits<Real>::infinity(), PairState::unknown, apart, 0});
     }
 
     void add_planes() {
@@ -222,6 +226,8 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
         if (old == old_count || pairs.key[old] != memory.pairs[row].key) continue;
         memory.pairs[row].valid_until = pairs.valid_until[old];
         memory.pairs[row].state = pairs.state[old];
+        memory.pairs[row].frame_apart = pairs.frame_apart[old];
+        memory.pairs[row].frame_path = pairs.frame_path[old];
         move_list(old, row);
         memory.moved[old] |= 1;  // has given its list away
         memory.moved[row] |= 2;  // has got one
@@ -242,7 +248,12 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
     pairs.second.resize(count);
     pairs.valid_until.resize(count);
     pairs.state.resize(count);
+    pairs.frame_apart.resize(count);
+    pairs.frame_path.resize(count);
+    pairs.travel.resize(count);
     pairs.travel_bound.resize(count);
+    pairs.closing.resize(count);
+    pairs.longer_motion.assign(count, 0);
     for (std::size_t row = 0; row < count; ++row) {
         const FoundPair& found = memory.pairs[row];
         pairs.key[row] = found.key;
@@ -251,6 +262,8 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
         pairs.second[row] = found.second;
         pairs.valid_until[row] = found.valid_until;
         pairs.state[row] = found.state;
+        pairs.frame_apart[row] = found.frame_apart;
+        pairs.frame_path[row] = found.frame_path;
     }
 }
 

@@ -9,11 +9,12 @@ namespace skerry {
 
 namespace {
 
-Real surface_speed(const CollisionInputs& inputs, Index body) {
+/// As seen from a frame that moves with `frame` (m/s).
+Real surface_speed(const CollisionInputs& inputs, Index body, const Vec3& frame) {
     Real squared = 0;
     const Range vertices = inputs.body.vertices[body];
     for (Index v = vertices.begin; v < vertices.end; ++v)
-        squared = std::max(squared, inputs.velocity[inputs.surface.vertices.node[v]].squaredNorm());
+        squared = std::max(squared, (inputs.velocity[inputs.surface.vertices.node[v]] - frame).squaredNorm());
     return std::sqrt(squared);
 }
 
@@ -23,14 +24,25 @@ bool stands_still(const RigidMotion& motion) {
 
 }  // namespace
 
-Real body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure, Real h) {
-    Real speed = inputs.body.max_speed[body];
+BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure,
+                     Real h) {
+    Real in_frame = inputs.body.frame_speed[body], in_world = inputs.body.max_speed[body];
     const Index collider = inputs.body.collider[body];
     const bool scripted =
         inputs.body.kind[body] == BodyKind::kinematic && !stands_still(inputs.collider.motion[collider]);
-    if (measure || scripted) speed = std::max(speed, surface_speed(inputs, body));
+    if (measure || scripted) {
+        in_frame = std::max(in_frame, surface_speed(inputs, body, inputs.body.frame[body].velocity));
+        in_world = std::max(in_world, surface_speed(inputs, body, Vec3::Zero()));
+    }
     // Gravity acts on two bodies alike, yet the other partner may be held: each counts it in full.
-    return reach(h, speed, settings.gravity, inputs.body.contact_distance[body] / 2);
+    const auto of = [&](Real speed) {
+        return reach(h, speed, settings.gravity, inputs.body.contact_distance[body] / 2);
+    };
+    return {of(in_frame), of(in_world)};
+}
+
+Real frame_reach(const CollisionInputs& inputs, Index first, Index second, Real h) {
+    return speed_safety * h * (inputs.body.frame[first].velocity - inputs.body.frame[second].velocity).norm();
 }
 
 Real collider_reach(const CollisionInputs& inputs, Index collider, Real extent, Real h) {

@@ -20,15 +20,18 @@ Vec3 motion(const CheckInputs& state, std::size_t node) {
     return state.push_out.empty() ? state.velocity_next[node] : Vec3(state.velocity_next[node] + state.push_out[node]);
 }
 
-/// Not a number when any node's velocity is not finite, or so large that its square is not.
-Real max_speed_squared_of_block(const CheckInputs& state, std::size_t block) {
+/// Of a block, in a frame that moves with `frame` (m/s). Not a number when any node's velocity is not finite, or so
+/// large that its square is not.
+Real max_speed_squared(const CheckInputs& state, std::size_t block, const Vec3& frame) {
     const auto begin = static_cast<std::size_t>(state.block_begin[block]);
     const std::size_t count = static_cast<std::size_t>(state.block_end[block]) - begin;
     if (count == 0) return 0;
     const Real* v = state.velocity_next[begin].data();
     const Real* p = state.push_out.empty() ? nullptr : state.push_out[begin].data();
-    const Real highest = p == nullptr ? largest_squared_length(count, [&](std::size_t i) { return v[i]; })
-                                      : largest_squared_length(count, [&](std::size_t i) { return v[i] + p[i]; });
+    const Real highest = p == nullptr ? largest_squared_length(
+                                            count, [&](std::size_t i) { return v[i]; }, frame)
+                                      : largest_squared_length(
+                                            count, [&](std::size_t i) { return v[i] + p[i]; }, frame);
     return highest <= std::numeric_limits<Real>::max() ? highest : std::numeric_limits<Real>::quiet_NaN();
 }
 
@@ -188,28 +191,39 @@ Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t 
 }  // namespace
 
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
-                        std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed) {
+                        const SpeedOutputs& speed) {
     const std::size_t body_count = state.body_node_blocks.size();
-    SKERRY_CHECK(block_max_speed_squared.size() == state.block_begin.size() && body_max_speed.size() == body_count);
+    SKERRY_CHECK(speed.block_squared.size() == state.block_begin.size() && speed.body.size() == body_count);
+    SKERRY_CHECK(speed.block_frame_squared.size() == state.block_begin.size() && speed.body_frame.size() == body_count);
     parallel_for(executor, state.block_begin.size(), node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) block_max_speed_squared[b] = max_speed_squared_of_block(state, b);
+        for (std::size_t b = begin; b < end; ++b) {
+            speed.block_squared[b] = speed.block_frame_squared[b] = max_speed_squared(state, b, Vec3::Zero());
+            if (state.body_frame.empty()) continue;
+            const Vec3& frame = state.body_frame[static_cast<std::size_t>(state.block_body[b])].velocity;
+            if (!frame.isZero(0)) speed.block_frame_squared[b] = max_speed_squared(state, b, frame);
+        }
     });
+    const auto greatest = [](std::span<const Real> squared) {
+        Real highest = 0;
+        bool finite = true;
+        for (const Real of_block : squared) {
+            finite &= of_block >= 0;
+            if (of_block > highest) highest = of_block;
+        }
+        return finite ? std::sqrt(highest) : std::numeric_limits<Real>::quiet_NaN();
+    };
     StepVerdict verdict;
     for (std::size_t body = 0; body < body_count; ++body) {
         const Range blocks = state.body_node_blocks[body];
-        Real highest = 0;
-        bool finite = true;
-        for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-            finite &= block_max_speed_squared[b] >= 0;
-            if (block_max_speed_squared[b] > highest) highest = block_max_speed_squared[b];
-        }
-        body_max_speed[body] = finite ? std::sqrt(highest) : std::numeric_limits<Real>::quiet_NaN();
+        const auto first = static_cast<std::size_t>(blocks.begin), count = static_cast<std::size_t>(blocks.size());
+        speed.body[body] = greatest(speed.block_squared.subspan(first, count));
+        speed.body_frame[body] = greatest(speed.block_frame_squared.subspan(first, count));
         if (verdict.fault != StepFault::none) continue;  // the first fault counts, but every speed is written
         const Real altitude = state.body_min_altitude[body];
-        if (!finite) {
+        if (std::isnan(speed.body[body])) {
             verdict = {StepFault::not_finite, static_cast<Index>(body), first_not_finite(state, blocks), 0};
         } else if (altitude > 0 && blocks.size() > 0) {
-            const Fastest fastest = too_fast_node(executor, state, body, body_max_speed[body], max_strain_step / h);
+            const Fastest fastest = too_fast_node(executor, state, body, speed.body_frame[body], max_strain_step / h);
             if (fastest.node != no_index)
                 verdict = {StepFault::too_fast, static_cast<Index>(body), fastest.node,
                            std::sqrt(fastest.rate_squared) * h, fastest.element};

@@ -42,6 +42,7 @@ struct CheckInputs {
     std::span<const NodeLane> element_node = {};
     std::span<const ElementGradient> element_gradient = {};
     std::span<const ElementLane> element_implicit_modulus = {};
+    std::span<const MovingFrame> body_frame = {};  // BodyTable; empty: none moves
 
     /// `pushed`: some contact pushes.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
@@ -66,14 +67,28 @@ struct CheckInputs {
                 .element_count = binder.read(element.count),
                 .element_node = binder.read(element_node.node),
                 .element_gradient = binder.read(element_node.gradient),
-                .element_implicit_modulus = binder.read(element.implicit_modulus)};
+                .element_implicit_modulus = binder.read(element.implicit_modulus),
+                .body_frame = binder.read(body.frame)};
+    }
+};
+
+/// Greatest speeds of velocity_next + push_out: m^2/s^2 by block, m/s by body; in the body's frame, too.
+struct SpeedOutputs {
+    std::span<Real> block_squared, block_frame_squared;
+    std::span<Real> body, body_frame;
+
+    static SpeedOutputs bind(const Binder& binder, NodeBlockTable& block, BodyTable& of_body) {
+        return {.block_squared = binder.write(block.max_speed_squared),
+                .block_frame_squared = binder.write(block.frame_speed_squared),
+                .body = binder.write(of_body.max_speed),
+                .body_frame = binder.write(of_body.frame_speed)};
     }
 };
 
 /// In how many times max_strain_step implicit elements may deform, and the tetrahedra that they cover.
 inline constexpr Real implicit_leeway = 5;
 
-/// Writes body_max_speed (of velocity_next + push_out) and returns the first fault in body order: a velocity that is
+/// Writes speeds and returns the first fault in body order: a velocity that is
 /// not finite, or an element whose F would change by more than `max_strain_step` (Frobenius norm) in this step. That F
 /// is a mean over tetrahedra, so elements are looked at where F of a tetrahedron would change by as much (by its leeway
 /// more), and these where two corners move apart by more than this fraction of the smallest altitude. What is blamed is
@@ -81,7 +96,7 @@ inline constexpr Real implicit_leeway = 5;
 /// Without `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the smallest
 /// altitude of the body, which refuses a quick turn of a large body, too. Parallel over node blocks.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
-                        std::span<Real> block_max_speed_squared, std::span<Real> body_max_speed);
+                        const SpeedOutputs& speed);
 
 /// Coordinates of a body that are further apart than this fraction of its mean edge are no ground for a step: motion
 /// below a millionth of the speed of sound would be lost to rounding.

@@ -118,7 +118,7 @@ Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Re
     Inversions found;
     for (std::size_t b = 0; b < inputs.body_blocks.size(); ++b) {
         const Range blocks = inputs.body_blocks[b];
-        const Real reach = h * inputs.body_max_speed[b], travel = inputs.body_travel[b];
+        const Real reach = h * inputs.body_frame_speed[b], travel = inputs.body_travel[b];
         if (blocks.size() == 0 || travel + reach < budgets.body_uninverted_until[b]) continue;
         const Body body{inputs, h, reach, travel + reach, travel - 2 * inputs.body_displacement[b]};
         parts.resize(static_cast<std::size_t>((blocks.size() + blocks_per_part - 1) / blocks_per_part));

@@ -16,7 +16,7 @@ struct InversionInputs {
     std::span<const ElementLane> tetrahedron_volume;
     std::span<const ElementLane> tetrahedron_leeway;  // empty: 1
     std::span<const Range> body_blocks;               // BodyTable
-    std::span<const Real> body_max_speed, body_travel, body_displacement;
+    std::span<const Real> body_frame_speed, body_travel, body_displacement;
     std::span<const Vec3> position;                 // m, at the start of the step
     std::span<const Vec3> velocity_next, push_out;  // push_out: empty: no contact pushes
 
@@ -27,7 +27,7 @@ struct InversionInputs {
                 .tetrahedron_volume = binder.read(tetrahedron.volume),
                 .tetrahedron_leeway = binder.read(tetrahedron.leeway),
                 .body_blocks = binder.read(body.tetrahedron_blocks),
-                .body_max_speed = binder.read(body.max_speed),
+                .body_frame_speed = binder.read(body.frame_speed),
                 .body_travel = binder.read(body.travel),
                 .body_displacement = binder.read(body.displacement),
                 .position = binder.read(node.position),

@@ -50,8 +50,11 @@ void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, I
                     drift_pushed(with, h, out.push_out.subspan(begin, count), position);
                 std::copy(velocity_next.begin(), velocity_next.end(), velocity.begin());
             }
-            out.block_displacement_squared[b] =
-                block_displacement_squared(position, nodes.displacement_origin.subspan(begin, count));
+            const MovingFrame frame = nodes.body_frame.empty()
+                                          ? MovingFrame{}
+                                          : nodes.body_frame[static_cast<std::size_t>(nodes.block_body[b])];
+            out.block_displacement_squared[b] = block_displacement_squared(
+                position, nodes.displacement_origin.subspan(begin, count), frame.offset + h * frame.velocity);
         }
     });
 }

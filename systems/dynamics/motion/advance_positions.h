@@ -19,6 +19,7 @@ struct AdvanceInputs {
     std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty: none
     std::span<const Vec3> velocity_next;                        // m/s
     std::span<const Vec3> displacement_origin;                  // m
+    std::span<const MovingFrame> body_frame = {};               // BodyTable; empty: none moves
 
     /// `velocity`: with which the nodes go on. `any_asleep`: some body rests.
     static AdvanceInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
@@ -28,7 +29,8 @@ struct AdvanceInputs {
                 .block_body = binder.read(block.body),
                 .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
                 .velocity_next = binder.read(velocity),
-                .displacement_origin = binder.read(node.displacement_origin)};
+                .displacement_origin = binder.read(node.displacement_origin),
+                .body_frame = binder.read(body.frame)};
     }
 };
 

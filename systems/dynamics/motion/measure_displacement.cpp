@@ -13,31 +13,51 @@ namespace {
 constexpr std::size_t bodies_per_job = 64;
 
 // Fraction of the mean edge at which the origins move to the nodes. A list of a pair made at drifts a and b holds for
-// skin - 2 (a + b) of travel (contact_reach.h): at most 4 x 0.0375 = 0.15 of the skin of 0.25 mean edges is lost. A
+// skin - 2 (a + b) of travel (contact_reach.h): at most 4 x 0.0375 = 0.15 of the skin of 0.375 mean edges is lost. A
 // body that trembles by less than this adds nothing to its travel in the long run.
 constexpr Real longest_displacement = 0.0375;
 
-}  // namespace
-
-Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin) {
-    if (position.empty()) return 0;
-    const Real *x = position.data()->data(), *o = origin.data()->data();
-    return largest_squared_length(position.size(), [&](std::size_t i) { return x[i] - o[i]; });
+void move_on(MovingFrame& frame, Real seconds) {
+    const Vec3 way = seconds * frame.velocity;
+    frame.offset += way;
+    frame.position += way;
+    frame.path += way.norm();
 }
 
-void measure_displacement(Executor& executor, const DisplacementInputs& bodies, const DisplacementOutputs& out) {
+/// Any velocity would do; this one leaves little to move in the frame. Zero where it is not finite.
+Vec3 mean_velocity(std::span<const Vec3> velocity, Range nodes) {
+    Vec3 sum = Vec3::Zero();
+    for (Index n = nodes.begin; n < nodes.end; ++n) sum += velocity[static_cast<std::size_t>(n)];
+    const Vec3 mean = sum / std::max(nodes.size(), Index{1});
+    return mean.allFinite() ? mean : Vec3(Vec3::Zero());
+}
+
+}  // namespace
+
+Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin, const Vec3& offset) {
+    if (position.empty()) return 0;
+    const Real *x = position.data()->data(), *o = origin.data()->data();
+    return largest_squared_length(
+        position.size(), [&](std::size_t i) { return x[i] - o[i]; }, offset);
+}
+
+void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
+                          const DisplacementOutputs& out) {
     parallel_for(executor, out.displacement.size(), bodies_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             Real squared = 0;
             for (Index k = bodies.body_node_blocks[b].begin; k < bodies.body_node_blocks[b].end; ++k)
                 squared = std::max(squared, bodies.block_displacement_squared[k]);
             const Real displacement = std::sqrt(squared);
+            move_on(out.frame[b], seconds);
             out.travel[b] += displacement - out.displacement[b];
             out.displacement[b] = displacement;
             const bool asked = b < out.rebase.size() && out.rebase[b] != 0;
             if (asked) out.rebase[b] = 0;
             if (!asked && displacement <= longest_displacement * bodies.body_mean_edge[b]) continue;
             out.displacement[b] = 0;
+            out.frame[b].offset = Vec3::Zero();
+            out.frame[b].velocity = mean_velocity(bodies.velocity, bodies.body_nodes[b]);
             const auto first = static_cast<std::ptrdiff_t>(bodies.body_nodes[b].begin),
                        last = static_cast<std::ptrdiff_t>(bodies.body_nodes[b].end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

@@ -18,6 +18,7 @@ struct DisplacementInputs {
     std::span<const Range> body_nodes;
     std::span<const Real> body_mean_edge;  // m
     std::span<const Vec3> position;        // m, now
+    std::span<const Vec3> velocity;        // m/s, now
 
     static DisplacementInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                                    const NodeTable& node) {
@@ -25,32 +26,39 @@ struct DisplacementInputs {
                 .body_node_blocks = binder.read(body.node_blocks),
                 .body_nodes = binder.read(body.nodes),
                 .body_mean_edge = binder.read(body.mean_edge),
-                .position = binder.read(node.position)};
+                .position = binder.read(node.position),
+                .velocity = binder.read(node.velocity)};
     }
 };
 
 struct DisplacementOutputs {
-    std::span<Vec3> origin;                // m, by node: where it was when its body's displacement was last zero
-    std::span<std::uint8_t> rebase;        // by body, or empty: 1 asks for a displacement of zero; cleared
-    std::span<Real> displacement, travel;  // BodyTable
+    std::span<Vec3> origin;          // m, by node: where it was when its body's displacement was last zero
+    std::span<std::uint8_t> rebase;  // by body, or empty: 1 asks for a displacement of zero; cleared
+    std::span<MovingFrame> frame;    // BodyTable
+    std::span<Real> displacement, travel;
 
     /// `rebase`: by body.
     static DisplacementOutputs bind(const Binder& binder, NodeTable& node, Column<std::uint8_t>& rebase,
                                     BodyTable& body) {
         return {.origin = binder.write(node.displacement_origin),
                 .rebase = binder.write(rebase),
+                .frame = binder.write(body.frame),
                 .displacement = binder.write(body.displacement),
                 .travel = binder.write(body.travel)};
     }
 };
 
-/// Greatest squared distance of the nodes of a block from their origins, m^2. advance_positions writes it by block.
-Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin);
+/// Greatest squared distance of the nodes of a block from their origins, which have moved on by `offset` (m), m^2.
+/// advance_positions writes it by block.
+Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin, const Vec3& offset);
 
-/// displacement = greatest distance of a node from its origin; travel grows by the change of displacement, so that a
-/// body that only trembles does not travel. When the displacement exceeds a small part of the mean edge, or on request,
-/// the origins move to where the nodes are: displacement is zero again, travel stays. No node is ever further from
-/// where it was at an earlier time than travel - (travel then) + 2 (displacement then). Parallel over bodies.
-void measure_displacement(Executor& executor, const DisplacementInputs& bodies, const DisplacementOutputs& out);
+/// After positions have moved on by `seconds`: frames move on as long, displacement = greatest distance of a node from
+/// its origin, which goes with the frame; travel grows by the change of displacement, so that a body that only trembles
+/// does not travel, nor one that flies. When the displacement exceeds a small part of the mean edge, or on request, the
+/// origins move to where the nodes are and the frame takes their mean velocity: displacement is zero again, travel
+/// stays. In its frame no node is ever further from where it was at an earlier time than travel - (travel then) + 2
+/// (displacement then). Parallel over bodies.
+void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
+                          const DisplacementOutputs& out);
 
 }  // namespace skerry

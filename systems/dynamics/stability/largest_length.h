@@ -10,16 +10,18 @@
 
 namespace skerry {
 
-/// Greatest squared length of `count` vectors, where component(3 n + i) is component i of vector n. Infinite or not a
-/// number as soon as one of them is: bit patterns of squares order as the squares do, with what is not finite on top.
-/// Compared as integers, which no order of comparisons changes, they go through the lanes of a register; as numbers
-/// they would wait for each other.
+/// Greatest squared length of `count` vectors less `origin`, where component(3 n + i) is component i of vector n.
+/// Infinite or not a number as soon as one of them is: bit patterns of squares order as the squares do, with what is
+/// not finite on top. Compared as integers, which no order of comparisons changes, they go through the lanes of a
+/// register; as numbers they would wait for each other.
 template <class Component>
-[[gnu::always_inline]] inline Real largest_squared_length(std::size_t count, Component&& component) {
+[[gnu::always_inline]] inline Real largest_squared_length(std::size_t count, Component&& component,
+                                                          const Vec3& origin = Vec3::Zero()) {
     std::uint64_t largest = 0;
+    const Real x0 = origin[0], y0 = origin[1], z0 = origin[2];
 #pragma omp simd reduction(max : largest)
     for (std::size_t n = 0; n < count; ++n) {
-        const Real x = component(3 * n), y = component(3 * n + 1), z = component(3 * n + 2);
+        const Real x = component(3 * n) - x0, y = component(3 * n + 1) - y0, z = component(3 * n + 2) - z0;
         const auto bits = std::bit_cast<std::uint64_t>(x * x + y * y + z * z);
         largest = bits > largest ? bits : largest;
     }

@@ -55,7 +55,7 @@ CollisionWorld heap(int side, Real distance) {
 TEST_CASE("figures of the collision stages", "[.benchmark]") {
     for (int side : {2, 5}) {
         CollisionWorld w = heap(side, 0.196);
-        for (std::size_t b = 0; b < w.body.slot.size(); ++b) w.body.max_speed[b] = 0.2;
+        for (std::size_t b = 0; b < w.body.slot.size(); ++b) w.body.max_speed[b] = w.body.frame_speed[b] = 0.2;
         const auto afresh = [&] {
             w.search.body_valid_until.clear();
             find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);

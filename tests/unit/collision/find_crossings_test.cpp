@@ -119,6 +119,28 @@ TEST_CASE("a pair that moves further than its list of candidates is good for sta
     s.w.find(h);
     s.move_spike({0, 0, 2000});  // away, but nobody has looked at what is there
     CHECK(s.crossings() > 0);
+    CHECK(s.w.crossings.beyond_lists);
+}
+
+TEST_CASE("lists that were too short are made for the motion of the step, whatever speeds were known before",
+          "[unit]") {
+    SpikeOverPlate s(0.03);
+    s.w.find(h);
+    s.move_spike({0, 0, 2000});
+    REQUIRE(s.crossings() > 0);
+    std::ranges::fill(s.w.body.max_speed, 0);
+    std::ranges::fill(s.w.body.frame_speed, 0);
+    s.w.find(h);
+    s.w.measure_speed();
+    CHECK(s.crossings() == 0);
+    CHECK_FALSE(s.w.crossings.beyond_lists);
+    // once: the next step begins from the list that it finds
+    s.w.pairs.valid_until[0] = -1;
+    std::ranges::fill(s.w.body.max_speed, 0);
+    std::ranges::fill(s.w.body.frame_speed, 0);
+    s.w.find(h);
+    s.w.measure_speed();
+    CHECK(s.crossings() > 0);
 }
 
 TEST_CASE("what the nodes of a body drifted before takes nothing from a list that was searched for this step",

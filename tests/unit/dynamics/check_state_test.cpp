@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "tests/support/elastic_body.h"
@@ -23,6 +24,8 @@ struct State {
     std::vector<TetrahedronNodes> elements;
     std::vector<ElementLane> element_altitude;
     std::vector<Real> block_speed = std::vector<Real>(4), body_speed = std::vector<Real>(2);
+    std::vector<Real> block_frame_speed = block_speed, body_frame_speed = body_speed;
+    std::vector<MovingFrame> frame = std::vector<MovingFrame>(2);
     bool with_elements = true;
 
     State() {
@@ -52,7 +55,9 @@ struct State {
             inputs.tetrahedron_altitude = element_altitude;
             inputs.body_blocks = element_blocks;
         }
-        return check_state(*executor, inputs, 0.01, 0.2, block_speed, body_speed);
+        inputs.body_frame = frame;
+        return check_state(*executor, inputs, 0.01, 0.2,
+                           {block_speed, block_frame_speed, body_speed, body_frame_speed});
     }
 };
 
@@ -67,6 +72,17 @@ TEST_CASE("a sound step has no fault and its speeds are written", "[unit]") {
     CHECK(state.block_speed[1] == 2.25);
     CHECK(state.body_speed[0] == 1.5);
     CHECK(state.body_speed[1] == 1.5);  // with the push-out
+}
+
+TEST_CASE("speeds in a frame are those of nodes less its own", "[unit]") {
+    State state;
+    state.next[280] = Vec3(1, 1.5, 0);
+    state.push[400] = Vec3(0.5, 0, 0);
+    state.frame[0].velocity = state.frame[1].velocity = Vec3(1, 0, 0);
+    CHECK(state.check().fault == StepFault::none);
+    CHECK(state.body_frame_speed[0] == 1.5);
+    CHECK(state.body_frame_speed[1] == 0.5);
+    CHECK(state.body_speed[0] == Approx(std::sqrt(3.25)));
 }
 
 TEST_CASE("what is not finite is found, the first body first", "[unit]") {
@@ -177,15 +193,16 @@ TEST_CASE("the verdict is the same on any number of workers", "[unit][determinis
 
 TEST_CASE("a world without bodies and a body without nodes are sound", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
-    CHECK(check_state(*executor, {}, 0.01, 0.2, {}, {}).fault == StepFault::none);
+    CHECK(check_state(*executor, {}, 0.01, 0.2, {}).fault == StepFault::none);
     const std::vector<Range> none{{0, 0}};
     const std::vector<Real> altitude{0.1};
-    std::vector<Real> speed(1, 7);
+    std::vector<Real> speed(1, 7), frame_speed(1, 7);
     CheckInputs inputs;
     inputs.body_node_blocks = none;
     inputs.body_min_altitude = altitude;
-    CHECK(check_state(*executor, inputs, 0.01, 0.2, {}, speed).fault == StepFault::none);
+    CHECK(check_state(*executor, inputs, 0.01, 0.2, {{}, {}, speed, frame_speed}).fault == StepFault::none);
     CHECK(speed[0] == 0);
+    CHECK(frame_speed[0] == 0);
 }
 
 namespace {
@@ -196,6 +213,7 @@ struct TrembleState {
     std::vector<Index> begin{0}, end, of_body{0};
     std::vector<Range> node_blocks{{0, 1}}, tetrahedron_blocks, element_blocks;
     std::vector<Real> altitude{0.01}, speed = std::vector<Real>(1), block_speed = std::vector<Real>(1);
+    std::vector<Real> frame_speed = speed, block_frame_speed = block_speed;
     std::vector<Vec3> rest;
 
     explicit TrembleState(ElementKind kind)
@@ -231,7 +249,7 @@ struct TrembleState {
         inputs.element_node = body.element_nodes.node;
         inputs.element_gradient = body.element_nodes.gradient;
         inputs.element_implicit_modulus = body.elements.implicit_modulus;
-        return check_state(*executor, inputs, 1, rate, block_speed, speed);
+        return check_state(*executor, inputs, 1, rate, {block_speed, block_frame_speed, speed, frame_speed});
     }
 };
 
