@@ -27,7 +27,7 @@ install(CODE "
 get_target_property(skerry_type skerry TYPE)
 set(SKERRY_LINK_PACKAGES "")
 if(skerry_type STREQUAL "STATIC_LIBRARY")
-    set(SKERRY_LINK_PACKAGES Threads HDF5)
+    set(SKERRY_LINK_PACKAGES Threads HDF5 ZLIB)
     if("tbb" IN_LIST SKERRY_BACKENDS)
         list(APPEND SKERRY_LINK_PACKAGES TBB)
     endif()

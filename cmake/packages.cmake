@@ -5,6 +5,7 @@ if("tbb" IN_LIST SKERRY_BACKENDS)
     find_package(TBB 2021 REQUIRED)
 endif()
 find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(ZLIB REQUIRED)
 find_package(nlohmann_json 3.9 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 # Compiled in: nothing of it is needed where the library is used.

@@ -25,7 +25,8 @@ Frame FrameCollector::collect(const World& world) {
                                 .tetrahedra = world.tetrahedra(body),
                                 .stress = world.stress(body),
                                 .strain = world.strain(body),
-                                .node_stress = world.node_stress(body)});
+                                .node_stress = world.node_stress(body),
+                                .node_strain = world.node_strain(body)});
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,
                                    .name = world.name(collider),

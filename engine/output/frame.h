@@ -21,7 +21,7 @@ struct BodyFrame {
     std::span<const std::array<Index, 3>> surface;     // boundary triangles, rows of position
     std::span<const std::array<Index, 4>> tetrahedra;  // rows of position
     std::vector<Mat3> stress, strain;                  // Cauchy's in Pa and Green's, by tetrahedron
-    std::vector<Mat3> node_stress;                     // Pa, by node
+    std::vector<Mat3> node_stress, node_strain;        // the same by node
 };
 
 struct ColliderFrame {

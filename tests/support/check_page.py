@@ -2,8 +2,9 @@
 output_sample_files.
 
 A page marks its root element: data-ready after the first picture, data-error after a failure or a blocked request. The
-script asks for several states by URL fragment, reads the marks back, and looks at the picture itself. Pictures stay in
-the folder. Ends with 77 (skipped, for CTest) when there is no Chromium.
+script asks for several states by URL fragment, reads the marks back, and looks at the picture itself; then it puts
+scripts of its own into copies of the page, which point, zoom, press keys and record, and leave marks too. Pictures stay
+in the folder. Ends with 77 (skipped, for CTest) when there is no Chromium.
 """
 import os
 import re
@@ -15,7 +16,7 @@ import sys
 import tempfile
 import zlib
 
-MAX_BYTES = 10_000_000  # of 120 frames of 5,000 surface vertices
+MAX_BYTES = 3_000_000  # of 120 frames of 5,000 surface vertices; 2.3 MB when this was written
 
 
 def chromium():
@@ -37,24 +38,26 @@ def run_once(command, seconds):
             return None
 
 
-def browse(page, fragment, picture=None, size=(1440, 900), seconds=2):
+def browse(page, fragment, picture=None, size=(1440, 900), seconds=10):
     """The page as the browser has it after that many seconds of its own time, and its picture if a name is given.
 
-    Headless Chromium hangs now and then on a machine with other work, whatever the page: it is started again, twice.
+    That time also passes while the page waits for its frames to be unpacked, and Chromium hangs if it asks for a
+    picture before there is one: it is started again, twice, with four times as many seconds.
     """
-    for _ in range(3):
+    for attempt in range(3):
         with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
             command = [chromium(), "--headless", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader",
                        "--enable-unsafe-swiftshader",
                        "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={profile}",
-                       f"--window-size={size[0]},{size[1]}", f"--virtual-time-budget={1000 * seconds}", "--dump-dom"]
+                       f"--window-size={size[0]},{size[1]}", f"--virtual-time-budget={1000 * seconds * 4 ** attempt}",
+                       "--dump-dom"]
             if picture:
                 command.append(f"--screenshot={picture}")
-            dom = run_once(command + [f"file://{page}{fragment}"], 120)
+            dom = run_once(command + [f"file://{page}{fragment}"], 60)
         if dom:
             return dom
         print(f"the browser gave no page for {fragment or 'an empty fragment'}; started again", flush=True)
-    sys.exit(f"the browser gave no page for {page}{fragment} in three attempts of 120 s")
+    sys.exit(f"the browser gave no page for {page}{fragment} in three attempts of 60 s")
 
 
 def marks(dom):
@@ -109,6 +112,141 @@ def check(folder, page, fragment, expected, picture, size=(1440, 900)):
     return path
 
 
+# What the scripts below start with. `at` is where some body is on the canvas.
+ACTING = """
+(async () => {
+  const root = document.documentElement, wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  while (!root.dataset.ready && !root.dataset.error) await wait(20);
+  const canvas = document.querySelector("#view > canvas:not(#overlay)"), box = canvas.getBoundingClientRect();
+  const tip = document.getElementById("tip"), find = (id) => document.getElementById(id);
+  const send = (Type, name, [x, y], more) => canvas.dispatchEvent(new Type(name,
+    { clientX: box.left + x, clientY: box.top + y, pointerId: 1, bubbles: true, cancelable: true, ...more }));
+  const point = (place) => send(PointerEvent, "pointermove", place, { pointerType: "mouse" });
+  const key = (name, more) =>
+    window.dispatchEvent(new KeyboardEvent("keydown", { key: name, cancelable: true, ...more }));
+  const pressed = (name) => document.querySelector("[data-switch=" + name + "]").getAttribute("aria-pressed");
+  const search = (wanted) => {
+    for (let y = 10; y < box.height; y += 6)
+      for (let x = 10; x < box.width; x += 6) {
+        point([x, y]);
+        if (!tip.hidden && wanted.test(tip.textContent)) return [x, y];
+      }
+    throw new Error("nothing under the pointer tells " + wanted);
+  };
+  const check = (holds, what) => { if (!holds) throw new Error("not so: " + what); };
+  try {
+    %s
+    root.dataset.done = "true";
+  } catch (error) { root.dataset.error = error.message; }
+})();
+"""
+
+POINTING = """
+    const at = search(/ball/), before = tip.textContent;
+    check(/speed [\\d.]+.m?m\\/s/.test(before), "a speed with its unit in " + before);
+    check(/von Mises stress [\\d.]+.[kM]?Pa/.test(before), "a stress in " + before);
+    check(/equivalent strain [\\d.e-]+.%/.test(before), "a strain in " + before);
+    check(/triangle \\d+, node \\d+/.test(before), "numbers in " + before);
+    const place = (text) => /at (\\S+), (\\S+), (\\S+) m/.exec(text).slice(1).map(Number);
+    check(pressed("follow") === "true", "the view follows at first");
+    send(WheelEvent, "wheel", at, { deltaY: -700 });
+    point(at);
+    const way = Math.hypot(...place(before).map((x, axis) => x - place(tip.textContent)[axis]));
+    check(way < 1e-3, "what is under the pointer stays there when the wheel turns, but it moved " + way + " m");
+    check(pressed("follow") === "false", "a zoom ends following");
+    key("v");
+    check(pressed("follow") === "true", "V follows again");
+    const contact = search(/Contact: /);
+    check(/force [\\d.]+.[munk\\u00b5]?N, normal .*N, friction .*N/.test(tip.textContent),
+      "a force in " + tip.textContent);
+    check(/(stick|slide|open)/.test(tip.textContent), "a motion in " + tip.textContent);
+    send(PointerEvent, "pointerleave", at, { pointerType: "mouse" });
+    check(tip.hidden, "nothing is told when the pointer has left");
+    send(PointerEvent, "pointerdown", contact, { pointerType: "touch" });
+    send(PointerEvent, "pointerup", contact, { pointerType: "touch" });
+    check(!tip.hidden, "a tap tells values");
+"""
+
+KEYS = """
+    key("?");
+    check(!find("help").hidden && /record a video/.test(find("help").textContent), "? lists the keys");
+    key("Escape");
+    check(find("help").hidden, "Escape hides them");
+    const wide = canvas.clientWidth;
+    key("h");
+    check(getComputedStyle(document.querySelector("aside")).display === "none", "H hides the panel");
+    key("h");
+    key("l");
+    check(root.classList.contains("light"), "L is light");
+    key("n");
+    check(Number(root.dataset.labels) > 2, "N shows names, not " + root.dataset.labels);
+    key("4");
+    check(root.dataset.color === "body", "4 colours by body");
+    check(document.querySelectorAll("#color_legend .bodies div").length === 8, "the legend lists all bodies");
+    key("c");
+    check(document.querySelector("#contacts [aria-checked=true]").dataset.value === "region", "C goes on");
+    const frame = () => Number(root.dataset.frame), begun = frame();
+    key("ArrowRight");
+    check(frame() === begun + 1, "an arrow steps on");
+    key("ArrowLeft", { shiftKey: true });
+    check(frame() === begun - 9, "with Shift ten back");
+    find("scrub").value = 20.5;
+    find("scrub").dispatchEvent(new Event("input"));
+    check(frame() === 20 && find("clock").textContent.startsWith("0.342 s"),
+      "half a frame is a time, not " + find("clock").textContent);
+    key("p");
+    while (!root.dataset.picture) await wait(50);
+"""
+
+RECORDING = """
+    const rate = document.querySelector("#rate select");
+    rate.value = "2";
+    rate.dispatchEvent(new Event("change"));
+    find("record").click();
+    await wait(100);
+    check(/%/.test(find("record").textContent), "progress on the button, not " + find("record").textContent);
+    while (!root.dataset.video) await wait(50);
+    check(root.dataset.pictures === "31", "31 pictures of 2 s at twice the pace, not " + root.dataset.pictures);
+    check(Number(root.dataset.video) > 10000, root.dataset.video + " bytes of video");
+    check(find("record").textContent === "Video", "the button is as before");
+"""
+
+
+def check_acting(folder, fragment, script, size=(900, 700), before=""):
+    """The marks of page.html after `script` has acted on it; `before` runs ahead of all others.
+
+    What the browser does beside the page (a PNG, a video) may take longer than its own time lasts: then there is more.
+    """
+    with open(os.path.join(folder, "page.html"), encoding="utf-8") as file:
+        text = file.read()
+    acting = os.path.join(folder, "acting.html")
+    with open(acting, "w", encoding="utf-8") as file:
+        file.write(text.replace("<head>", f"<head><script>{before}</script>", 1)
+                   .replace("</body>", f"<script>{ACTING % script if script else ''}</script></body>"))
+    for seconds in [60, 600, 6000] if script else [10]:
+        found = marks(browse(acting, fragment, size=size, seconds=seconds))
+        if "error" in found or "done" in found:
+            break
+    return found
+
+
+def check_actions(folder):
+    for fragment, script in [("#frame=60&color=stress", POINTING), ("#frame=40", KEYS), ("#frame=10", RECORDING)]:
+        found = check_acting(folder, fragment, script)
+        assert "error" not in found, f"{fragment}: {found['error']}"
+        assert found.get("done") == "true", f"{fragment}: the script did not come to its end"
+    lacking = {
+        "no DecompressionStream": "delete window.DecompressionStream;",
+        "no WebGL": "HTMLCanvasElement.prototype.getContext = ((get) => function (kind, ...more) {"
+                    "return /webgl/.test(kind) ? null : get.call(this, kind, ...more); })"
+                    "(HTMLCanvasElement.prototype.getContext);",
+    }
+    for expected, before in lacking.items():
+        found = check_acting(folder, "#frame=10", "", before=before)
+        assert found.get("error") == expected, f"expected {expected}, found {found}"
+        assert found.get("frame") == "10", f"{expected}: the plots do not work: {found}"
+
+
 def main(folder):
     folder = os.path.abspath(folder)
     page = os.path.join(folder, "page.html")
@@ -130,12 +268,14 @@ def main(folder):
     check(folder, "page.html", "#frame=70", ready, "narrow.png", (520, 1100))
     # In a small window, whose pictures cost little: on a machine with other work the browser's own time passes between
     # few of them.
-    for seconds in [2, 8, 32]:
+    for seconds in [10, 40]:
         playing = marks(browse(page, "#play=1&frame=0&rate=1", size=(400, 300), seconds=seconds))
         if "error" in playing or int(playing["frame"]) > 0:
             break
     assert "error" not in playing and int(playing["frame"]) > 0, f"playing did not move on: {playing}"
     check(folder, "empty.html", "", {"ready": "true", "frames": "0"}, "empty.png")
+
+    check_actions(folder)
 
     for path in [first, later]:
         count, commonest = colors_in_view(path)

@@ -26,9 +26,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Collects frames and writes one self-contained HTML page that plays the run: bodies coloured by speed or stress,
-/// contacts by stick or slide, play, scrub and orbit, stage times and energies as plots. Works offline; three.js is
-/// inlined.
+/// Collects frames and writes one self-contained HTML page that plays the run: bodies coloured by speed, stress or
+/// strain, contacts by stick or slide, values under the pointer, pictures and videos, stage times and energies as
+/// plots. Works offline; three.js is inlined. Keeps the frames compressed in memory, as they are in the page: places to
+/// 1/32768 of a body's extent, values to 11 bits of their root (docs/decisions/0016-page-stream.md).
 class PageWriter {
 public:
     PageWriter(const std::filesystem::path& file, const std::string& title);

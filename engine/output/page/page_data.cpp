@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "components/check.h"
-#include "engine/output/page/pack.h"
+#include "engine/output/page/stream/pack.h"
 #include "engine/output/shape_picture.h"
 #include "systems/dynamics/elements/element_energy.h"
 
@@ -14,67 +14,50 @@ namespace {
 constexpr const char* kind_names[] = {"plane", "sphere", "box", "capsule", "cylinder", "bucket", "mesh"};
 static_assert(std::size(kind_names) == std::variant_size_v<Shape>);
 
-/// The nodes of a surface and its triangles between them, in the order of the nodes.
-PageBody surface_of(const BodyFrame& body) {
-    PageBody page{.name = body.name, .node = {}, .triangles = {}};
-    std::vector<Index> vertex(body.position.size(), no_index);
-    for (const auto& triangle : body.surface)
-        for (const Index node : triangle) vertex[static_cast<std::size_t>(node)] = 0;
-    for (std::size_t node = 0; node < vertex.size(); ++node)
-        if (vertex[node] != no_index) {
-            vertex[node] = static_cast<Index>(page.node.size());
-            page.node.push_back(static_cast<Index>(node));
-        }
-    const auto vertex_of = [&](Index node) { return vertex[static_cast<std::size_t>(node)]; };
-    page.triangles.reserve(body.surface.size());
-    for (const auto& [a, b, c] : body.surface) page.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
-    return page;
-}
-
-/// Values as fractions of the largest: the largest goes to `top`, the codes to `codes`.
-void put_fractions(std::span<const Real> values, std::string& codes, float& top) {
-    Real largest = 0;
-    for (const Real value : values)
-        if (std::isfinite(value)) largest = std::max(largest, value);
-    top = static_cast<float>(largest);
-    for (const Real value : values) put(codes, code_of<std::uint8_t>(value, largest));
-    fill_up(codes);
+/// What field `field` of page_field_count is at a node.
+Real value_at(const BodyFrame& body, std::size_t field, std::size_t node) {
+    if (field == 0) return body.velocity[node].norm();
+    if (field == stress_field) return von_mises(body.node_stress[node]);
+    return von_mises(body.node_strain[node]) * 2 / 3;  // the factor that makes it the strain along a bar in tension
 }
 
 }  // namespace
 
-std::size_t PageData::body_number(const BodyFrame& body) {
-    const auto [place, is_new] = body_numbers_.try_emplace(body.handle, bodies_.size());
-    if (is_new) bodies_.push_back(surface_of(body));
-    return place->second;
-}
-
 std::size_t PageData::collider_number(const ColliderFrame& collider) {
-    const auto [place, is_new] = collider_numbers_.try_emplace(collider.handle, colliders_.size());
+    const auto [place, is_new] = collider_numbers_.try_emplace(collider.handle, static_cast<Index>(colliders_.size()));
     if (is_new) {
         const bool is_plane = std::holds_alternative<Plane>(*collider.shape);
         colliders_.push_back({.name = collider.name,
                               .kind = kind_names[collider.shape->index()],
                               .picture = is_plane ? SurfaceMesh{} : shape_picture(*collider.shape, {})});
     }
-    return place->second;
+    return static_cast<std::size_t>(place->second);
 }
 
 void PageData::add(const Frame& frame) {
-    if (frames_.empty()) gravity_ = frame.gravity;
+    if (rows_.empty()) gravity_ = frame.gravity;
+    values_.resize(frame.bodies.size());
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) measure_body(frame.bodies[i], i);
+    for (const Contact& contact : frame.contacts) {
+        const Real force = frame.force(contact).norm();
+        force_.add(force);
+        force_scale_.widen(force);
+    }
+
     std::string out;
-    if (!frames_.empty()) out.reserve(frames_.back().size() + frames_.back().size() / 8);
-    put(out, static_cast<std::uint32_t>(frame.bodies.size()));
-    put(out, static_cast<std::uint32_t>(frame.colliders.size()));
-    put(out, static_cast<std::uint32_t>(frame.contacts.size()));
-    for (const BodyFrame& body : frame.bodies) pack_body(body, out);
+    put_count(out, frame.bodies.size());
+    put_count(out, frame.colliders.size());
+    put_count(out, frame.contacts.size());
+    for (const ValueScale& scale : field_scale_) put_change(out, scale.exponent());
+    put_change(out, force_scale_.exponent());
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) pack_body(frame.bodies[i], i, out);
     for (const ColliderFrame& collider : frame.colliders) {
-        put(out, static_cast<std::uint32_t>(collider_number(collider)));
+        put_count(out, collider_number(collider));
         put_floats(out, collider.pose.position);
         put_floats(out, collider.pose.rotation);
     }
     pack_contacts(frame, out);
-    frames_.push_back(std::move(out));
+    frames_.add(out);
 
     const auto count = [&](ContactMotion motion) {
         return static_cast<Index>(std::ranges::count(frame.contacts, motion, &Contact::motion));
@@ -87,53 +70,49 @@ void PageData::add(const Frame& frame) {
                      .regions = count_regions(frame.contacts)});
 }
 
-void PageData::pack_body(const BodyFrame& body, std::string& out) {
-    SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size());
-    const std::size_t number = body_number(body);
-    const std::vector<Index>& node = bodies_[number].node;
+/// Scales have to be wide enough for all bodies of a frame before the first of them is packed.
+void PageData::measure_body(const BodyFrame& body, std::size_t place) {
+    SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size() &&
+                 body.node_strain.size() == body.position.size());
+    BodyValues& values = values_[place];
+    const auto [known, is_new] = body_numbers_.try_emplace(body.handle, static_cast<Index>(bodies_.size()));
+    values.number = known->second;
+    values.is_new = is_new;
+    if (is_new) {
+        bodies_.emplace_back(body);
+        body_names_.push_back(body.name);
+    }
+    for (std::size_t field = 0; field < page_field_count; ++field) {
+        values.field[field].clear();
+        for (const Index node : bodies_[static_cast<std::size_t>(values.number)].node()) {
+            const Real value = value_at(body, field, static_cast<std::size_t>(node));
+            values.field[field].push_back(value);
+            fields_[field].add(value);
+            field_scale_[field].widen(value);
+        }
+    }
+}
 
-    std::string codes;
-    float top_speed = 0, top_stress = 0;
-    values_.clear();
-    for (const Index n : node) speed_.add(values_.emplace_back(body.velocity[static_cast<std::size_t>(n)].norm()));
-    put_fractions(values_, codes, top_speed);
-    values_.clear();
-    for (const Index n : node)
-        stress_.add(values_.emplace_back(von_mises(body.node_stress[static_cast<std::size_t>(n)])));
-    put_fractions(values_, codes, top_stress);
-    points_.clear();
-    for (const Index n : node) points_.push_back(body.position[static_cast<std::size_t>(n)]);
-
-    put(out, static_cast<std::uint32_t>(number));
-    put(out, top_speed);
-    put(out, top_stress);
-    put_points(out, points_);
-    out += codes;
+void PageData::pack_body(const BodyFrame& body, std::size_t place, std::string& out) {
+    const BodyValues& values = values_[place];
+    BodyStream& stream = bodies_[static_cast<std::size_t>(values.number)];
+    put_count(out, static_cast<std::uint64_t>(values.number));
+    if (values.is_new) stream.put_shape(out);
+    stream.put_positions(body, out);
+    stream.put_values(values.field, field_scale_, out);
 }
 
 void PageData::pack_contacts(const Frame& frame, std::string& out) {
-    points_.clear();
-    Real largest = 0;  // N, of a component
-    for (const Contact& contact : frame.contacts) {
-        points_.push_back(contact.point);
-        const Vec3 force = frame.force(contact);
-        force_.add(force.norm());
-        if (force.allFinite()) largest = std::max(largest, force.cwiseAbs().maxCoeff());
-    }
-    constexpr Real last = 32767;
-    const Real unit = largest > 0 ? largest / last : 1;
-    put(out, static_cast<float>(unit));
-    put_points(out, points_);
-    for (const Contact& contact : frame.contacts) {
-        const Vec3 force = frame.force(contact);
-        for (int axis = 0; axis < 3; ++axis)
-            put(out, force.allFinite() ? static_cast<std::int16_t>(std::lround(force[axis] / unit)) : std::int16_t{0});
-    }
-    fill_up(out);
-    for (const Contact& contact : frame.contacts) put(out, static_cast<std::uint16_t>(contact.region));
-    fill_up(out);
-    for (const Contact& contact : frame.contacts) put(out, static_cast<std::uint8_t>(contact.motion));
-    fill_up(out);
+    const auto number_in = [](const auto& numbers, auto handle) {
+        const auto place = numbers.find(handle);
+        return place == numbers.end() ? no_index : place->second;
+    };
+    sides_.clear();
+    for (const Contact& contact : frame.contacts)
+        sides_.push_back({.first = number_in(body_numbers_, contact.first),
+                          .second = number_in(body_numbers_, contact.second),
+                          .collider = number_in(collider_numbers_, contact.collider)});
+    contacts_.put_frame(frame, sides_, bodies_, force_scale_, out);
 }
 
 }  // namespace skerry

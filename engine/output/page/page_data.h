@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -10,15 +9,11 @@
 
 #include "engine/output/frame.h"
 #include "engine/output/page/quantile.h"
+#include "engine/output/page/stream/body_stream.h"
+#include "engine/output/page/stream/contact_stream.h"
+#include "engine/output/page/stream/deflate.h"
 
 namespace skerry {
-
-/// The surface of a body, the same in all frames.
-struct PageBody {
-    std::string name;
-    std::vector<Index> node;                      // of the body, by vertex of its surface
-    std::vector<std::array<Index, 3>> triangles;  // rows of node
-};
 
 /// A collider as first seen. Planes have no triangles: the page draws them as far as it sees.
 struct PageCollider {
@@ -34,46 +29,56 @@ struct PageRow {
     Index contacts, stick, slide, regions;
 };
 
-/// Packs frames as they come. A packed frame is little-endian, each block filled up to 4 bytes:
-///   u32 bodies, colliders, contacts
-///   per body: u32 number; f32 top speed (m/s), top stress (Pa); f32 lower[3], extent[3] (m); u16 position[3 n] within
-///   that box; u8 speed[n];
-///     u8 stress[n], as fractions of the tops. Boxes and tops by body and frame, so a body far away or one peak costs
-///     the others nothing.
-///   per collider: u32 number; f32 position[3] (m), rotation[3] (axis times angle)
-///   contacts: f32 unit of force (N), lower[3], extent[3] (m); u16 point[3 m]; i16 force[3 m]; u16 region[m] (modulo
-///   65536, for
-///     colours; 65535 none); u8 state[m] (0 open, 1 stick, 2 slide)
+/// Packs frames as they come into one stream, compressed as a whole (docs/decisions/0016-page-stream.md). Counts and
+/// changes as in pack.h, the rest little-endian. A frame is
+///   counts of bodies, colliders, contacts
+///   changes: exponents of four of the tops of speed, stress, strain and force (ValueScale), each from zero
+///   per body: count: its number; if it is new its shape, then positions, then values of each field (BodyStream)
+///   per collider: count: its number; f32 position[3] (m), rotation[3] (axis times angle)
+///   contacts (ContactStream)
 class PageData {
 public:
     void add(const Frame& frame);
 
-    std::span<const PageBody> bodies() const { return bodies_; }
+    std::span<const std::string> body_names() const { return body_names_; }
+    std::span<const BodyStream> bodies() const { return bodies_; }
     std::span<const PageCollider> colliders() const { return colliders_; }
     std::span<const PageRow> rows() const { return rows_; }
-    std::span<const std::string> frames() const { return frames_; }
-    const Quantile& speed() const { return speed_; }
-    const Quantile& stress() const { return stress_; }
+    /// All frames, compressed.
+    std::string packed_frames() const { return frames_.packed(); }
+    /// By field, in the order of page_field_count.
+    std::span<const Quantile> fields() const { return fields_; }
     const Quantile& force() const { return force_; }
     const Vec3& gravity() const { return gravity_; }
 
 private:
-    std::size_t body_number(const BodyFrame& body);
     std::size_t collider_number(const ColliderFrame& collider);
-    void pack_body(const BodyFrame& body, std::string& out);
+    void measure_body(const BodyFrame& body, std::size_t place);
+    void pack_body(const BodyFrame& body, std::size_t place, std::string& out);
     void pack_contacts(const Frame& frame, std::string& out);
 
-    std::map<BodyHandle, std::size_t> body_numbers_;
-    std::map<ColliderHandle, std::size_t> collider_numbers_;
-    std::vector<PageBody> bodies_;
+    std::map<BodyHandle, Index> body_numbers_;
+    std::map<ColliderHandle, Index> collider_numbers_;
+    std::vector<std::string> body_names_;
+    std::vector<BodyStream> bodies_;
     std::vector<PageCollider> colliders_;
+    ContactStream contacts_;
     std::vector<PageRow> rows_;
-    std::vector<std::string> frames_;
-    Quantile speed_, stress_, force_;
+    Deflater frames_;
+    std::array<Quantile, page_field_count> fields_;
+    Quantile force_;
+    std::array<ValueScale, page_field_count> field_scale_;
+    ValueScale force_scale_;
     Vec3 gravity_ = Vec3::Zero();  // m/s^2, of the first frame
-    // Scratch, kept for its memory.
-    std::vector<Vec3> points_;
-    std::vector<Real> values_;
+    // Scratch, kept for its memory: what the bodies of the frame have at their vertices, by body and field; which of
+    // them are new.
+    struct BodyValues {
+        Index number = 0;
+        bool is_new = false;
+        std::array<std::vector<Real>, page_field_count> field;
+    };
+    std::vector<BodyValues> values_;
+    std::vector<ContactSides> sides_;
 };
 
 }  // namespace skerry

@@ -7,9 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "engine/output/page/pack.h"
 #include "engine/output/page/page_document.h"
+#include "engine/output/page/stream/pack.h"
 #include "output_sample.h"
+#include "page_stream_reader.h"
 #include "skerry/error.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "tests/support/temporary_folder.h"
@@ -20,27 +21,6 @@ using namespace skerry;
 
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN(), infinity = std::numeric_limits<Real>::infinity();
 
-/// Takes values off the front of a packed frame.
-struct Reader {
-    const std::string& bytes;
-    std::size_t at = 0;
-
-    template <class T>
-    T take() {
-        T value;
-        REQUIRE(at + sizeof value <= bytes.size());
-        std::memcpy(&value, bytes.data() + at, sizeof value);
-        at += sizeof value;
-        return value;
-    }
-    Vec3 take_floats() {
-        Vec3 v;
-        for (int axis = 0; axis < 3; ++axis) v[axis] = take<float>();
-        return v;
-    }
-    void fill_up() { at = (at + 3) / 4 * 4; }
-};
-
 std::string page_of(const PageData& data, const PageSummary& summary) {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "page.html";
@@ -49,10 +29,20 @@ std::string page_of(const PageData& data, const PageSummary& summary) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-nlohmann::json run_of(const std::string& page) {
-    const std::string opening = "<script type=\"application/json\" id=\"run\">";
+/// The text of the script element with that id.
+std::string text_of(const std::string& page, const std::string& id) {
+    const std::string opening = "id=\"" + id + "\">";
     const std::size_t begin = page.find(opening) + opening.size();
-    return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    return page.substr(begin, page.find("</script>", begin) - begin);
+}
+
+nlohmann::json run_of(const std::string& page) {
+    return nlohmann::json::parse(text_of(page, "run"));
+}
+
+/// Half a code of a scale that ends at `top`, at `value`.
+Real half_code(Real value, Real top) {
+    return std::sqrt(std::abs(value) * top) / 2047 + top / (4 * 2047.0 * 2047);
 }
 
 std::size_t count_of(const std::string& text, const std::string& part) {
@@ -72,31 +62,72 @@ TEST_CASE("base64 gives the test vectors of RFC 4648", "[unit][output]") {
     CHECK(base64("\xff\xfe\xfd") == "//79");
 }
 
-TEST_CASE("codes round to the nearest and stay in range whatever comes", "[unit][output]") {
-    CHECK(code_of<std::uint8_t>(0, 2) == 0);
-    CHECK(code_of<std::uint8_t>(2, 2) == 255);
-    CHECK(code_of<std::uint8_t>(1, 2) == 128);
-    CHECK(code_of<std::uint8_t>(3, 2) == 255);
-    CHECK(code_of<std::uint8_t>(-1, 2) == 0);
-    CHECK(code_of<std::uint8_t>(not_a_number, 2) == 0);
-    CHECK(code_of<std::uint8_t>(infinity, 2) == 255);
-    CHECK(code_of<std::uint16_t>(1, 0) == 0);
+TEST_CASE("counts and changes take a byte where they are small", "[unit][output]") {
+    std::string bytes;
+    put_count(bytes, 127);
+    put_count(bytes, 128);
+    put_change(bytes, -1);
+    put_change(bytes, 64);
+    CHECK(bytes == std::string("\x7f\x80\x01\x01\x80\x01", 6));
+    CHECK(zigzag(0) == 0);
+    CHECK(zigzag(-3) == 5);
+    CHECK(zigzag(std::numeric_limits<std::int64_t>::min()) == ~std::uint64_t{0});
 }
 
-TEST_CASE("packed points come back within half a code, and a point that is not finite harms no other",
-          "[unit][output]") {
+TEST_CASE("a value comes back within half a code, whatever its size and sign", "[unit][output]") {
+    ValueScale scale;
+    for (const Real widest : {1e-3, 1.0, 70.0, 1e9}) {
+        scale.widen(widest);
+        CHECK(scale.top() >= widest);
+        CHECK(scale.top() < 4 * widest);
+        for (Real value = widest; value > 1e-9 * widest; value /= 3)
+            for (const Real signed_value : {value, -value})
+                CHECK(std::abs(scale.value(scale.code(signed_value)) - signed_value) <=
+                      1.000001 * half_code(value, scale.top()));
+    }
+    CHECK(scale.code(0) == 0);
+    CHECK(scale.code(not_a_number) == 0);
+    CHECK(scale.code(infinity) == ValueScale::last);
+    scale.widen(infinity);
+    scale.widen(not_a_number);
+    CHECK(scale.top() < 4e9);
+    scale.widen(std::numeric_limits<Real>::max());
+    CHECK(std::isfinite(scale.top()));
+}
+
+TEST_CASE("a wider scale halves codes by each factor of four", "[unit][output]") {
+    ValueScale scale;
+    scale.widen(1);
+    const int exponent = scale.exponent(), code = scale.code(0.25);
+    scale.widen(16);
+    CHECK(scale.exponent() == exponent + 2);
+    CHECK(std::abs(shifted(code, exponent, scale.exponent()) - scale.code(0.25)) <= 1);
+    CHECK(shifted(code, -255, 511) == 0);
+}
+
+TEST_CASE("points on a lattice are right to half a step, and what is not finite stays where it was", "[unit][output]") {
     const std::vector<Vec3> points{{-1, 5, 3}, {2, 5, not_a_number}, {0.123, 5, -4}, {infinity, 0, 0}};
-    std::string bytes;
-    put_points(bytes, points);
-    CHECK(bytes.size() % 4 == 0);
-    Reader reader{bytes};
-    const Vec3 lower = reader.take_floats(), extent = reader.take_floats();
-    for (const Vec3& point : points)
-        for (int axis = 0; axis < 3; ++axis) {
-            const Real back = lower[axis] + extent[axis] * reader.take<std::uint16_t>() / 65535;
-            // Half a code, and the rounding of the box to float.
-            if (point.allFinite()) CHECK(std::abs(back - point[axis]) <= extent[axis] / 131070 + 1e-6);
-        }
+    const Lattice lattice = Lattice::around(points);
+    CHECK(lattice.origin == Vec3(-1, 5, -4));
+    CHECK(lattice.step == 7.0 / Lattice::steps);
+    for (const Vec3& point : {Vec3(0.5, 5.001, -3.99), Vec3(-1e6, 1e7, 3e5)})
+        CHECK((lattice.point(lattice.code(point, {})) - point).cwiseAbs().maxCoeff() <= lattice.step / 2 * 1.000001);
+    CHECK(lattice.code({not_a_number, infinity, 1e300}, {7, 8, 9}) == Code3{7, 8, 9});
+    CHECK(Lattice::around(std::vector<Vec3>{{1, 1, 1}}).step > 0);
+}
+
+TEST_CASE("a stream comes back whole at any time, and goes on", "[unit][output]") {
+    Deflater deflater;
+    std::string all;
+    CHECK(inflate_all(deflater.packed()).empty());
+    for (int i = 0; i < 40; ++i) {
+        std::string part;
+        for (int k = 0; k < 5000; ++k) put(part, static_cast<std::uint32_t>(k * k * i) * 2654435761u);
+        deflater.add(part);
+        all += part;
+        if (i % 13 == 0) CHECK(inflate_all(deflater.packed()) == all);
+    }
+    CHECK(inflate_all(deflater.packed()) == all);
 }
 
 TEST_CASE("a quantile is right to its two percent and ignores what a legend cannot show", "[unit][output]") {
@@ -111,58 +142,129 @@ TEST_CASE("a quantile is right to its two percent and ignores what a legend cann
     CHECK(quantile.at(1) == 1e9);
 }
 
-TEST_CASE("a packed frame gives back the bodies that it has, their places, speeds and stresses", "[unit][output]") {
+TEST_CASE("packed frames give back places to half a step and values to half a code", "[unit][output]") {
     OutputSample sample(3, 1, 30);
     PageData data;
-    data.add(sample.frame(0));
-    const Frame& frame = sample.frame(0);
-    REQUIRE(data.frames().size() == 1);
-    Reader reader{data.frames()[0]};
-    REQUIRE(reader.take<std::uint32_t>() == 2);  // ball 1 comes later
-    CHECK(reader.take<std::uint32_t>() == 5);
-    CHECK(reader.take<std::uint32_t>() == frame.contacts.size());
-    for (std::uint32_t number = 0; number < 2; ++number) {
-        const BodyFrame& body = frame.bodies[number];
-        const std::vector<Index>& node = data.bodies()[number].node;
-        CHECK(node.size() == body.position.size() - 1);  // all but the one inside
-        CHECK(reader.take<std::uint32_t>() == number);
-        const Real top_speed = reader.take<float>(), top_stress = reader.take<float>();
-        const Vec3 lower = reader.take_floats(), extent = reader.take_floats();
-        for (const Index n : node)
-            for (int axis = 0; axis < 3; ++axis) {
-                const Real back = lower[axis] + extent[axis] * reader.take<std::uint16_t>() / 65535;
-                // 0.2 m / 131070, and float
-                CHECK(back == Approx(body.position[static_cast<std::size_t>(n)][axis]).margin(1e-5));
+    for (int i = 0; i < 30; ++i) data.add(sample.frame(i));
+    const ReadRun run = read_run(data.packed_frames());
+    REQUIRE(run.frames.size() == 30);
+    REQUIRE(run.shapes.size() == 3);
+    for (int i = 0; i < 30; ++i) {
+        const Frame& frame = sample.frame(i);
+        const ReadFrame& read = run.frames[static_cast<std::size_t>(i)];
+        REQUIRE(read.bodies.size() == frame.bodies.size());
+        CHECK(read.colliders == std::vector<std::size_t>{0, 1, 2, 3, 4});
+        for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
+            const BodyFrame& body = frame.bodies[b];
+            const ReadShape& shape = run.shapes[read.bodies[b].number];
+            REQUIRE(shape.node.size() == body.position.size() - 1);  // all but the one inside
+            REQUIRE(shape.triangles.size() == body.surface.size());
+            CHECK(shape.step < 0.3 / Lattice::steps);  // balls of 0.2 m, wider by a wobble
+            Real farthest = 0;
+            std::array<Real, 3> worst{};  // in half codes
+            for (std::size_t vertex = 0; vertex < shape.node.size(); ++vertex) {
+                const auto node = static_cast<std::size_t>(shape.node[vertex]);
+                farthest =
+                    std::max(farthest, (read.bodies[b].position[vertex] - body.position[node]).cwiseAbs().maxCoeff());
+                const std::array<Real, 3> value{body.velocity[node].norm(), von_mises(body.node_stress[node]),
+                                                von_mises(body.node_strain[node]) * 2 / 3};
+                for (std::size_t f = 0; f < 3; ++f)
+                    worst[f] = std::max(worst[f], std::abs(read.bodies[b].value[f][vertex] - value[f]) /
+                                                      half_code(value[f], read.top[f]));
             }
-        reader.fill_up();
-        for (const Index n : node)
-            CHECK(top_speed * reader.take<std::uint8_t>() / 255 ==
-                  Approx(body.velocity[static_cast<std::size_t>(n)].norm()).margin(top_speed / 500));
-        reader.fill_up();
-        Real largest = 0;
-        for (std::size_t i = 0; i < node.size(); ++i)
-            largest = std::max<Real>(largest, top_stress * reader.take<std::uint8_t>() / 255);
-        reader.fill_up();
-        CHECK(largest == Approx(top_stress));
-        Real most = 0;
-        for (const Mat3& stress : body.stress) most = std::max(most, von_mises(stress));
-        CHECK(top_stress <= most * (1 + 1e-6));
+            CHECK(farthest <= shape.step / 2 * 1.000001);
+            for (const Real halves : worst) CHECK(halves <= 1.001);  // the code is within a half, the root rounds
+            for (std::size_t t = 0; t < body.surface.size(); ++t)
+                for (std::size_t k = 0; k < 3; ++k)
+                    CHECK(shape.node[static_cast<std::size_t>(shape.triangles[t][k])] == body.surface[t][k]);
+        }
     }
+}
+
+TEST_CASE("packed contacts give back what touches, where, how strongly, and which row they had before",
+          "[unit][output]") {
+    OutputSample sample(3, 2, 60);
+    PageData data;
+    for (int i = 0; i < 60; ++i) data.add(sample.frame(i));
+    const ReadRun run = read_run(data.packed_frames());
+    std::size_t seen = 0, found_again = 0;
+    std::vector<Contact> last;
+    for (int i = 0; i < 60; ++i) {
+        const Frame& frame = sample.frame(i);
+        const ReadFrame& read = run.frames[static_cast<std::size_t>(i)];
+        REQUIRE(read.contacts.size() == frame.contacts.size());
+        for (std::size_t c = 0; c < frame.contacts.size(); ++c) {
+            const Contact& contact = frame.contacts[c];
+            const ReadContact& row = read.contacts[c];
+            ++seen;
+            REQUIRE(row.first >= 0);
+            CHECK(row.second == -1);
+            CHECK(row.collider == 0);
+            CHECK((row.point - contact.point).cwiseAbs().maxCoeff() <=
+                  run.shapes[static_cast<std::size_t>(row.first)].step / 2 * 1.000001);
+            const Vec3 force = frame.force(contact);
+            for (Index axis = 0; axis < 3; ++axis)
+                CHECK(std::abs(row.force[axis] - force[axis]) <= 1.001 * half_code(force[axis], read.top[3]));
+            CHECK(std::abs(row.normal_force - force.z()) <= 1.001 * half_code(force.z(), read.top[3]));
+            CHECK(row.state == static_cast<int>(contact.motion));
+            CHECK(row.region == contact.region);
+            if (row.row_prev >= 0) {
+                ++found_again;
+                const Contact& prev = last.at(static_cast<std::size_t>(row.row_prev));
+                CHECK(prev.first == contact.first);
+                CHECK(prev.node == contact.node);
+            }
+        }
+        last.assign(frame.contacts.begin(), frame.contacts.end());
+    }
+    CHECK(seen > 100);
+    CHECK(found_again > seen / 2);
+}
+
+TEST_CASE("a node that is not finite, or infinitely far, harms no other", "[unit][output]") {
+    OutputSample sample(1, 1, 6);
+    PageData data;
+    std::vector<Vec3> position;
+    for (int i = 0; i < 3; ++i) {
+        Frame frame = sample.frame(i);
+        position.assign(frame.bodies[0].position.begin(), frame.bodies[0].position.end());
+        if (i > 0) position[3] = {not_a_number, infinity, 1e300};
+        frame.bodies[0].position = position;
+        data.add(frame);
+    }
+    const ReadRun run = read_run(data.packed_frames());
+    const ReadBody& body = run.frames[2].bodies[0];
+    for (std::size_t vertex = 0; vertex < body.position.size(); ++vertex) {
+        const auto node = static_cast<std::size_t>(run.shapes[0].node[vertex]);
+        CHECK(body.position[vertex].allFinite());
+        if (node != 3) CHECK((body.position[vertex] - position[node]).norm() < run.shapes[0].step);
+    }
+}
+
+TEST_CASE("frames in which nothing changes cost next to nothing", "[unit][output]") {
+    OutputSample sample(1, 3, 120);
+    PageData data;
+    data.add(sample.frame(30));
+    const std::size_t first = data.packed_frames().size();
+    for (int i = 0; i < 100; ++i) data.add(sample.frame(30));
+    CHECK(data.packed_frames().size() < 2 * first);
 }
 
 TEST_CASE("bodies that come and go keep their number and are listed once", "[unit][output]") {
     OutputSample sample(3, 0, 30);
     PageData data;
-    std::vector<std::uint32_t> bodies;
-    for (int i = 0; i < 30; ++i) {
-        data.add(sample.frame(i));
-        bodies.push_back(Reader{data.frames().back()}.take<std::uint32_t>());
-    }
+    for (int i = 0; i < 30; ++i) data.add(sample.frame(i));
+    const ReadRun run = read_run(data.packed_frames());
+    const auto numbers = [&](std::size_t frame) {
+        std::vector<std::size_t> list;
+        for (const ReadBody& body : run.frames[frame].bodies) list.push_back(body.number);
+        return list;
+    };
+    CHECK(numbers(0) == std::vector<std::size_t>{0, 1});
+    CHECK(numbers(15) == std::vector<std::size_t>{0, 2, 1});
+    CHECK(numbers(29) == std::vector<std::size_t>{2, 1});
     CHECK(data.bodies().size() == 3);
-    CHECK(bodies[0] == 2);
-    CHECK(bodies[15] == 3);
-    CHECK(bodies[29] == 2);
-    CHECK(data.bodies()[2].name == "\"quotes\" & <b>, \xff no UTF-8");
+    CHECK(data.body_names()[2] == "\"quotes\" & <b>, \xff no UTF-8");
 }
 
 TEST_CASE("names cannot end the script that they stand in, and come back as they were", "[unit][output]") {
@@ -170,13 +272,14 @@ TEST_CASE("names cannot end the script that they stand in, and come back as they
     PageData data;
     for (int i = 0; i < 6; ++i) data.add(sample.frame(i));
     const std::string page = page_of(data, sample.summary());
-    // Title, run, frames, three.js and player; nothing else opens or ends a script.
-    CHECK(count_of(page, "</script>") == 3 + 6);
+    // Run, frames, three.js and player; nothing else opens or ends a script.
+    CHECK(count_of(page, "</script>") == 4);
+    CHECK(text_of(page, "frames") == base64(data.packed_frames()));
     CHECK(page.find("<title>Balls into a bucket &lt;/title&gt; &amp; &quot;quotes&quot;</title>") != std::string::npos);
     const nlohmann::json run = run_of(page);
     CHECK(run["title"] == sample.summary().title);
-    CHECK(run["bodies"][0]["name"] == "</script><script>document.documentElement.dataset.error='escaped'</script>");
-    CHECK(run["bodies"][2]["name"] == "\"quotes\" & <b>, \xef\xbf\xbd no UTF-8");
+    CHECK(run["bodies"][0] == "</script><script>document.documentElement.dataset.error='escaped'</script>");
+    CHECK(run["bodies"][2] == "\"quotes\" & <b>, \xef\xbf\xbd no UTF-8");
     CHECK(run["report"]["state_hash"] == "0123456789abcdef");
     CHECK(run["rows"]["time"].size() == 6);
     CHECK(run["report"]["stages"].size() == 9);

@@ -156,13 +156,16 @@ const Frame& OutputSample::frame(int number) {
                                  .tetrahedra = tetrahedra_,
                                  .stress = {},
                                  .strain = {},
-                                 .node_stress = {}});
+                                 .node_stress = {},
+                                 .node_strain = {}});
         place_ball(ball, time);
         BodyFrame& body = frame_.bodies.back();
         body.stress = b.stress;
         body.strain = b.strain;
         body.node_stress =
             means_of_nodes(tetrahedra_, std::vector<Real>(tetrahedra_.size(), 1), b.stress, b.position.size());
+        body.node_strain =
+            means_of_nodes(tetrahedra_, std::vector<Real>(tetrahedra_.size(), 1), b.strain, b.position.size());
     }
     frame_.contacts = contacts_;
     const std::array<MotionKey, 5> pose{{{},

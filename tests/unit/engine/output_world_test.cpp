@@ -5,6 +5,8 @@
 #include <iterator>
 
 #include "engine/output/collect_frame.h"
+#include "engine/output/page/page_data.h"
+#include "page_stream_reader.h"
 #include "skerry/output.h"
 #include "skerry/world.h"
 #include "tests/support/temporary_folder.h"
@@ -48,6 +50,7 @@ TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world
     CHECK(frame.bodies[0].stress == world.stress(box));
     CHECK(frame.bodies[0].strain == world.strain(box));
     CHECK(frame.bodies[0].node_stress == world.node_stress(box));
+    CHECK(frame.bodies[0].node_strain == world.node_strain(box));
     REQUIRE(frame.colliders.size() == 2);
     CHECK(frame.colliders[1].name == "bucket");
     CHECK(frame.colliders[1].pose.position.z() == Approx(-0.5 - world.time()));
@@ -86,6 +89,38 @@ TEST_CASE("a world that bodies join and leave is written as a series and as a pa
         CHECK(fs::exists(folder / "series" / file));
     std::ifstream in(folder / "run.html");
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    CHECK(text.find("{\"name\":\"box\",\"vertices\":26,") != std::string::npos);
-    CHECK(text.find("{\"name\":\"ball\",") != std::string::npos);
+    CHECK(text.find("\"bodies\":[\"box\",\"ball\"]") != std::string::npos);
+}
+
+TEST_CASE("contacts of the page name both bodies, or the collider, and carry what lies on them", "[unit][output]") {
+    BodyHandle lower;
+    World world = box_on_floor(lower);
+    world.add_body(mesh::box({0.08, 0.08, 0.08}, {2, 2, 2}),
+                   {.material = world.add_material({.young_modulus = 1e5, .density = 1000, .damping = 20}),
+                    .position = {0, 0, 0.144},
+                    .name = "upper"});
+    FrameCollector collector;
+    PageData data;
+    REQUIRE(world.advance(1).ok());
+    data.add(collector.collect(world));
+    REQUIRE(world.advance(0.01).ok());
+    data.add(collector.collect(world));
+    const ReadRun run = read_run(data.packed_frames());
+    Real on_floor = 0, between = 0;
+    int found_again = 0;
+    for (const ReadContact& contact : run.frames[1].contacts) {
+        found_again += contact.row_prev >= 0;
+        if (contact.collider >= 0) {
+            CHECK(contact.collider == 0);
+            CHECK(contact.second == -1);
+            on_floor += contact.normal_force;
+        } else {
+            CHECK(contact.first + contact.second == 1);
+            between += contact.normal_force;
+        }
+    }
+    const Real weight = 9.81 * 1000, lower_volume = 0.1 * 0.1 * 0.1, upper_volume = 0.08 * 0.08 * 0.08;
+    CHECK(on_floor == Approx(weight * (lower_volume + upper_volume)).epsilon(0.1));
+    CHECK(between == Approx(weight * upper_volume).epsilon(0.1));
+    CHECK(found_again > 0);
 }

@@ -1,54 +1,67 @@
 // Puts the page together: state, controls, and the loop that plays.
 "use strict";
 
-(() => {
+(async () => {
   const find = (id) => document.getElementById(id);
   const root = document.documentElement;
 
   function notice(message) {
     find("notice").textContent = message;
-    find("notice").hidden = false;
+    find("notice").hidden = !message;
   }
   // A check of the page reads these marks: data-ready after the first picture, data-error after a failure.
-  window.addEventListener("error", (event) => {
-    root.dataset.error = event.message;
-    notice("This page failed: " + event.message);
+  function fail(mark, message) {
+    root.dataset.error = mark;
+    notice(message);
+  }
+  window.addEventListener("error", (event) => fail(event.message, "This page failed: " + event.message));
+  window.addEventListener("unhandledrejection", (event) => {
+    const message = (event.reason && event.reason.message) || String(event.reason);
+    fail(message, "This page failed: " + message);
   });
   document.addEventListener("securitypolicyviolation", (event) => {
     root.dataset.error = "blocked " + event.blockedURI;
   });
 
   const run = JSON.parse(find("run").textContent);
-  const frames = [...document.querySelectorAll("#frames > script")]
-    .map((element) => decode.frame(element.textContent, run.bodies));
+  show_summary(find, run);
+  show_stages(find("stages"), run.report);
+  const unpacked = { bodies: [], frames: [] };
+  if (typeof DecompressionStream === "undefined") {
+    fail("no DecompressionStream", "This browser cannot unpack the frames of this page: it lacks DecompressionStream, "
+      + "which Chrome and Edge have from version 80 on, Firefox from 113, Safari from 16.4. The plots work without "
+      + "it.");
+  } else {
+    notice("Unpacking \u2026");
+    const library = document.createElement("script");
+    library.textContent = new TextDecoder().decode(await decode.inflate(find("three").textContent));
+    document.head.append(library);
+    Object.assign(unpacked, decode.frames(await decode.inflate(find("frames").textContent), run.bodies, field_names));
+    notice(unpacked.frames.length ? "" : "No frames were recorded.");
+  }
+  find("three").remove();
   find("frames").remove();
+
+  const { bodies: shapes, frames } = unpacked;
   const times = run.rows.time;
-  const last = frames.length - 1;
-  const legend_top = { speed: text.round_up(run.speed.usual), stress: text.round_up(run.stress.usual) };
-  const units = { speed: "m/s", stress: "Pa" };
-  const modes = { color: ["speed", "stress", "body"], contacts: ["off", "motion", "region"] };
+  const last = times.length - 1;
+  const legend_top = Object.fromEntries(field_names.map((field) => [field, text.round_up(run[field].usual)]));
+  const modes = { color: [...field_names, "body"], contacts: ["off", "motion", "region"] };
+  const switches = ["wire", "flat", "xray", "colliders", "labels", "follow", "light", "panel"];
   const state = {
     frame: 0, time: 0, playing: false, rate: 1, color: "speed", contacts: "motion", wire: false, flat: false,
-    xray: false, colliders: true,
+    xray: false, colliders: true, labels: false, follow: true, light: false, panel: true, recording: false,
   };
-  const many = (number, one, more) => text.count(number) + " " + (number === 1 ? one : more);
 
-  const gravity = new THREE.Vector3(...run.gravity);
-  const up = gravity.length() > 0 ? gravity.clone().negate().normalize() : new THREE.Vector3(0, 0, 1);
-  const box = measure_scene(run, frames);
-  let view = null, bodies, contacts, colliders;
-  try {
-    view = make_view(find("view"), up, box);
-  } catch (error) {
-    notice("The three-dimensional view needs WebGL, which this browser does not offer. The plots work without it.");
-    root.dataset.error = "no WebGL";
-  }
-  if (view) {
-    bodies = make_bodies(view.scene, run.bodies, frames, legend_top);
-    contacts = make_contacts(view.scene, Math.max(0, ...run.rows.contacts), box, run.force.usual || 1);
-    colliders = make_colliders(view.scene, run.colliders, box);
-    if (frames.length === 0) notice("No frames were recorded.");
-  }
+  let scene = null;
+  if (!document.createElement("canvas").getContext("webgl"))
+    fail("no WebGL", "The three-dimensional view needs WebGL, which this browser does not offer, or not now. The plots "
+      + "work without it.");
+  else if (!root.dataset.error)
+    scene = make_scene(find, run, shapes, frames, state, legend_top, (follow) => {
+      if (state.follow !== follow) set_pressed("follow", follow);
+    });
+  root.classList.toggle("plain", !scene);
 
   const rows = run.rows;
   const floor = Math.min(...rows.potential.filter((value) => value !== null), Infinity);
@@ -56,146 +69,64 @@
   const total = rows.kinetic.map((kinetic, i) => kinetic + rows.elastic[i] + potential[i]);
   const plots = [
     make_plot(find("energy_plot"), times, [
-      { name: "total", color: "#e8ebef", values: total },
-      { name: "kinetic", color: "#6cb6ff", values: rows.kinetic },
-      { name: "potential", color: "#b8a6e0", values: potential },
-      { name: "elastic", color: "#7fbf7b", values: rows.elastic },
-      { name: "dissipated", color: "#e07f72", values: rows.dissipated },
+      { name: "total", color: "var(--text)", values: total },
+      { name: "kinetic", color: "var(--kinetic)", values: rows.kinetic },
+      { name: "potential", color: "var(--potential)", values: potential },
+      { name: "elastic", color: "var(--elastic)", values: rows.elastic },
+      { name: "dissipated", color: "var(--dissipated)", values: rows.dissipated },
     ], (value) => text.si(value, "J"), go_to),
     make_plot(find("contact_plot"), times, [
-      { name: "contacts", color: "#e8ebef", values: rows.contacts },
-      { name: "stick", color: colors.motion.stick, values: rows.stick },
-      { name: "slide", color: colors.motion.slide, values: rows.slide },
-      { name: "regions", color: "#b8a6e0", values: rows.regions },
+      { name: "contacts", color: "var(--text)", values: rows.contacts },
+      { name: "stick", color: "var(--stick)", values: rows.stick },
+      { name: "slide", color: "var(--slide)", values: rows.slide },
+      { name: "regions", color: "var(--potential)", values: rows.regions },
     ], (value) => String(+value.toFixed(2)), go_to),
   ];
 
-  function show_summary() {
-    const r = run.report;
-    find("title").textContent = run.title || "Run";
-    find("subtitle").textContent = many(r.bodies, "body", "bodies") + ", " + many(r.elements, "element", "elements")
-      + ", "
-      + text.si(r.time, "s") + " in " + many(r.steps, "step", "steps");
-    const items = [
-      ["Bodies", text.count(r.bodies)], ["Elements", text.count(r.elements)],
-      ["Nodes", text.count(r.nodes)], ["Steps", text.count(r.steps)],
-      ["Simulated time", text.si(r.time, "s")], ["Mean step", r.steps ? text.si(r.time / r.steps, "s") : "\u2013"],
-      ["Contacts, mean and most", text.average(r.mean_contacts) + ", " + text.count(r.max_contacts)],
-      ["Regions, mean and most", text.average(r.mean_regions) + ", " + text.count(r.max_regions)],
-      ["Largest region", many(r.largest_region, "contact", "contacts")],
-      ["Sweeps by solved region", text.average(r.mean_iterations)],
-      ["Regions not converged", text.count(r.unconverged) + " of " + text.count(r.solved)],
-      ["Deepest overlap", text.si(r.max_penetration, "m")],
-    ];
-    for (const [name, value] of items) add_item(name, value);
-    const code = document.createElement("code");
-    code.textContent = r.state_hash;
-    add_item("State hash", code).className = "wide";
-  }
-  function add_item(name, value) {
-    const item = document.createElement("div"), term = document.createElement("dt"),
-      about = document.createElement("dd");
-    term.textContent = name;
-    about.append(value);
-    item.append(term, about);
-    find("summary").append(item);
-    return item;
-  }
-
-  function show_legends() {
-    const [name, bar, ticks] = find("color_legend").children;
-    const by_value = state.color !== "body";
-    bar.hidden = !by_value;
-    ticks.className = by_value ? "ticks" : "bodies";
-    ticks.replaceChildren();
-    const add = (content, swatch) => {
-      const label = document.createElement("span");
-      if (swatch) {
-        const spot = document.createElement("i");
-        spot.className = "swatch";
-        spot.style.background = swatch;
-        label.append(spot);
-      }
-      label.append(content);
-      ticks.append(label);
-    };
-    if (by_value) {
-      name.textContent = state.color === "speed" ? "Speed" : "Von Mises stress";
-      const pen = bar.getContext("2d"), top = legend_top[state.color];
-      for (let i = 0; i < 256; ++i) {
-        pen.fillStyle = colors.css(colors.at(state.color, i / 255));
-        pen.fillRect(i, 0, 1, 1);
-      }
-      add("0");
-      add(text.si(top / 2, units[state.color]));
-      add((run[state.color].max > top ? "\u2265\u202f" : "") + text.si(top, units[state.color]));
-    } else {
-      name.textContent = many(run.bodies.length, "body", "bodies");
-      run.bodies.slice(0, 10).forEach((body, i) => add(body.name || "body " + i, colors.css(colors.of_body(i))));
-      if (run.bodies.length > 10) add("and " + text.count(run.bodies.length - 10) + " more");
-    }
-    show_contact_legend();
-  }
-  function show_contact_legend() {
-    const card = find("contact_legend");
-    card.hidden = state.contacts === "off" || run.force.max === 0;
-    card.replaceChildren();
-    const add = (content, swatch) => {
-      const line = document.createElement("div");
-      if (swatch) {
-        const spot = document.createElement("i");
-        spot.className = "swatch";
-        spot.style.background = swatch;
-        line.append(spot);
-      }
-      line.append(content);
-      card.append(line);
-    };
-    if (state.contacts === "motion") for (const name of ["stick", "slide", "open"]) add(name, colors.motion[name]);
-    else add("one colour by contact region");
-    add("arrows: root of the force");
-    add("strongest " + text.si(run.force.max, "N"));
-  }
-
-  // Draws the frame, between frames the mean of two, and says where it is.
+  const clock_text = () => (times.length ? state.time.toFixed(3) + " s" : "");
+  // Draws what is between the frame and the next, and says where that is.
   function show() {
-    if (frames.length > 0 && view) {
-      const next = Math.min(state.frame + 1, last), width = times[next] - times[state.frame];
-      const share = (state.time - times[state.frame]) / width;
-      const blend = state.playing && width > 0 ? Math.min(Math.max(share, 0), 0.999) : 0;
-      root.dataset.bodies = bodies.show(frames[state.frame], frames[next], blend, state.color);
-      contacts.show(frames[state.frame].contacts, state.contacts);
-      colliders.show(frames[state.frame], state.colliders);
-      bodies.style(state);
-      view.touch();
-    }
-    if (shown.frame !== state.frame || shown.time !== times[state.frame]) {
-      plots.forEach((plot) => plot.show(state.frame));
-      find("scrub").value = state.frame;
+    const next = Math.min(state.frame + 1, last), width = times[next] - times[state.frame];
+    const blend = width > 0 ? Math.min(Math.max((state.time - times[state.frame]) / width, 0), 0.9999) : 0;
+    if (frames.length > 0 && scene) scene.show(state.frame, blend);
+    find("scrub").value = state.frame + blend;
+    if (shown.frame !== state.frame || shown.time !== state.time) {
+      if (shown.frame !== state.frame) plots.forEach((plot) => plot.show(state.frame));
       const time = document.createElement("b");
-      time.textContent = frames.length ? times[state.frame].toFixed(3) + " s" : "";
-      find("clock").replaceChildren(time, frames.length ? "  frame " + state.frame + " of " + last : "no frames");
-      Object.assign(shown, { frame: state.frame, time: times[state.frame] });
+      time.textContent = clock_text();
+      find("clock").replaceChildren(time, times.length ? "  frame " + state.frame + " of " + last : "no frames");
+      find("scrub").setAttribute("aria-valuetext", clock_text());
+      Object.assign(shown, { frame: state.frame, time: state.time });
     }
     root.dataset.frame = state.frame;
     root.dataset.color = state.color;
   }
   const shown = { frame: -1, time: NaN };
 
-  function go_to(frame) {
+  // `place` in frames, between two of them what is between.
+  function go_to(place) {
     set_playing(false);
-    state.frame = Math.min(Math.max(Math.round(frame) || 0, 0), Math.max(last, 0));
-    state.time = times[state.frame] || 0;
+    const kept = Math.min(Math.max(Number(place) || 0, 0), Math.max(last, 0));
+    state.frame = Math.floor(kept);
+    const next = Math.min(state.frame + 1, last);
+    state.time = times.length ? times[state.frame] + (kept - state.frame) * (times[next] - times[state.frame]) : 0;
+    show();
+  }
+  function go_to_time(time) {
+    state.time = Math.min(Math.max(time, times[0]), times[last]);
+    if (times[state.frame] > state.time) state.frame = 0;
+    while (state.frame < last && times[state.frame + 1] <= state.time) ++state.frame;
     show();
   }
   function set_playing(on) {
-    state.playing = on && last > 0;
-    if (state.playing && state.frame >= last) {
-      state.frame = 0;
-      state.time = times[0];
-    }
+    state.playing = on && last > 0 && !state.recording;
+    if (state.playing && state.time >= times[last]) go_to_start();
     find("play").querySelector("path").setAttribute("d",
       state.playing ? "M6 5h4v14H6zM14 5h4v14h-4z" : "M8 5v14l11-7z");
+  }
+  function go_to_start() {
+    state.frame = 0;
+    state.time = times[0];
   }
   function set_mode(name, value) {
     if (!modes[name].includes(value)) return;
@@ -204,12 +135,23 @@
       button.setAttribute("role", "radio");
       button.setAttribute("aria-checked", button.dataset.value === value);
     }
-    show_legends();
+    show_color_legend(find("color_legend"), state.color, run, shapes, legend_top);
+    show_contact_legend(find("contact_legend"), state.contacts, run);
     show();
   }
-  function set_switch(name, on) {
+  function set_pressed(name, on) {
     state[name] = on;
-    find("switches").querySelector('[data-switch="' + name + '"]').setAttribute("aria-pressed", on);
+    document.querySelector('[data-switch="' + name + '"]').setAttribute("aria-pressed", on);
+  }
+  function set_switch(name, on) {
+    set_pressed(name, on);
+    if (name === "panel") root.classList.toggle("bare", !on);
+    if (name === "light") {
+      root.classList.toggle("light", on);
+      if (scene) scene.set_light(on);
+      plots.forEach((plot) => plot.draw());
+    }
+    if (name === "follow" && scene) scene.view.follow(on);
     show();
   }
   function set_rate(rate) {
@@ -219,67 +161,127 @@
     state.rate = rate;
   }
 
-  // #frame=30&color=stress&contacts=region&wire=1&flat=1&xray=1&colliders=0&play=1&rate=0.5&view=turn,lift,distance
+  const file_name = () => (run.title || "run").replace(/[^\p{L}\p{N}_-]+/gu, "_");
+  function save_picture() {
+    if (!scene) return;
+    show();
+    scene.view.render();
+    scene.picture.compose();
+    scene.picture.canvas.toBlob((blob) => {
+      save(blob, file_name() + "_" + state.time.toFixed(3) + "s.png");
+      root.dataset.picture = blob.size;
+    });
+  }
+  // All of the run, at the pace that is set, 30 pictures a second; a second click gives up.
+  async function record_run() {
+    if (state.recording) {
+      state.recording = false;
+      return;
+    }
+    if (!scene || last < 1) return;
+    if (!video_type()) {
+      notice("This browser cannot record videos: it lacks MediaRecorder, or a format that it writes.");
+      return;
+    }
+    const button = find("record"), label = button.textContent, place = state.frame, pictures_a_second = 30;
+    set_playing(false);
+    state.recording = true;
+    button.setAttribute("aria-pressed", true);
+    try {
+      const count = Math.round((times[last] - times[0]) / state.rate * pictures_a_second) + 1;
+      const blob = await record(scene.picture.canvas, count, pictures_a_second, (i) => {
+        go_to_time(times[0] + i * state.rate / pictures_a_second);
+        scene.view.render();
+        scene.picture.compose();
+      }, (share) => {
+        button.textContent = Math.floor(100 * share) + "\u202f% \u2013 stop";
+        return state.recording;
+      });
+      if (blob) {
+        save(blob, file_name() + (blob.type.endsWith("mp4") ? ".mp4" : ".webm"));
+        root.dataset.video = blob.size;
+        root.dataset.pictures = count;
+      }
+    } finally {
+      state.recording = false;
+      button.textContent = label;
+      button.setAttribute("aria-pressed", false);
+      go_to(place);
+    }
+  }
+
+  // #frame=30&color=stress&contacts=region&wire=1&flat=1&xray=1&colliders=0&labels=1&light=1&panel=0&play=1&rate=0.5
+  // &view=turn,lift,distance
   function read_hash() {
     const asked = new URLSearchParams(location.hash.slice(1));
     for (const name in modes) if (asked.has(name)) set_mode(name, asked.get(name));
-    for (const name of ["wire", "flat", "xray", "colliders"])
-      if (asked.has(name)) set_switch(name, asked.get(name) !== "0");
+    for (const name of switches) if (asked.has(name)) set_switch(name, asked.get(name) !== "0");
     if (asked.has("rate")) set_rate(Number(asked.get("rate")));
-    if (asked.has("view") && view) {
+    if (asked.has("view") && scene) {
       const numbers = asked.get("view").split(",").map(Number);
-      if (numbers.length === 3 && numbers.every(isFinite)) view.look(...numbers);
+      if (numbers.length === 3 && numbers.every(isFinite)) scene.view.look(...numbers);
     }
-    if (asked.has("frame")) go_to(Number(asked.get("frame")));
+    if (asked.has("frame")) go_to(asked.get("frame"));
     if (asked.has("play")) set_playing(asked.get("play") !== "0");
     return asked.has("frame") || asked.has("play");
   }
 
+  const flip = (name) => () => set_switch(name, !state[name]);
+  const move = (action) => () => { if (scene) action(scene.view); };
+  const frame_by = (step) => () => go_to(Math.round(state.frame) + step);
+  listen_to_keys(find, [
+    [[" "], "play or pause", () => { set_playing(!state.playing); show(); }],
+    [["ArrowLeft"], "a frame back, with Shift ten", (shift) => frame_by(shift ? -10 : -1)()],
+    [["ArrowRight"], "a frame on, with Shift ten", (shift) => frame_by(shift ? 10 : 1)()],
+    [["Home"], "to the start", () => go_to(0)],
+    [["End"], "to the end", () => go_to(last)],
+    ...modes.color.map((name, i) => [[String(i + 1)], "colour by "
+      + (fields[name] ? fields[name].lower : "body"), () => set_mode("color", name)]),
+    [["c"], "contacts: off, stick or slide, regions", () =>
+      set_mode("contacts", modes.contacts[(modes.contacts.indexOf(state.contacts) + 1) % 3])],
+    [["n"], "names of bodies", flip("labels")],
+    [["x"], "see-through bodies", flip("xray")],
+    [["w"], "edges of surfaces", flip("wire")],
+    [["f"], "flat shading", flip("flat")],
+    [["o"], "colliders", flip("colliders")],
+    [["v"], "the view as at the start, which follows the bodies", () => set_switch("follow", true)],
+    [["[", "]"], "turn the view; with Shift, up and down", (shift, key) =>
+      move((to) => (/[[\]]/.test(key) ? to.turn(key === "[" ? 20 : -20, 0) : to.turn(0, key === "{" ? 20 : -20)))()],
+    [["+", "-"], "nearer, farther", (shift, key) => move((to) => to.zoom(key === "+" || key === "=" ? 0.85 : 1.18))()],
+    [["h"], "hide the panel and the controls", flip("panel")],
+    [["l"], "light or dark", flip("light")],
+    [["p"], "save a picture (PNG)", save_picture],
+    [["r"], "record a video of the run at this pace (WebM), with the page kept in sight; again: stop", record_run],
+  ]);
   for (const name in modes)
     for (const button of find(name).querySelectorAll("button"))
       button.addEventListener("click", () => set_mode(name, button.dataset.value));
-  for (const button of find("switches").children)
-    button.addEventListener("click", () => set_switch(button.dataset.switch, !state[button.dataset.switch]));
+  for (const button of document.querySelectorAll("[data-switch]"))
+    button.addEventListener("click", flip(button.dataset.switch));
   find("play").addEventListener("click", () => { set_playing(!state.playing); show(); });
-  find("scrub").addEventListener("input", () => go_to(Number(find("scrub").value)));
+  find("picture").addEventListener("click", save_picture);
+  find("record").addEventListener("click", record_run);
+  find("scrub").addEventListener("input", () => go_to(find("scrub").value));
   find("rate").querySelector("select").addEventListener("change", (event) => set_rate(Number(event.target.value)));
   window.addEventListener("hashchange", read_hash);
-  window.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
-    const jump = event.shiftKey ? 10 : 1;
-    const keys = {
-      " ": () => { set_playing(!state.playing); show(); },
-      ArrowLeft: () => go_to(state.frame - jump), ArrowRight: () => go_to(state.frame + jump),
-      Home: () => go_to(0), End: () => go_to(last),
-      1: () => set_mode("color", "speed"), 2: () => set_mode("color", "stress"), 3: () => set_mode("color", "body"),
-      c: () => set_mode("contacts", modes.contacts[(modes.contacts.indexOf(state.contacts) + 1) % 3]),
-      x: () => set_switch("xray", !state.xray), w: () => set_switch("wire", !state.wire),
-      f: () => set_switch("flat", !state.flat),
-      o: () => set_switch("colliders", !state.colliders),
-    };
-    const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (!action) return;
-    event.preventDefault();
-    action();
-  });
 
   // At the end the picture stands for a moment, then begins again.
   const pause = 0.8;  // s
-  let then = null;
+  let then = null, rested = 0;
   function tick(now) {
     const passed = then === null ? 0 : Math.min((now - then) / 1000, 0.25);
     then = now;
     if (state.playing) {
-      state.time += passed * state.rate;
-      if (state.time > times[last] + pause * state.rate) {
-        state.time = times[0];
-        state.frame = 0;
+      if (state.time < times[last]) {
+        rested = 0;
+        go_to_time(state.time + passed * state.rate);
+      } else if ((rested += passed) > pause) {
+        go_to_start();
+        show();
       }
-      while (state.frame < last && times[state.frame + 1] <= state.time) ++state.frame;
-      show();
     }
-    if (view) {
-      view.render();
+    if (scene) {
+      scene.render();
       if (!root.dataset.ready) {
         root.dataset.frames = frames.length;
         root.dataset.ready = "true";
@@ -289,11 +291,8 @@
   }
 
   find("scrub").max = Math.max(last, 0);
-  show_summary();
-  show_stages(find("stages"), run.report);
   for (const name in modes) set_mode(name, state[name]);
-  for (const name of ["wire", "flat", "xray", "colliders"]) set_switch(name, state[name]);
-  show_legends();
+  for (const name of switches) set_switch(name, state[name]);
   go_to(0);
   if (!read_hash()) set_playing(!window.matchMedia("(prefers-reduced-motion: reduce)").matches);
   requestAnimationFrame(tick);

@@ -1,23 +1,6 @@
-#include "engine/output/page/pack.h"
+#include "engine/output/page/stream/pack.h"
 
 namespace skerry {
-
-void put_points(std::string& out, std::span<const Vec3> points) {
-    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
-    bool first = true;
-    for (const Vec3& point : points) {
-        if (!point.allFinite()) continue;
-        lower = first ? point : Vec3(lower.cwiseMin(point));
-        upper = first ? point : Vec3(upper.cwiseMax(point));
-        first = false;
-    }
-    const Vec3 extent = upper - lower;
-    put_floats(out, lower);
-    put_floats(out, extent);
-    for (const Vec3& point : points)
-        for (int axis = 0; axis < 3; ++axis) put(out, code_of<std::uint16_t>(point[axis] - lower[axis], extent[axis]));
-    fill_up(out);
-}
 
 std::string base64(std::string_view bytes) {
     static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -18,6 +18,9 @@ function make_plot(host, times, series, format, pick) {
   const canvas = document.createElement("canvas");
   host.append(keys, canvas);
   const pen = canvas.getContext("2d");
+  // Colours by name follow the light.
+  const style = getComputedStyle(document.documentElement);
+  const resolved = (color) => (color.startsWith("var(") ? style.getPropertyValue(color.slice(4, -1)).trim() : color);
   const ends = range_of(series);
   const margin = { left: 52, right: 6, top: 6, bottom: 20 };
   let frame = 0;
@@ -38,7 +41,7 @@ function make_plot(host, times, series, format, pick) {
     pen.lineJoin = "round";
     pen.lineWidth = 1.6;
     for (const { color, values } of series) {
-      pen.strokeStyle = color;
+      pen.strokeStyle = resolved(color);
       pen.beginPath();
       let down = false;
       values.forEach((value, i) => {
@@ -50,7 +53,7 @@ function make_plot(host, times, series, format, pick) {
       pen.stroke();
     }
     if (times.length === 0) return;
-    pen.strokeStyle = "#e8ebef";
+    pen.strokeStyle = resolved("var(--text)");
     pen.lineWidth = 1;
     pen.beginPath();
     pen.moveTo(x_of(times[frame]), margin.top);
@@ -58,15 +61,15 @@ function make_plot(host, times, series, format, pick) {
     pen.stroke();
     for (const { color, values } of series) {
       if (values[frame] === null) continue;
-      pen.fillStyle = color;
+      pen.fillStyle = resolved(color);
       pen.beginPath();
       pen.arc(x_of(times[frame]), y_of(values[frame]), 3, 0, 2 * Math.PI);
       pen.fill();
     }
   }
   function draw_axes() {
-    pen.strokeStyle = "#2a323c";
-    pen.fillStyle = "#93a0af";
+    pen.strokeStyle = resolved("var(--line)");
+    pen.fillStyle = resolved("var(--muted)");
     pen.lineWidth = 1;
     pen.beginPath();
     pen.textAlign = "right";
@@ -102,7 +105,7 @@ function make_plot(host, times, series, format, pick) {
   canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); point_at(event); });
   canvas.addEventListener("pointermove", (event) => { if (event.buttons) point_at(event); });
   new ResizeObserver(draw).observe(canvas);
-  return { show };
+  return { show, draw };
 }
 
 // Ends at ticks around all finite values and zero.

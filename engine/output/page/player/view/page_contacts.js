@@ -32,21 +32,37 @@ function make_contacts(scene, capacity, { size, spacing }, full_force) {
   const matrix = new THREE.Matrix4(), turn = new THREE.Quaternion(), scale = new THREE.Vector3();
   const point = new THREE.Vector3(), force = new THREE.Vector3(), along = new THREE.Vector3(0, 1, 0);
 
-  function show(contacts, mode) {
+  const shown = { list: null, count: 0, point: new Float32Array(3 * capacity), force: new Float32Array(3 * capacity),
+    normal: new Float32Array(capacity) };
+
+  // What is between a frame and the next: contacts that both have move from one to the other, others stay until they
+  // are gone.
+  function blend_rows(contacts, next, blend) {
+    Object.assign(shown, { list: contacts, count: contacts.count });
+    for (let i = 0; i < contacts.count; ++i) {
+      const row = blend > 0 && next ? contacts.next[i] : -1, share = row >= 0 ? blend : 0, j = Math.max(row, 0);
+      const mix = (from, to, k, l) => (share > 0 ? (1 - share) * from[k] + share * to[l] : from[k]);
+      for (let axis = 0; axis < 3; ++axis) {
+        shown.point[3 * i + axis] = mix(contacts.point, next && next.point, 3 * i + axis, 3 * j + axis);
+        shown.force[3 * i + axis] = mix(contacts.force, next && next.force, 3 * i + axis, 3 * j + axis);
+      }
+      shown.normal[i] = mix(contacts.normal, next && next.normal, i, j);
+    }
+  }
+  function show(contacts, next, blend, mode) {
     const count = mode === "off" ? 0 : contacts.count;
     for (const mesh of [...dots, ...arrows]) {
       mesh.count = count;
       mesh.visible = count > 0;  // an instance count of zero would mean "not instanced"
     }
+    shown.count = 0;
+    if (count === 0) return;
+    blend_rows(contacts, next, blend);
     for (let i = 0; i < count; ++i) {
-      point.fromArray(contacts.point, 3 * i);
-      for (const axis of ["x", "y", "z"]) {
-        const k = axis === "x" ? 0 : axis === "y" ? 1 : 2;
-        point[axis] = contacts.lower[k] + contacts.extent[k] * point[axis] / 65535;
-      }
-      force.fromArray(contacts.force, 3 * i).multiplyScalar(contacts.unit);
+      point.fromArray(shown.point, 3 * i);
+      force.fromArray(shown.force, 3 * i);
       const strength = force.length();
-      const by_region = mode === "region" && contacts.region[i] !== 65535;
+      const by_region = mode === "region" && contacts.region[i] >= 0;
       const rgb = by_region ? colors.linear(colors.of_number(contacts.region[i])) : motion_colors[contacts.state[i]];
       color.array.set(rgb, 3 * i);
       const radius = strength > 0 ? dot_radius : 0.7 * dot_radius;
@@ -58,7 +74,16 @@ function make_contacts(scene, capacity, { size, spacing }, full_force) {
     color.needsUpdate = true;
     dots[0].instanceMatrix.needsUpdate = arrows[0].instanceMatrix.needsUpdate = true;
   }
-  return { show };
+  // The contact at row i as it is shown.
+  function at(i) {
+    const { list } = shown, strength = Math.hypot(...shown.force.subarray(3 * i, 3 * i + 3));
+    const normal = shown.normal[i];
+    return { strength, normal, friction: Math.sqrt(Math.max(strength * strength - normal * normal, 0)),
+      error: half_code(strength, list.top / (2047 * 2047)), region: list.region[i],
+      motion: Object.keys(fixed)[list.state[i]], first: list.first[i], second: list.second[i],
+      collider: list.collider[i] };
+  }
+  return { show, shown, at, dot_radius };
 }
 
 // An arrow along y from 0 to 1: a shaft and a head, without caps that nobody sees.

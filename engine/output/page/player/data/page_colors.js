@@ -4,13 +4,19 @@
 const text = (() => {
   const prefixes = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "\u00b5"], [1e-9, "n"]];
 
-  // Three significant digits with an SI prefix.
-  function si(value, unit) {
+  // Three significant digits with an SI prefix; fewer where an error is given, down to the one that it changes.
+  function si(value, unit, error) {
     if (value === null || !isFinite(value)) return "\u2013";
-    if (value === 0) return "0 " + unit;
+    if (Math.abs(value) < 5e-12) return "0 " + unit;
     const [factor, prefix] = prefixes.find(([f]) => Math.abs(value) >= f * 0.9995) || prefixes[prefixes.length - 1];
-    return plain(value / factor) + "\u202f" + prefix + unit;
+    const digits = digits_of(value, error);
+    const number = digits === 3 ? plain(value / factor) : String(+(value / factor).toPrecision(digits));
+    return number + "\u202f" + prefix + unit;
   }
+  // A share of one.
+  const percent = (value, error) => +(100 * value).toPrecision(digits_of(value, error)) + "\u202f%";
+  const digits_of = (value, error) =>
+    (error > 0 && value !== 0 ? Math.min(Math.max(Math.floor(Math.log10(Math.abs(value) / error)) + 1, 1), 3) : 3);
   function plain(value) {
     const size = Math.abs(value);
     return String(+value.toFixed(size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2));
@@ -29,14 +35,15 @@ const text = (() => {
     const power = Math.pow(10, Math.floor(Math.log10(range / parts)));
     return power * ([1, 2, 5].find((step) => step * power >= range / parts) || 10);
   }
-  return { si, count, average, round_up, tick };
+  return { si, percent, count, average, round_up, tick };
 })();
 
 const colors = (() => {
-  // Perceptually even ramps from dark blue to yellow, by their corners (sRGB).
+  // From a colour of middle lightness, which is seen on a dark ground and on a light one, to a bright one (sRGB).
   const ramps = {
-    speed: ["#4a4596", "#40649f", "#33829c", "#269d94", "#3dba7c", "#86d354", "#e4e52a"],
-    stress: ["#40409f", "#7030a8", "#a83a9c", "#d25075", "#ee7d55", "#fbb038", "#f4f03a"],
+    speed: ["#7f93c9", "#5fa3cb", "#45b3b5", "#4cc08f", "#83cf66", "#c3d94c", "#f6e24b"],
+    stress: ["#8f8ad6", "#b27cd0", "#cf72b8", "#e56d92", "#f27f67", "#f9a64a", "#f7dd53"],
+    strain: ["#8794b8", "#a19fb3", "#bda99f", "#d6ae80", "#eaa05e", "#f4824f", "#f35f55"],
   };
   const body_colors = ["#6fa8dc", "#e6a15c", "#7fbf7b", "#d98cb3", "#b8a6e0", "#d8c25f", "#6cc5c1", "#e07f72",
     "#a9b665", "#8f9fb8"];
@@ -70,5 +77,5 @@ const colors = (() => {
   const of_body = (number) => (number < body_colors.length ? parse(body_colors[number]) : of_number(number));
 
   return { at, css, linear, parse, table, of_number, of_body,
-    tables: { speed: table("speed"), stress: table("stress") }, motion };
+    tables: Object.fromEntries(Object.keys(ramps).map((name) => [name, table(name)])), motion };
 })();

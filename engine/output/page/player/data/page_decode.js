@@ -1,0 +1,184 @@
+// Reads what page_data.h packed.
+"use strict";
+
+const decode = (() => {
+  const last_code = 2047;  // of a value scale
+
+  function bytes(base64) {
+    const text = atob(base64);
+    const out = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; ++i) out[i] = text.charCodeAt(i);
+    return out;
+  }
+  const words = (base64) => new Uint32Array(bytes(base64).buffer);
+  const floats = (base64) => new Float32Array(bytes(base64).buffer);
+
+  async function inflate(base64) {
+    const packed = new Blob([bytes(base64)]).stream();
+    return new Uint8Array(await new Response(packed.pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+  }
+
+  // Takes numbers off the front.
+  function reader(data) {
+    const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+    let at = 0;
+    const count = () => {
+      let value = 0, scale = 1;
+      for (;;) {
+        const byte = data[at++];
+        value += (byte & 127) * scale;
+        if (!(byte & 128)) return value;  // also behind the end, where there is no byte
+        scale *= 128;
+      }
+    };
+    const signed = (zigzag) => (zigzag % 2 ? -(zigzag + 1) / 2 : zigzag / 2);
+    const float = (size) => () => {
+      at += size;
+      return size === 4 ? view.getFloat32(at - 4, true) : view.getFloat64(at - 8, true);
+    };
+    return { count, signed, change: () => signed(count()), f32: float(4), f64: float(8), u8: () => data[at++],
+      ended: () => at >= data.length };
+  }
+  const times = (number, take) => Array.from({ length: number }, take);
+  // Codes of an earlier scale as they are on a later one.
+  const shifted = (code, exponent_prev, exponent) => code >> Math.min(exponent - exponent_prev, 31);
+
+  function shape(take, name, fields) {
+    const vertices = take.count(), corners = 3 * take.count();
+    const origin = times(3, take.f64), step = take.f64();
+    let last = 0;
+    const next = () => (last += take.change());
+    const node = Uint32Array.from(times(vertices, next));
+    last = 0;
+    const triangles = Uint32Array.from(times(corners, next));
+    return {
+      name, vertices, node, triangles, origin, step, frames: 0, now: new Float64Array(3 * vertices),
+      before: new Float64Array(3 * vertices),
+      values: times(fields, () => ({ exponent: 0, code: new Int32Array(vertices), sum: 0 })),
+    };
+  }
+
+  // Codes of the positions, from the least of each axis on: base[3] and what is added to it.
+  function positions(take, body) {
+    const { vertices, now, before } = body, base = [0, 0, 0], top = [0, 0, 0];
+    for (let axis = 0; axis < 3; ++axis) {
+      let rest = 0, low = Infinity, high = -Infinity;
+      for (let i = axis; i < 3 * vertices; i += 3) {
+        rest += take.change();
+        const last = now[i];
+        now[i] = last + rest + (body.frames > 1 ? last - before[i] : 0);
+        before[i] = last;
+        low = Math.min(low, now[i]);
+        high = Math.max(high, now[i]);
+      }
+      base[axis] = vertices ? low : 0;
+      top[axis] = vertices ? high - low : 0;
+    }
+    ++body.frames;
+    const Type = Math.max(...top) < 65536 ? Uint16Array : Float64Array;
+    const offset = new Type(3 * vertices);
+    for (let i = 0; i < 3 * vertices; ++i) offset[i] = now[i] - base[i % 3];
+    const lower = base.map((code, axis) => body.origin[axis] + body.step * code);
+    return { lower, extent: top.map((code) => code * body.step), offset };
+  }
+
+  function values(take, body, exponents) {
+    const stress_change = new Int32Array(body.vertices), stress_sum = body.values[1].sum;
+    return body.values.map((last, field) => {
+      const follows = field === 2 && stress_sum > 0, share = follows ? last.sum / stress_sum : 0;
+      const code = new Uint16Array(body.vertices);
+      let rest = 0;
+      last.sum = 0;
+      for (let i = 0; i < code.length; ++i) {
+        rest += take.change();
+        const change = rest + (follows ? Math.floor(stress_change[i] * share + 0.5) : 0);
+        if (field === 1) stress_change[i] = change;
+        last.code[i] = code[i] = shifted(last.code[i], last.exponent, exponents[field]) + change;
+        last.sum += code[i];
+      }
+      last.exponent = exponents[field];
+      return code;
+    });
+  }
+
+  const numbers = 7;  // of a contact: point, force, normal part
+
+  function contacts(take, count, bodies, last, exponent) {
+    const prev = new Int32Array(count).fill(-1), first = new Int32Array(count), second = new Int32Array(count),
+      collider = new Int32Array(count);
+    let expected = 0;
+    for (let i = 0; i < count; ++i) {
+      const mark = take.count();
+      if (mark === 0) continue;
+      prev[i] = expected + take.signed(mark - 1);
+      expected = prev[i] + 1;
+    }
+    for (let i = 0; i < count; ++i)
+      for (const side of [first, second, collider])
+        side[i] = prev[i] >= 0 ? last[side === first ? "first" : side === second ? "second" : "collider"][prev[i]]
+          : take.count() - 1;
+
+    const lattice = (i) => bodies[first[i] >= 0 ? first[i] : second[i]] || { origin: [0, 0, 0], step: 1e-6, now: [] };
+    const code = new Float64Array(numbers * count);
+    for (let k = 0; k < numbers; ++k)
+      for (let i = 0; i < count; ++i) {
+        let base = k < 3 ? lattice(i).now[k] || 0 : 0;
+        if (prev[i] >= 0) {
+          base = last.code[numbers * prev[i] + k];
+          if (k >= 3) base = shifted(base, last.exponent, exponent);
+        } else if (i > 0 && first[i - 1] === first[i] && first[i] >= 0) {
+          base = code[numbers * (i - 1) + k];
+        }
+        code[numbers * i + k] = base + take.change();
+      }
+    const top = Math.pow(4, exponent);
+    const value = (c) => Math.sign(c) * top * (c / last_code) * (c / last_code);
+    const point = new Float32Array(3 * count), force = new Float32Array(3 * count), normal = new Float32Array(count);
+    const region = new Int32Array(count), state = new Uint8Array(count), next = new Int32Array(count).fill(-1);
+    for (let i = 0; i < count; ++i) {
+      const { origin, step } = lattice(i);
+      for (let axis = 0; axis < 3; ++axis) {
+        point[3 * i + axis] = origin[axis] + step * code[numbers * i + axis];
+        force[3 * i + axis] = value(code[numbers * i + 3 + axis]);
+      }
+      normal[i] = value(code[numbers * i + 6]);
+    }
+    let number = 0;
+    for (let i = 0; i < count; ++i) region[i] = number += take.change();
+    for (let i = 0; i < count; ++i) state[i] = take.u8();
+    // Which row of the next frame is the same contact, for what is between them.
+    for (let i = 0; i < count; ++i) if (prev[i] >= 0) last.next[prev[i]] = i;
+    return { count, first, second, collider, point, force, normal, region, state, next, code, exponent, top };
+  }
+
+  // {bodies, frames}. A frame: bodies and colliders by number, contacts, scale by field: value = scale * code^2.
+  function frames(data, names, fields) {
+    const take = reader(data), bodies = [], out = [];
+    let last = null;
+    while (!take.ended()) {
+      const [body_count, collider_count, contact_count] = times(3, take.count);
+      const exponents = times(fields.length, take.change), force_exponent = take.change();
+      const frame = { bodies: new Map(), colliders: new Map(), scale: {} };
+      fields.forEach((field, i) => {
+        frame.scale[field] = Math.pow(4, exponents[i]) / (last_code * last_code);
+      });
+      for (let i = 0; i < body_count; ++i) {
+        const number = take.count();
+        if (number === bodies.length) bodies.push(shape(take, names[number], fields.length));
+        const body = bodies[number], place = positions(take, body);
+        const codes = values(take, body, exponents);
+        fields.forEach((field, k) => { place[field] = codes[k]; });
+        frame.bodies.set(number, place);
+      }
+      for (let i = 0; i < collider_count; ++i)
+        frame.colliders.set(take.count(), { position: times(3, take.f32), rotation: times(3, take.f32) });
+      frame.contacts = contacts(take, contact_count, bodies, last, force_exponent);
+      if (last) last.code = null;  // needed by the next frame only
+      last = frame.contacts;
+      out.push(frame);
+    }
+    return { bodies, frames: out };
+  }
+
+  return { words, floats, inflate, frames };
+})();

@@ -1,0 +1,41 @@
+// The keyboard, and the card that tells what it does.
+"use strict";
+
+// keys: rows of [keys, what they do, action(shift, key)]. `?` shows the rows; it and Escape hide them again.
+function listen_to_keys(find, keys) {
+  const help = find("help"), list = help.querySelector("dl"), spoken = { " ": "Space", ArrowLeft: "\u2190",
+    ArrowRight: "\u2192" };
+  const show_help = (on) => {
+    help.hidden = !on;
+    find("help_button").setAttribute("aria-pressed", on);
+    if (on) help.focus();
+  };
+  const bound = new Map();
+  for (const [names, what, action] of keys) {
+    const term = document.createElement("dt"), about = document.createElement("dd");
+    for (const name of names) {
+      const key = document.createElement("kbd");
+      key.textContent = spoken[name] || (name.length === 1 ? name.toUpperCase() : name);
+      term.append(key);
+      bound.set(name, action);
+    }
+    about.textContent = what;
+    list.append(term, about);
+  }
+  // The same keys with Shift, or without.
+  for (const [other, key] of [["{", "["], ["}", "]"], ["=", "+"], ["_", "-"]]) bound.set(other, bound.get(key));
+  bound.set("?", () => show_help(help.hidden));
+  bound.set("Escape", () => show_help(false));
+
+  window.addEventListener("keydown", (event) => {
+    const { target } = event;
+    if (event.ctrlKey || event.metaKey || event.altKey || target.tagName === "SELECT") return;
+    if (target.tagName === "BUTTON" && (event.key === " " || event.key === "Enter")) return;  // presses the button
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, action = bound.get(key);
+    if (!action) return;
+    event.preventDefault();
+    action(event.shiftKey, key);
+  });
+  find("help_button").addEventListener("click", () => show_help(help.hidden));
+  help.querySelector("button").addEventListener("click", () => show_help(false));
+}

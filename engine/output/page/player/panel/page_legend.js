@@ -1,0 +1,55 @@
+// What colours and arrows mean.
+"use strict";
+
+// The ends and the middle of a field's colours, as text.
+function legend_ticks(field, run, legend_top) {
+  const { format } = fields[field], top = legend_top[field];
+  return ["0", format(top / 2), (run[field].max > top ? "\u2265\u202f" : "") + format(top)];
+}
+
+// A line of text after a spot of the colour, if there is one.
+function legend_line(content, swatch) {
+  const line = document.createElement("div");
+  line.title = content;
+  if (swatch) {
+    const spot = document.createElement("i");
+    spot.className = "swatch";
+    spot.style.background = swatch;
+    line.append(spot);
+  }
+  line.append(content);
+  return line;
+}
+
+function show_color_legend(card, color, run, bodies, legend_top) {
+  const [name, bar, ticks, list] = card.children, by_value = color !== "body";
+  bar.hidden = ticks.hidden = !by_value;
+  list.hidden = by_value;
+  if (!by_value) {
+    name.textContent = count_of(bodies.length, "body", "bodies");
+    if (list.childElementCount === 0)
+      list.append(...bodies.map((body, i) => legend_line(body.name || "body " + i, colors.css(colors.of_body(i)))));
+    return;
+  }
+  name.textContent = fields[color].name;
+  const pen = bar.getContext("2d");
+  for (let i = 0; i < 256; ++i) {
+    pen.fillStyle = colors.css(colors.at(color, i / 255));
+    pen.fillRect(i, 0, 1, 1);
+  }
+  ticks.replaceChildren(...legend_ticks(color, run, legend_top).map((tick) => {
+    const label = document.createElement("span");
+    label.textContent = tick;
+    return label;
+  }));
+}
+
+function show_contact_legend(card, mode, run) {
+  card.hidden = mode === "off" || run.force.max === 0;
+  card.replaceChildren();
+  if (mode === "motion")
+    card.append(...["stick", "slide", "open"].map((name) => legend_line(name, colors.motion[name])));
+  else
+    card.append(legend_line("one colour by contact region"));
+  card.append(legend_line("arrows: root of the force"), legend_line("strongest " + text.si(run.force.max, "N")));
+}

@@ -1,0 +1,36 @@
+// The values under the pointer.
+"use strict";
+
+// hit: of pick_body or null; contact: of make_contacts.at() or null. `place` in pixels of the host.
+function show_tip(tip, host, place, { hit, values, body, color, contact, name_of }) {
+  tip.hidden = !hit && !contact;
+  if (tip.hidden) return;
+  tip.replaceChildren();
+  const line = (content, strong) => {
+    const made = document.createElement(strong ? "b" : "div");
+    made.textContent = content;
+    tip.append(made);
+  };
+  if (contact) {
+    const { first, second, collider, strength, normal, friction, error, motion, region } = contact;
+    const sides = [first >= 0 && name_of.body(first), second >= 0 && name_of.body(second),
+      collider >= 0 && name_of.collider(collider)].filter(Boolean);
+    line("Contact: " + sides.join(" \u2013 "), true);
+    line("force " + text.si(strength, "N", error) + ", normal " + text.si(normal, "N", error) + ", friction "
+      + text.si(friction, "N", error));
+    line(motion + (region >= 0 ? ", region " + region : ""));
+  }
+  if (hit) {
+    const nearest = hit.weights.indexOf(Math.max(...hit.weights));
+    line(body.name, true);
+    const shown = [...field_names].sort((a, b) => (b === color) - (a === color));
+    for (const field of shown)
+      line(fields[field].lower + " " + fields[field].format(values[field].value, values[field].error));
+    line("triangle " + hit.triangle + ", node " + body.shape.node[hit.vertices[nearest]]);
+    line("at " + hit.point.toArray().map((x) => +x.toPrecision(4)).join(", ") + " m");
+  }
+  // Beside the pointer, on the side where there is room.
+  const { clientWidth: width, clientHeight: height } = host, { offsetWidth: wide, offsetHeight: tall } = tip;
+  tip.style.left = Math.max(place.x + 16 + wide < width ? place.x + 16 : place.x - wide - 12, 4) + "px";
+  tip.style.top = Math.max(place.y + 16 + tall < height ? place.y + 16 : place.y - tall - 12, 4) + "px";
+}

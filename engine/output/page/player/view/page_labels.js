@@ -1,0 +1,45 @@
+// Names of bodies and colliders over the picture.
+"use strict";
+
+// Draws each name above its body, the nearest first; one that would cover another is left out. Sizes in pixels of the
+// page, `ratio` of the pen's own to one of them.
+function draw_labels(pen, named, camera, { width, height }, ratio, style) {
+  const point = new THREE.Vector3(), places = [];
+  for (const { name, box } of named) {
+    point.set((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2);
+    const distance = point.distanceTo(camera.position);
+    // The middle of the upper edge of the box as the camera sees it.
+    let left = Infinity, right = -Infinity, top = Infinity, behind = false;
+    for (let corner = 0; corner < 8; ++corner) {
+      point.set(...["x", "y", "z"].map((axis, k) => (corner >> k & 1 ? box.max : box.min)[axis])).project(camera);
+      behind = behind || Math.abs(point.z) > 1;
+      left = Math.min(left, point.x);
+      right = Math.max(right, point.x);
+      top = Math.min(top, 1 - point.y);
+    }
+    if (!behind) places.push({ name, distance, x: ((left + right) / 2 + 1) / 2 * width, y: top / 2 * height - 4 });
+  }
+  places.sort((a, b) => a.distance - b.distance);
+  pen.save();
+  pen.scale(ratio, ratio);
+  pen.font = "12px system-ui, 'DejaVu Sans', sans-serif";
+  pen.textAlign = "center";
+  pen.textBaseline = "bottom";
+  pen.lineJoin = "round";
+  const taken = [];
+  for (const { name, x, y } of places) {
+    const half = pen.measureText(name).width / 2 + 3;
+    const place = { left: x - half, right: x + half, top: y - 15, bottom: y };
+    if (place.right < 0 || place.left > width || y < 0 || y > height + 15) continue;
+    if (taken.some((other) => place.left < other.right && other.left < place.right && place.top < other.bottom
+      && other.top < place.bottom)) continue;
+    taken.push(place);
+    pen.lineWidth = 3;
+    pen.strokeStyle = style.halo;
+    pen.strokeText(name, x, y);
+    pen.fillStyle = style.text;
+    pen.fillText(name, x, y);
+  }
+  pen.restore();
+  return taken.length;
+}

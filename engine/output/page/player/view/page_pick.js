@@ -1,0 +1,43 @@
+// What lies under the pointer.
+"use strict";
+
+// The nearest triangle that a ray (origin, unit direction) meets of the bodies shown: {distance, point, body, triangle,
+// vertices[3], weights[3]}, vertices of the body's surface; null if it meets none.
+function pick_body(bodies, origin, direction) {
+  const ray = new THREE.Ray(origin, direction), hit = new THREE.Vector3();
+  const corners = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()];
+  let best = null;
+  bodies.forEach((body, number) => {
+    if (!body.group.visible) return;
+    const position = body.geometry.getAttribute("position"), index = body.geometry.getIndex().array;
+    body.box = body.box || new THREE.Box3().setFromArray(position.array);
+    if (!ray.intersectsBox(body.box)) return;
+    for (let t = 0; t < index.length; t += 3) {
+      corners.forEach((corner, k) => corner.fromArray(position.array, 3 * index[t + k]));
+      if (!ray.intersectTriangle(...corners, false, hit)) continue;
+      const distance = hit.distanceTo(origin);
+      if (best && best.distance <= distance) continue;
+      const weights = new THREE.Vector3();
+      THREE.Triangle.getBarycoord(hit, ...corners, weights);
+      best = { distance, point: hit.clone(), body: number, triangle: t / 3, weights: weights.toArray(),
+        vertices: [0, 1, 2].map((k) => body.source[index[t + k]]) };
+    }
+  });
+  return best;
+}
+
+// The contact whose dot is nearest to a place of the picture (pixels), within `reach` of it; -1 if there is none.
+// Those between bodies are seen through them, so what is in front of them does not hide them here either.
+function pick_contact(shown, camera, { width, height }, { x, y }, reach) {
+  const point = new THREE.Vector3();
+  let best = -1, nearest = reach;
+  for (let i = 0; i < shown.count; ++i) {
+    point.fromArray(shown.point, 3 * i).project(camera);
+    if (Math.abs(point.z) > 1) continue;
+    const distance = Math.hypot((point.x + 1) / 2 * width - x, (1 - point.y) / 2 * height - y);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    best = i;
+  }
+  return best;
+}

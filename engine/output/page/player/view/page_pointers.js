@@ -1,0 +1,57 @@
+// Mouse: left turns, right or with Shift moves, wheel zooms to what is under the pointer. Touch: one finger turns, two
+// move and zoom, a tap shows values.
+"use strict";
+
+// Places are in pixels of the canvas. hover(x, y) is called when the pointer rests on the picture, leave() when not.
+function listen_to_pointers(canvas, { turn, pan, zoom, reset, hover, leave }) {
+  const down = new Map();
+  let moved = 0;
+  const at = (event) => {
+    const frame = canvas.getBoundingClientRect();
+    return { x: event.clientX - frame.left, y: event.clientY - frame.top };
+  };
+  const pair = () => {
+    const [a, b] = [...down.values()];
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, spread: Math.max(Math.hypot(a.x - b.x, a.y - b.y), 1) };
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    try { canvas.setPointerCapture(event.pointerId); } catch (error) { /* a pointer that has gone already */ }
+    if (down.size === 0) moved = 0;
+    down.set(event.pointerId, at(event));
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const last = down.get(event.pointerId), now = at(event);
+    if (!last) {
+      if (event.pointerType !== "touch") hover(now.x, now.y);
+      return;
+    }
+    const dx = now.x - last.x, dy = now.y - last.y;
+    moved += Math.abs(dx) + Math.abs(dy);
+    if (moved > 4) leave();
+    if (down.size === 2) {
+      const before = pair();
+      down.set(event.pointerId, now);
+      const after = pair();
+      pan(after.x - before.x, after.y - before.y);
+      zoom(before.spread / after.spread, after.x, after.y);
+      return;
+    }
+    down.set(event.pointerId, now);
+    if (event.shiftKey || (event.buttons & 6) !== 0) pan(dx, dy);
+    else turn(dx, dy);
+  });
+  for (const name of ["pointerup", "pointercancel"])
+    canvas.addEventListener(name, (event) => {
+      const place = down.get(event.pointerId);
+      down.delete(event.pointerId);
+      if (place && name === "pointerup" && moved <= 4) hover(place.x, place.y);
+    });
+  canvas.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch") leave(); });
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("dblclick", reset);
+  canvas.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const place = at(event);
+    zoom(Math.exp(0.0012 * event.deltaY * (event.deltaMode === 1 ? 30 : 1)), place.x, place.y);
+  }, { passive: false });
+}

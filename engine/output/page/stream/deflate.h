@@ -1,0 +1,27 @@
+// Bytes made few (zlib, RFC 1950), as browsers undo it with DecompressionStream("deflate").
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace skerry {
+
+/// Takes bytes as they come and keeps only what they are packed into.
+class Deflater {
+public:
+    Deflater();
+    ~Deflater();
+    Deflater(Deflater&&) noexcept;
+    Deflater& operator=(Deflater&&) noexcept;
+
+    void add(std::string_view bytes);
+    /// All bytes so far, packed, with the end that makes them whole. More can be added afterwards.
+    std::string packed() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skerry

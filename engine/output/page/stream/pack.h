@@ -1,0 +1,42 @@
+// Numbers as bytes.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "components/types.h"
+
+namespace skerry {
+
+static_assert(std::endian::native == std::endian::little, "the page reads numbers as they are in memory here");
+
+template <class T>
+void put(std::string& out, T value) {
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+inline void put_floats(std::string& out, const Vec3& v) {
+    for (int axis = 0; axis < 3; ++axis) put(out, static_cast<float>(v[axis]));
+}
+
+/// Seven bits a byte, the lowest first; all bytes but the last have the eighth bit set (LEB128).
+inline void put_count(std::string& out, std::uint64_t value) {
+    for (; value > 127; value >>= 7) out += static_cast<char>((value & 127) | 128);
+    out += static_cast<char>(value);
+}
+
+/// 0, -1, 1, -2, ... as 0, 1, 2, 3, ...: small changes of either sign are small counts.
+constexpr std::uint64_t zigzag(std::int64_t value) {
+    return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
+}
+
+inline void put_change(std::string& out, std::int64_t value) {
+    put_count(out, zigzag(value));
+}
+
+/// The bytes in base64 (RFC 4648).
+std::string base64(std::string_view bytes);
+
+}  // namespace skerry

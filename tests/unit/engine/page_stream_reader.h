@@ -1,0 +1,52 @@
+// Reads frames of the page back, as the page's own player does (engine/output/page/player/data/page_decode.js): a twin
+// that shares nothing with what writes them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// The bytes of a zlib stream. Throws std::runtime_error where it is none, or not whole.
+std::string inflate_all(const std::string& packed);
+
+struct ReadBody {
+    std::size_t number;
+    std::vector<Vec3> position;              // m, by vertex
+    std::array<std::vector<Real>, 3> value;  // speed, stress, strain by vertex
+};
+
+struct ReadContact {
+    Index first, second, collider, region;
+    Vec3 point, force;
+    Real normal_force;
+    int state, row_prev;  // row_prev: of the frame before, -1 if new
+};
+
+struct ReadFrame {
+    std::array<Real, 4> top;  // of speed, stress, strain, force
+    std::vector<ReadBody> bodies;
+    std::vector<std::size_t> colliders;
+    std::vector<ReadContact> contacts;
+};
+
+struct ReadShape {
+    std::vector<Index> node;
+    std::vector<std::array<Index, 3>> triangles;
+    Vec3 origin;
+    Real step;  // m
+};
+
+struct ReadRun {
+    std::vector<ReadShape> shapes;  // by number of the body
+    std::vector<ReadFrame> frames;
+};
+
+/// All frames of packed_frames(). Throws std::runtime_error where bytes are missing.
+ReadRun read_run(const std::string& packed);
+
+}  // namespace skerry
