@@ -1,10 +1,13 @@
 #include "skerry/world.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <ostream>
+#include <random>
 #include <utility>
 
+#include "engine/world/contact_view.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
@@ -26,14 +29,38 @@ std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh,
     return rows;
 }
 
+/// Of no two worlds of this process the same, and hardly the same as that of a world that another process saved.
+std::uint32_t next_world_number() {
+    static std::atomic<std::uint32_t> next = std::random_device{}();
+    const std::uint32_t number = next++;
+    return number != 0 ? number : next++;  // 0: no world
+}
+
 }  // namespace
 
 WorldState::WorldState(const Settings& settings) : executor(make_executor(settings.backend, settings.threads)) {
+    model.set_world(next_world_number());
     model.settings = settings;
     model.settings.backend = executor->backend();
     scratch.parameters = step_parameters(settings);
     graph.track(this, sizeof *this, name_of_column);
     build_step(*this);
+}
+
+void WorldState::require_between_steps(const char* call) const {
+    if (!advancing) return;
+    Complaint{.file = {},
+              .object = call,
+              .field = {},
+              .found = "a call in the middle of advance",
+              .expected = "one between two calls of it",
+              .hint = "what advance calls back may look at the world, and not build, remove or advance"}
+        .raise();
+}
+
+void WorldState::begin_edit(const char* call) {
+    require_between_steps(call);
+    view_contacts(*this);  // while rows are where contacts say
 }
 
 void WorldState::topology_changed() {
@@ -45,18 +72,32 @@ void WorldState::topology_changed() {
     record.balance.close();
     scratch.contacts.resize(0);
     scratch.regions = RegionTable{};
-    record.contact_view_is_current = false;
 }
 
-World::World(const Settings& settings) {
-    validate(settings);
-    state_ = std::make_unique<WorldState>(settings);
+World::StateOwner::StateOwner(std::unique_ptr<WorldState> owned) : owned_(std::move(owned)) {}
+World::StateOwner::~StateOwner() = default;
+World::StateOwner::StateOwner(StateOwner&&) noexcept = default;
+World::StateOwner& World::StateOwner::operator=(StateOwner&&) noexcept = default;
+
+WorldState& World::StateOwner::operator*() const {
+    if (!owned_)
+        Complaint{.file = {},
+                  .object = "world",
+                  .field = {},
+                  .found = "one that was moved from",
+                  .expected = "a world",
+                  .hint = "use the one that it was moved to"}
+            .raise();
+    return *owned_;
 }
+
+World::World(const Settings& settings) : state_((validate(settings), std::make_unique<WorldState>(settings))) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 MaterialHandle World::add_material(const MaterialSettings& material) {
+    state_->require_between_steps("add_material");
     validate(material, state_->model.settings);
     MaterialTable& table = state_->model.materials;
     const std::size_t row = table.slot.size();
@@ -80,6 +121,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     validate(mesh, body);
     const Index material = state_->model.row(body.material, "add_body");
     const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(state_->model, mesh, body);
+    state_->begin_edit("add_body");
     const BodyHandle handle = state_->model.body_map.insert(static_cast<Index>(state_->model.bodies.slot.size()));
     append_body(state_->model, {.slot = handle.slot,
                                 .kind = BodyKind::deformable,
@@ -103,6 +145,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
 
 ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& collider) {
     validate(shape, collider);
+    state_->begin_edit("add_collider");
     const ColliderHandle handle =
         state_->model.collider_map.insert(static_cast<Index>(state_->model.colliders.slot.size()));
     append_collider(state_->model, handle.slot, shape, collider, state_->clock.time);
@@ -125,6 +168,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
+    state_->begin_edit("attach");
     const AttachmentHandle handle =
         state_->model.attachment_map.insert(static_cast<Index>(state_->model.attachments.slot.size()));
     append_attachment(state_->model, handle.slot, row, nodes, {pivot, Mat3::Identity()}, motion, state_->clock.time);
@@ -134,6 +178,8 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
 
 void World::remove(BodyHandle body) {
     const Index row = state_->model.row(body, "remove");
+    state_->begin_edit("remove");
+    forget_contacts_of(body, state_->record);
     erase_body(state_->model, row);
     state_->model.body_map.erase(body);
     state_->topology_changed();
@@ -141,6 +187,8 @@ void World::remove(BodyHandle body) {
 
 void World::remove(ColliderHandle collider) {
     const Index row = state_->model.row(collider, "remove");
+    state_->begin_edit("remove");
+    forget_contacts_of(collider, state_->record);
     erase_collider(state_->model, row);
     state_->model.collider_map.erase(collider);
     state_->topology_changed();
@@ -148,6 +196,7 @@ void World::remove(ColliderHandle collider) {
 
 void World::remove(AttachmentHandle attachment) {
     const Index row = state_->model.row(attachment, "remove");
+    state_->begin_edit("remove");
     erase_attachment(state_->model, row);
     state_->model.attachment_map.erase(attachment);
     state_->topology_changed();

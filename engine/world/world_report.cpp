@@ -59,6 +59,8 @@ std::string StepReport::message() const {
     switch (status) {
         case StepStatus::ok:
             return {};
+        case StepStatus::stopped:
+            return "stopped between two steps, as was asked for";
         case StepStatus::not_finite:
             return "the step was not taken: " + who + where +
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";

@@ -27,7 +27,12 @@ struct WorldState {
     StepTransaction transaction;
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
+    bool advancing = false;  // what it calls back must not change what it goes over
 
+    /// Refuses a call from what advance calls back.
+    void require_between_steps(const char* call) const;
+    /// Before bodies or colliders come or go.
+    void begin_edit(const char* call);
     /// After bodies or colliders came or went: what is derived from all of them, and what counted on them.
     void topology_changed();
 };

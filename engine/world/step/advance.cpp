@@ -110,6 +110,18 @@ void require_countable(Real dt, Real step) {
         .raise();
 }
 
+/// Says that steps are being taken, until its end, however that comes.
+class AdvanceScope {
+public:
+    explicit AdvanceScope(bool& advancing) : advancing_(advancing) { advancing_ = true; }
+    ~AdvanceScope() { advancing_ = false; }
+    AdvanceScope(const AdvanceScope&) = delete;
+    AdvanceScope& operator=(const AdvanceScope&) = delete;
+
+private:
+    bool& advancing_;
+};
+
 }  // namespace
 
 Real lag_between_steps(const WorldState& world) {
@@ -119,6 +131,12 @@ Real lag_between_steps(const WorldState& world) {
 }
 
 StepReport World::advance(Real dt) {
+    return advance(dt, {});
+}
+
+StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>& go_on) {
+    WorldState& world = *state_;
+    world.require_between_steps("advance");
     if (!(dt >= 0) || !std::isfinite(dt))
         Complaint{.file = {},
                   .object = "advance",
@@ -128,7 +146,7 @@ StepReport World::advance(Real dt) {
                   .hint = {}}
             .raise();
     const ArithmeticScope arithmetic;  // what is done between the stages depends on the host no more than they do
-    WorldState& world = *state_;
+    const AdvanceScope scope(world.advancing);
     Model& model = world.model;
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
@@ -146,6 +164,10 @@ StepReport World::advance(Real dt) {
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     world.transaction.begin_call(model, clock);
     while (left > 0) {
+        if (go_on && !go_on(report)) {
+            report.status = StepStatus::stopped;
+            break;
+        }
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
         if (!(std::min(trusted, tries.longest) > std::numeric_limits<Real>::epsilon() * end)) {
