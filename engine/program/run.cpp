@@ -9,6 +9,8 @@
 
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
+#include "engine/program/course.h"
+#include "engine/program/number_text.h"
 #include "engine/program/problem_export.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
@@ -23,7 +25,7 @@ namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
 
-/// Ctrl-C and polite kills end the run between two frames; a second one ends it at once.
+/// Ctrl-C and polite kills end the run between two steps; a second one ends it at once.
 class SignalGuard {
 public:
     SignalGuard() {
@@ -77,71 +79,37 @@ private:
     double seconds_ = 0;
 };
 
-struct Course {
-    double seconds, frame_step;
-    int samples;  // of the probes in a frame
-};
-
-Course course_of(const RunOptions& options, const Scene& scene) {
-    Course course{options.seconds.value_or(scene.seconds), scene.frame_step, 1};
-    if (options.frames_per_second) course.frame_step = 1 / *options.frames_per_second;
-    const auto complain_of = [&](const char* field, double count, const char* hint) {
-        char found[64];
-        std::snprintf(found, sizeof found, "%g of them", count);
-        Complaint{.file = options.scene.string(),
-                  .object = "run",
-                  .field = field,
-                  .found = found,
-                  .expected = "at most 1e9",
-                  .hint = hint}
-            .raise();
-    };
-    constexpr double most = 1e9;
-    if (const double frames = course.seconds / course.frame_step; !(frames <= most))
-        complain_of("frames", frames, "seconds times frames per second: seconds, frame_step");
-    if (scene.probes.empty()) return course;
-    const double samples = std::min(course.frame_step, course.seconds) / scene.probe_step;
-    if (!(samples <= most)) complain_of("samples of the probes in a frame", samples, "probe_step");
-    course.samples = std::max(1, static_cast<int>(std::lround(samples)));
-    return course;
-}
-
-/// About how many steps a run takes: samples are cut into equal steps.
-double steps_of(const Course& course, const World& world) {
-    const double sample = course.frame_step / course.samples;
-    const Real stable = world.stable_step() * world.settings().step_safety;
-    const Real longest = std::min(stable, world.settings().step_size.value_or(stable));
-    return course.seconds / sample * std::ceil(sample / longest);
-}
-
 /// Runs frame after frame. What went wrong is in result.status.
-void run_frames(Scene& scene, const Course& course, FrameOutput& output, bool show_progress, RunResult& result) {
+void run_frames(Scene& scene, const Course& course, FrameOutput& output, Progress& progress, RunResult& result) {
     const SignalGuard guard;
-    Progress progress(show_progress, course.seconds);
     ProbeRecorder probes(scene);
     World& world = scene.world;
-    constexpr double slack = 1e-9;  // of a frame: 0.1 s are six frames of 1/60 s, not seven
-    const auto frame_count = std::max(1L, static_cast<long>(std::ceil(course.seconds / course.frame_step - slack)));
+    std::uint64_t steps = 0;
+    const auto go_on = [&](const StepReport& so_far) {
+        progress.show(world.time(), steps + static_cast<std::uint64_t>(so_far.steps));
+        return caught_signal == 0;
+    };
     output.add_frame(world);
     result.peak_kinetic_energy = world.energy().kinetic;
-    for (long frame = 0; frame < frame_count && result.status == "ok"; ++frame) {
-        const double begin = static_cast<double>(frame) * course.frame_step;
-        const double length = std::min(course.frame_step, course.seconds - begin);
-        for (int sample = 0; sample < course.samples; ++sample) {
+    for (long frame = 0; frame < course.frames() && result.status == "ok"; ++frame) {
+        const Real begin = world.time();
+        const double duration = course.length_of(frame) / course.samples;
+        for (int sample = 0; sample < course.samples && result.status == "ok"; ++sample) {
             const Stopwatch watch;
-            const double duration = length / course.samples;
-            const StepReport step = world.advance(duration);
+            const Real start = world.time();
+            const StepReport step = world.advance(duration, go_on);
             result.seconds_wall += watch.seconds();
-            if (!step.ok()) {
+            steps += static_cast<std::uint64_t>(step.steps);
+            if (step.status == StepStatus::stopped)
+                result.status = "stopped by a signal at " + short_number(world.time(), 6) + " s";
+            else if (!step.ok())
                 result.status = step.message() + " (" + advice + ")";
-                break;
-            }
-            probes.sample(world, duration);
+            const Real sampled = step.ok() ? duration : world.time() - start;
+            if (sampled > 0) probes.sample(world, sampled);
         }
+        if (result.status != "ok" && !(world.time() > begin)) break;  // the frame before shows all there is
         output.add_frame(world);
         result.peak_kinetic_energy = std::max(result.peak_kinetic_energy, world.energy().kinetic);
-        progress.show(world.time());
-        if (caught_signal != 0) result.status = "stopped by a signal at " + std::to_string(world.time()) + " s";
     }
     result.probes = probes.records();
 }
@@ -186,14 +154,17 @@ int run(const RunOptions& options) {
                                           {"--stats", options.stats},
                                           {"--trace", options.trace}}};
     require_distinct(files);
-    const Course course = course_of(options, scene);
+    const Course course = course_of(scene, options);
     FrameOutput output(options, scene);
     if (!options.trace.empty()) world.set_tracing(true);
 
     ProblemExport problems(options, scene.name);
-    if (!options.problems.empty()) problems.watch(world, steps_of(course, world));
+    if (!options.problems.empty()) problems.watch(world, course.steps(world));
 
-    run_frames(scene, course, output, !options.quiet, result);
+    {
+        Progress progress(!options.quiet, course.seconds, course.steps(world), course.longest_step(world));
+        run_frames(scene, course, output, progress, result);
+    }
 
     result.report = world.report();
     result.state_hash = world.state_hash();

@@ -1,0 +1,73 @@
+"""What a run says while it lasts, how it ends, and what becomes of its outputs and of inputs beyond all numbers.
+
+Called as: program_run_test.py PROGRAM SOURCE_FOLDER
+"""
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from program_case import PROGRAM, SCENE, ProgramCase
+
+# One step after the other: no frame and no sample ends for a day.
+SLOW = {**SCENE, "seconds": 1e5, "frame_step": 1e5, "probe_step": 1e5}
+
+
+class ProgramRunTest(ProgramCase):
+    def test_an_interrupt_ends_a_run_within_a_frame_that_would_take_hours_and_what_there_is_is_whole(self):
+        slow = self.write("slow.json", SLOW)
+        stats, page, out = (self.folder / name for name in ("stats.json", "page.html", "out"))
+        with subprocess.Popen([PROGRAM, "run", slow, "--stats", stats, "--page", page, "--out", out],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(1.5)
+            process.send_signal(signal.SIGINT)
+            sent = time.monotonic()
+            stdout, stderr = process.communicate(timeout=60)
+        self.assertLess(time.monotonic() - sent, 5)  # hundredths of a second on a machine that is not busy
+        self.assertEqual(process.returncode, 130, stderr)
+        found = json.loads(stats.read_text())
+        self.assertIn("stopped by a signal", found["status"])
+        self.assertGreater(found["seconds_simulated"], 0)
+        self.assertIn("stopped by a signal", stdout)
+        self.assertTrue(page.exists())
+        frames = sorted(path.name for path in out.glob("drop_bodies_*.vtu"))
+        self.assertEqual(frames, ["drop_bodies_0000.vtu", "drop_bodies_0001.vtu"])
+        for frame in frames:
+            self.assertIn(frame, (out / "drop.pvd").read_text())
+        self.assertEqual(list(self.folder.rglob("*.part")), [])
+        probe = found["probes"]["base"]
+        self.assertAlmostEqual(sum(probe[key] for key in ("stick_time", "slide_time", "open_time")),
+                               found["seconds_simulated"])
+
+    def test_a_run_says_how_much_there_is_to_do_and_how_long_it_will_take(self):
+        with subprocess.Popen([PROGRAM, "run", self.write("slow.json", SLOW)],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            lines = [process.stderr.readline() for _ in range(3)]
+            process.send_signal(signal.SIGTERM)
+            process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 128 + signal.SIGTERM)
+        self.assertRegex(lines[0], r"^skerry: 1e\+05 s to simulate, about [\d,]+ steps of [\d.]+ ms$")
+        for line in lines[1:]:
+            self.assertRegex(line, r"after [\d.]+ s: .* of 1e\+05 s .* steps; about .* left$")
+        steps = [int(re.search(r"([\d,]+) steps", line)[1].replace(",", "")) for line in lines[1:]]
+        self.assertGreater(steps[1], steps[0])
+
+    def test_inspect_estimates_the_cost_of_the_whole_run(self):
+        found = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
+        run = json.loads(self.run_with_stats(self.scene))
+        self.assertAlmostEqual(found["steps"], run["steps"], delta=0.05 * run["steps"])
+        self.assertAlmostEqual(found["wall_seconds"], 0.2 * found["wall_seconds_per_second"])
+        self.assertRegex(self.skerry("inspect", self.scene).stdout,
+                         r"a simulated second, as it starts; .* for all of it")
+
+    def run_with_stats(self, scene, *arguments):
+        stats = self.folder / "stats.json"
+        self.skerry("run", scene, "--quiet", "--stats", stats, *arguments)
+        return stats.read_text()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
