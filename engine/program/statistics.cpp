@@ -51,7 +51,7 @@ Json trust_of(const RunResult& result) {
 std::vector<std::string> doubts_of(const RunResult& result) {
     const WorldReport& r = result.report;
     std::vector<std::string> doubts;
-    constexpr double small_share = 0.05;  // of the energy: quick scenes at the stable step stay below it
+    constexpr double small_share = 0.02;  // of the energy: at the stable step what is resolved stays below 1 %
     if (r.unconverged > 0)
         doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
                          " contact regions ended above the tolerance, the worst at " + short_number(r.worst_error) +

@@ -10,13 +10,25 @@ import sys
 import time
 import unittest
 
-from program_case import PROGRAM, SCENE, ProgramCase
+from program_case import PROGRAM, ROOT, SCENE, ProgramCase
 
 # One step after the other: no frame and no sample ends for a day.
 SLOW = {**SCENE, "seconds": 1e5, "frame_step": 1e5, "probe_step": 1e5}
 
 
 class ProgramRunTest(ProgramCase):
+    def test_energy_that_misses_some_per_cent_is_doubted(self):
+        crushed = {"name": "crushed", "seconds": 0.15, "materials": {"soft": {"E": 2e4, "nu": 0.3, "rho": 1000}},
+                   "bodies": [{"name": "torus", "mesh": {"file": str(ROOT / "scenes/meshes/torus.msh")},
+                               "material": "soft", "position": [0, 0, 0.13], "velocity": [0, 0, -5]}],
+                   "colliders": [{"shape": {"plane": {}}}]}
+        trust = json.loads(self.run_with_stats(self.write("crushed.json", crushed)))["trust"]
+        self.assertGreater(trust["energy"]["share"], 0.02)
+        self.assertTrue(any("energy does not add up" in doubt for doubt in trust["doubts"]), trust)
+        calm = json.loads(self.run_with_stats(self.scene))["trust"]
+        self.assertLess(calm["energy"]["share"], 0.01)
+        self.assertEqual(calm["doubts"], [])
+
     def test_an_interrupt_ends_a_run_within_a_frame_that_would_take_hours_and_what_there_is_is_whole(self):
         slow = self.write("slow.json", SLOW)
         stats, page, out = (self.folder / name for name in ("stats.json", "page.html", "out"))
