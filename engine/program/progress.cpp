@@ -22,6 +22,10 @@ double share_of(double time, double seconds) {
 
 }  // namespace
 
+void clear_bar() {
+    if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
+}
+
 Progress::Progress(bool wanted, double seconds, double steps, double step)
     : wanted_(wanted),
       bar_(wanted && isatty(STDERR_FILENO) != 0),
@@ -37,7 +41,7 @@ void Progress::begin() {
 }
 
 Progress::~Progress() {
-    if (bar_ && begun_) std::fputs("\r\033[K", stderr);
+    if (bar_ && begun_) clear_bar();
 }
 
 void Progress::show(double time, std::uint64_t steps) {

@@ -15,6 +15,9 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Takes a bar away for what is to be said; does nothing where there is none.
+void clear_bar();
+
 class Progress {
 public:
     /// Of a run of so many seconds, in about so many steps of `step` seconds. All goes to standard error; `wanted`

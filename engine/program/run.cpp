@@ -1,23 +1,15 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <iostream>
-#include <memory>
 #include <ostream>
 
-#include "engine/output/write_file.h"
 #include "engine/program/commands.h"
 #include "engine/program/course.h"
 #include "engine/program/number_text.h"
-#include "engine/program/problem_export.h"
 #include "engine/program/progress.h"
-#include "engine/program/require_writable.h"
+#include "engine/program/run_outputs.h"
 #include "engine/program/run_result.h"
 #include "jobs/executor.h"
-#include "skerry/error.h"
-#include "skerry/output.h"
 
 namespace skerry {
 
@@ -49,38 +41,8 @@ private:
 const char* const advice =
     "on the command line: a smaller --step; `skerry inspect` shows the stable step of every body and what overlaps";
 
-/// What is written while a run goes on.
-class FrameOutput {
-public:
-    FrameOutput(const RunOptions& options, const Scene& scene) {
-        if (!options.out.empty()) vtk_ = std::make_unique<VtkWriter>(options.out, scene.name);
-        if (!options.page.empty()) page_ = std::make_unique<PageWriter>(options.page, scene.name);
-    }
-    void add_frame(const World& world) {
-        const Stopwatch watch;
-        if (vtk_) vtk_->write_frame(world);
-        if (page_) page_->add_frame(world);
-        ++frames_;
-        seconds_ += watch.seconds();
-    }
-    void close(const World& world) {
-        const Stopwatch watch;
-        if (vtk_) vtk_->close();
-        if (page_) page_->close(world);
-        seconds_ += watch.seconds();
-    }
-    int frames() const { return frames_; }
-    double seconds() const { return seconds_; }
-
-private:
-    std::unique_ptr<VtkWriter> vtk_;
-    std::unique_ptr<PageWriter> page_;
-    int frames_ = 0;
-    double seconds_ = 0;
-};
-
 /// Runs frame after frame. What went wrong is in result.status.
-void run_frames(Scene& scene, const Course& course, FrameOutput& output, Progress& progress, RunResult& result) {
+void run_frames(Scene& scene, const Course& course, RunOutputs& outputs, Progress& progress, RunResult& result) {
     const SignalGuard guard;
     ProbeRecorder probes(scene);
     World& world = scene.world;
@@ -89,8 +51,13 @@ void run_frames(Scene& scene, const Course& course, FrameOutput& output, Progres
         progress.show(world.time(), steps + static_cast<std::uint64_t>(so_far.steps));
         return caught_signal == 0;
     };
-    output.add_frame(world);
-    result.peak_kinetic_energy = world.energy().kinetic;
+    const auto add_frame = [&] {
+        outputs.add_frame(world);
+        result.peak_kinetic_energy = std::max(result.peak_kinetic_energy, world.energy().kinetic);
+        if (result.status == "ok" && outputs.all_failed())
+            result.status = "stopped at " + short_number(world.time(), 6) + " s: no output is left that can be written";
+    };
+    add_frame();
     for (long frame = 0; frame < course.frames() && result.status == "ok"; ++frame) {
         const Real begin = world.time();
         const double duration = course.length_of(frame) / course.samples;
@@ -108,26 +75,9 @@ void run_frames(Scene& scene, const Course& course, FrameOutput& output, Progres
             if (sampled > 0) probes.sample(world, sampled);
         }
         if (result.status != "ok" && !(world.time() > begin)) break;  // the frame before shows all there is
-        output.add_frame(world);
-        result.peak_kinetic_energy = std::max(result.peak_kinetic_energy, world.energy().kinetic);
+        add_frame();
     }
     result.probes = probes.records();
-}
-
-void write_results(const RunOptions& options, const RunResult& result, const ProblemExport& problems,
-                   const World& world) {
-    if (!options.stats.empty())
-        write_file(options.stats, [&](std::ostream& out) { out << statistics_of(result).dump(1) << "\n"; });
-    if (!options.trace.empty()) write_file(options.trace, [&](std::ostream& out) { world.write_trace(out); });
-    if (!options.quiet) {
-        std::cout << summary_of(result);
-        for (const auto* file : {&options.out, &options.page, &options.stats, &options.trace})
-            if (!file->empty()) std::cout << "  wrote         " << file->string() << "\n";
-        if (!options.problems.empty())
-            std::cout << "  wrote         " << problems.files() << " contact problems of " << problems.steps()
-                      << " steps to " << options.problems.string() << "\n";
-        std::cout.flush();
-    }
 }
 
 }  // namespace
@@ -145,39 +95,26 @@ int run(const RunOptions& options) {
     for (const BodyHandle body : world.bodies())
         result.mean_edge += world.mean_edge(body) / static_cast<Real>(world.bodies().size());
 
-    for (const auto* folder : {&options.out, &options.problems})
-        if (!folder->empty()) require_writable_folder(*folder);
-    for (const auto* file : {&options.stats, &options.page, &options.trace})
-        if (!file->empty()) require_writable_file(*file);
-    const std::array<NamedFile, 4> files{{{"the scene", options.scene},
-                                          {"--page", options.page},
-                                          {"--stats", options.stats},
-                                          {"--trace", options.trace}}};
-    require_distinct(files);
     const Course course = course_of(scene, options);
-    FrameOutput output(options, scene);
+    RunOutputs outputs(options, scene);
     if (!options.trace.empty()) world.set_tracing(true);
-
-    ProblemExport problems(options, scene.name);
-    if (!options.problems.empty()) problems.watch(world, course.steps(world));
+    outputs.watch(world, course.steps(world));
 
     {
         Progress progress(!options.quiet, course.seconds, course.steps(world), course.longest_step(world));
-        run_frames(scene, course, output, progress, result);
+        run_frames(scene, course, outputs, progress, result);
     }
 
     result.report = world.report();
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
-    output.close(world);
-    result.frames = output.frames();
-    // problems are written within the steps
-    result.seconds_wall -= problems.seconds();
-    result.seconds_output = output.seconds() + problems.seconds();
-    write_results(options, result, problems, world);
-    if (result.status == "ok") return exit_ok;
-    std::cerr << "skerry: " << result.status << "\n";
-    return caught_signal != 0 ? exit_signal + caught_signal : exit_failed;
+    result.seconds_wall -= outputs.seconds_in_steps();
+    outputs.finish(world, result);
+    if (!options.quiet) std::cout << summary_of(result) << outputs.summary() << std::flush;
+    if (result.status != "ok") std::cerr << "skerry: " << result.status << "\n";
+    if (caught_signal != 0) return exit_signal + caught_signal;
+    if (!result.outputs_failed.empty()) return exit_output;
+    return result.status == "ok" ? exit_ok : exit_failed;
 }
 
 }  // namespace skerry

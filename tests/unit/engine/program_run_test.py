@@ -29,6 +29,69 @@ class ProgramRunTest(ProgramCase):
         self.assertLess(calm["energy"]["share"], 0.01)
         self.assertEqual(calm["doubts"], [])
 
+    def blocked(self, *names):
+        """A name at which a file cannot be written, from a certain moment of the run on: a full disk to the program."""
+        place = self.folder.joinpath(*names)
+        (place / "not empty").mkdir(parents=True)
+
+    def test_an_output_that_cannot_be_written_takes_no_other_with_it(self):
+        out, page, stats, trace = (self.folder / name for name in ("out", "page.html", "stats.json", "trace.json"))
+        outputs = ("--out", out, "--page", page, "--stats", stats, "--trace", trace)
+        self.blocked("out", "drop_contacts_0003.vtp.part")
+        done = self.skerry("run", self.scene, *outputs, code=3)
+        self.assertIn("drop_contacts_0003.vtp: output: found", done.stderr)
+        self.assertIn("--out ends here", done.stderr)
+        self.assertIn("NOT WRITTEN   --out", done.stdout)
+        self.assertNotIn(f"wrote         {out}", done.stdout)
+        found = json.loads(stats.read_text())
+        self.assertEqual((found["status"], list(found["outputs_failed"])), ("ok", ["--out"]))
+        self.assertAlmostEqual(found["seconds_simulated"], 0.2)
+        self.assertIn("<html", page.read_text()[:2000].lower())
+        self.assertTrue(json.loads(trace.read_text()))
+        frames = sorted(path.name for path in out.glob("drop_*.vt*") if path.is_file())
+        self.assertEqual(frames, sorted([f"drop_bodies_000{i}.vtu" for i in range(3)] + ["drop_colliders_0000.vtp"] +
+                                        [f"drop_contacts_000{i}.vtp" for i in range(3)]))
+        self.assertTrue(all(name in (out / "drop.pvd").read_text() for name in frames))
+
+        self.blocked("page.html.part")
+        done = self.skerry("run", self.scene, "--page", page, "--stats", stats, "--out", self.folder / "good", code=3)
+        self.assertIn("--page ends here", done.stderr)
+        self.assertEqual(list(json.loads(stats.read_text())["outputs_failed"]), ["--page"])
+        self.assertTrue((self.folder / "good" / "drop.pvd").exists())
+
+        endless = self.write("endless.json", {**SCENE, "seconds": 1e6})  # with nothing left to write it ends
+        done = self.skerry("run", endless, "--out", out, code=3)
+        self.assertIn("no output is left", done.stderr)
+
+    def test_frames_of_an_earlier_run_make_room_and_nothing_else_does(self):
+        out = self.folder / "out"
+        self.skerry("run", self.scene, "--out", out, "--quiet")
+        mine = ["notes.txt", "drop_bodies_old.vtu", "drop_bodies_0009.vtp", "drop_bodies_001.vtu",
+                "drop_extra_0009.vtu", "drop2_bodies_0009.vtu", "xdrop_bodies_0009.vtu", "stats.json"]
+        for name in mine:
+            (out / name).write_text("mine")
+        (out / "drop_bodies_0010.vtu").unlink()
+        (out / "drop_bodies_0010.vtu").symlink_to("notes.txt")
+        self.assertTrue((out / "drop_bodies_0012.vtu").exists())
+        self.skerry("run", self.scene, "--seconds", 0.05, "--out", out, "--quiet")
+        frames = sorted(path.name for path in out.iterdir() if path.name not in mine)
+        self.assertEqual(frames, sorted([f"drop_bodies_000{i}.vtu" for i in range(4)] + ["drop_colliders_0000.vtp"] +
+                                        [f"drop_contacts_000{i}.vtp" for i in range(4)] +
+                                        ["drop.pvd", "drop_bodies_0010.vtu"]))
+        for name in mine:
+            self.assertEqual((out / name).read_text(), "mine")
+        kept = out / "drop_bodies_0003.vtu"
+        kept.chmod(0o444)
+        self.assert_refused("run", self.scene, "--seconds", 0.01, "--out", out, said=["drop_bodies_0003", "protected"])
+        kept.chmod(0o644)
+
+    def test_no_output_goes_among_the_frames_under_their_names(self):
+        out = self.folder / "out"
+        for name in ("drop.pvd", "drop_bodies_0000.vtu", "drop_colliders_0007.vtp"):
+            self.assert_refused("run", self.scene, "--out", out, "--stats", out / name,
+                                said=["--stats", "--out writes"])
+        self.skerry("run", self.scene, "--seconds", 0.02, "--out", out, "--quiet", "--stats", out / "drop_0000.json")
+
     def test_an_interrupt_ends_a_run_within_a_frame_that_would_take_hours_and_what_there_is_is_whole(self):
         slow = self.write("slow.json", SLOW)
         stats, page, out = (self.folder / name for name in ("stats.json", "page.html", "out"))

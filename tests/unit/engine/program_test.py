@@ -153,7 +153,7 @@ class ProgramTest(ProgramCase):
             self.assert_refused("run", endless, "--page", self.folder / "socket", said=["found a socket"])
         if pathlib.Path("/dev/full").exists():
             full = self.skerry("run", self.write("q.json", {**SCENE, "seconds": 0.01}), "--quiet", "--stats",
-                               "/dev/full", code=2)
+                               "/dev/full", code=3)
             self.assertIn("No space left", full.stderr)
             self.assertTrue(pathlib.Path("/dev/full").is_char_device())
 
