@@ -138,7 +138,15 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
                                 .rotation = rotation_matrix(body.rotation),
                                 .velocity = body.velocity,
                                 .angular_velocity = body.angular_velocity});
-    state_->model.body_records.back().name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
+    const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
+    state_->model.body_records.back().name = name;
+    try {
+        validate_step(state_->model, state_->model.row(handle, "add_body"), name);
+    } catch (const SceneError&) {
+        erase_body(state_->model, state_->model.row(handle, "add_body"));
+        state_->model.body_map.erase(handle);
+        throw;
+    }
     state_->topology_changed();
     return handle;
 }

@@ -96,17 +96,23 @@ void note_limit(WorldState& world, StepReport& report) {
 }
 
 /// Steps are counted with an int; a step so small that time does not move on by it would go on for ever.
-void require_countable(Real dt, Real step) {
+void require_countable(const Model& model, Real dt) {
     constexpr Real most = std::numeric_limits<int>::max();
+    Index body = no_index;
+    const Real stable = stable_step(model.bodies, &body) * model.settings.step_safety;
+    const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
     char found[64];
     std::snprintf(found, sizeof found, "%g s in steps of %g s", dt, step);
+    const bool of_body = !model.settings.step_size && body != no_index;
     Complaint{.file = {},
               .object = "advance",
               .field = "dt",
-              .found = found,
+              .found = found + (of_body ? ", the stable step of body '" +
+                                              model.body_records[static_cast<std::size_t>(body)].name + "'"
+                                        : std::string()),
               .expected = "at most 2147483647 steps",
-              .hint = {}}
+              .hint = of_body ? "check its size and material" : ""}
         .raise();
 }
 
@@ -152,8 +158,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     SearchMemory& search = world.cache.search.memory;
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
     settle_clusters(model, world.scratch.stiffness_sum);
-    require_countable(
-        dt, model.settings.step_size.value_or(skerry::stable_step(model.bodies) * model.settings.step_safety));
+    require_countable(model, dt);
     StepReport report;
     const Real end = clock.time + dt;
     Real left = dt;

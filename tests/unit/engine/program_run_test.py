@@ -92,6 +92,26 @@ class ProgramRunTest(ProgramCase):
                                 said=["--stats", "--out writes"])
         self.skerry("run", self.scene, "--seconds", 0.02, "--out", out, "--quiet", "--stats", out / "drop_0000.json")
 
+    def test_a_material_or_a_mesh_beyond_all_numbers_is_named(self):
+        for change in ({"rho": 1e-300}, {"E": 1e308}):
+            scene = {**SCENE, "materials": {"rubber": {**SCENE["materials"]["rubber"], **change}}}
+            self.assert_refused("run", self.write("wild.json", scene), said=["materials.rubber", "kg/m^3", "light"])
+        scene = json.loads(json.dumps(SCENE))
+        scene["bodies"][0]["mesh"]["scale"] = 1e-30
+        scene["probes"] = []
+        self.assert_refused("run", self.write("dot.json", scene), said=["block", "mesh, material: found edges of"])
+
+    def test_a_step_that_gets_shorter_is_not_called_longer(self):
+        for scene in (self.scene, ROOT / "scenes/skittles.json"):
+            kinds = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"]
+            lines = [line for line in self.skerry("inspect", scene).stdout.splitlines() if "without the worst" in line]
+            steps = [(bound["stable_dt"], without["stable_dt"]) for bound in (kind["step_bound"] for kind in kinds)
+                     for without in bound["without"]]
+            self.assertEqual(len(lines), len(steps))
+            self.assertTrue(lines)
+            for line, (with_it, without) in zip(lines, steps):
+                self.assertEqual("shorter" in line, without < with_it, line)
+
     def test_an_interrupt_ends_a_run_within_a_frame_that_would_take_hours_and_what_there_is_is_whole(self):
         slow = self.write("slow.json", SLOW)
         stats, page, out = (self.folder / name for name in ("stats.json", "page.html", "out"))
