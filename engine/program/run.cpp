@@ -92,8 +92,8 @@ int run(const RunOptions& options) {
     result.scene_file = options.scene.string();
     result.settings = world.settings();
     result.threads = make_executor(world.settings().backend, world.settings().threads)->worker_count();
-    for (const BodyHandle body : world.bodies())
-        result.mean_edge += world.mean_edge(body) / static_cast<Real>(world.bodies().size());
+    const std::vector<BodyHandle> bodies = world.bodies();
+    for (const BodyHandle body : bodies) result.mean_edge += world.mean_edge(body) / static_cast<Real>(bodies.size());
 
     const Course course = course_of(scene, options);
     RunOutputs outputs(options, scene);

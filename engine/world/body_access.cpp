@@ -102,6 +102,7 @@ Real World::mean_edge(BodyHandle body) const {
 }
 
 bool World::asleep(BodyHandle body) const {
+    state_->settle();
     return state_->model.bodies.asleep[static_cast<std::size_t>(state_->model.row(body, "asleep"))] != 0;
 }
 

@@ -29,6 +29,11 @@ std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh,
     return rows;
 }
 
+/// A mesh is a body, too; other colliders have no nodes.
+EditedRows rows_of(const Shape& shape) {
+    return std::holds_alternative<SurfaceMesh>(shape) ? EditedRows::bodies : EditedRows::colliders;
+}
+
 /// Of no two worlds of this process the same, and hardly the same as that of a world that another process saved.
 std::uint32_t next_world_number() {
     static std::atomic<std::uint32_t> next = std::random_device{}();
@@ -63,15 +68,23 @@ void WorldState::begin_edit(const char* call) {
     view_contacts(*this);  // while rows are where contacts say
 }
 
-void WorldState::topology_changed() {
-    model.rebuild_derived();
-    model.clusters.clear();  // of rows that have moved
-    model.clusters_open = true;
+void WorldState::end_edit(EditedRows rows) {
+    edited_ = std::max(edited_, rows);
+}
+
+void WorldState::settle() {
+    if (edited_ == EditedRows::none) return;
+    if (edited_ == EditedRows::bodies) {
+        model.rebuild_derived();
+        model.clusters.clear();  // of rows that have moved
+        model.clusters_open = true;
+    }
     model.wake_all();
     cache.drop_pairs(model);
     record.balance.close();
     scratch.contacts.resize(0);
     scratch.regions = RegionTable{};
+    edited_ = EditedRows::none;
 }
 
 World::StateOwner::StateOwner(std::unique_ptr<WorldState> owned) : owned_(std::move(owned)) {}
@@ -123,21 +136,22 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(state_->model, mesh, body);
     state_->begin_edit("add_body");
     const BodyHandle handle = state_->model.body_map.insert(static_cast<Index>(state_->model.bodies.slot.size()));
-    append_body(state_->model, {.slot = handle.slot,
-                                .kind = BodyKind::deformable,
-                                .self_contact = body.self_contact,
-                                .element = body.element,
-                                .material = material,
-                                .tetrahedron_material = tetrahedron_material,
-                                .collider = no_index,
-                                .contact_distance = body.contact_distance.value_or(-1),
-                                .nodes = mesh.nodes,
-                                .tetrahedra = mesh.tetrahedra,
-                                .triangles = {},
-                                .position = body.position,
-                                .rotation = rotation_matrix(body.rotation),
-                                .velocity = body.velocity,
-                                .angular_velocity = body.angular_velocity});
+    append_body(state_->model, state_->scratch.stiffness_sum,
+                {.slot = handle.slot,
+                 .kind = BodyKind::deformable,
+                 .self_contact = body.self_contact,
+                 .element = body.element,
+                 .material = material,
+                 .tetrahedron_material = tetrahedron_material,
+                 .collider = no_index,
+                 .contact_distance = body.contact_distance.value_or(-1),
+                 .nodes = mesh.nodes,
+                 .tetrahedra = mesh.tetrahedra,
+                 .triangles = {},
+                 .position = body.position,
+                 .rotation = rotation_matrix(body.rotation),
+                 .velocity = body.velocity,
+                 .angular_velocity = body.angular_velocity});
     const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
     state_->model.body_records.back().name = name;
     try {
@@ -147,7 +161,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
         state_->model.body_map.erase(handle);
         throw;
     }
-    state_->topology_changed();
+    state_->end_edit(EditedRows::bodies);
     return handle;
 }
 
@@ -156,10 +170,10 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
     state_->begin_edit("add_collider");
     const ColliderHandle handle =
         state_->model.collider_map.insert(static_cast<Index>(state_->model.colliders.slot.size()));
-    append_collider(state_->model, handle.slot, shape, collider, state_->clock.time);
+    append_collider(state_->model, state_->scratch.stiffness_sum, handle.slot, shape, collider, state_->clock.time);
     std::string& name = state_->model.collider_records.back().name;
     if (name.empty()) name = "collider " + std::to_string(handle.slot);
-    state_->topology_changed();
+    state_->end_edit(rows_of(shape));
     return handle;
 }
 
@@ -180,7 +194,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     const AttachmentHandle handle =
         state_->model.attachment_map.insert(static_cast<Index>(state_->model.attachments.slot.size()));
     append_attachment(state_->model, handle.slot, row, nodes, {pivot, Mat3::Identity()}, motion, state_->clock.time);
-    state_->topology_changed();
+    state_->end_edit(EditedRows::bodies);
     return handle;
 }
 
@@ -190,16 +204,17 @@ void World::remove(BodyHandle body) {
     forget_contacts_of(body, state_->record);
     erase_body(state_->model, row);
     state_->model.body_map.erase(body);
-    state_->topology_changed();
+    state_->end_edit(EditedRows::bodies);
 }
 
 void World::remove(ColliderHandle collider) {
     const Index row = state_->model.row(collider, "remove");
     state_->begin_edit("remove");
     forget_contacts_of(collider, state_->record);
+    const EditedRows rows = rows_of(state_->model.collider_records[static_cast<std::size_t>(row)].shape);
     erase_collider(state_->model, row);
     state_->model.collider_map.erase(collider);
-    state_->topology_changed();
+    state_->end_edit(rows);
 }
 
 void World::remove(AttachmentHandle attachment) {
@@ -207,7 +222,7 @@ void World::remove(AttachmentHandle attachment) {
     state_->begin_edit("remove");
     erase_attachment(state_->model, row);
     state_->model.attachment_map.erase(attachment);
-    state_->topology_changed();
+    state_->end_edit(EditedRows::bodies);
 }
 
 bool World::alive(BodyHandle body) const {
@@ -238,6 +253,7 @@ void World::set_gravity(const Vec3& gravity) {
 }
 
 Real World::stable_step() const {
+    state_->settle();
     settle_clusters(state_->model, state_->scratch.stiffness_sum);
     return skerry::stable_step(state_->model.bodies);
 }

@@ -92,6 +92,7 @@ std::string StepReport::warning() const {
 }
 
 std::uint64_t World::state_hash() const {
+    state_->settle();
     return skerry::state_hash(*state_);
 }
 Energy World::energy() const {
@@ -99,6 +100,7 @@ Energy World::energy() const {
 }
 
 WorldReport World::report() const {
+    state_->settle();
     const WorldState& world = *state_;
     WorldReport report;
     static_cast<RunCounters&>(report) = world.record.counters;

@@ -157,6 +157,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
+    world.settle();
     settle_clusters(model, world.scratch.stiffness_sum);
     require_countable(model, dt);
     StepReport report;
