@@ -10,11 +10,12 @@
 namespace skerry {
 
 /// Names one row of a table for as long as that row lives. A handle to a removed row is recognised as stale, also when
-/// its slot has been used again.
+/// its slot has been used again, and one to a row of another world, too.
 template <class Tag>
 struct Handle {
     std::uint32_t slot = 0xffffffffu;
     std::uint32_t generation = 0;
+    std::uint32_t world = 0;  // its number: of all worlds that it is in, if it was copied
 
     auto operator<=>(const Handle&) const = default;
 };
@@ -28,22 +29,29 @@ using AttachmentHandle = Handle<struct AttachmentTag>;
 template <class HandleType>
 class HandleMap {
 public:
+    /// The number of the world whose rows these are. A world that is copied, or saved and loaded, keeps it, so that
+    /// handles that were taken before are valid after; it is no part of what a step depends on.
+    std::uint32_t world() const { return world_; }
+    void set_world(std::uint32_t number) { world_ = number; }
+
     /// A handle for the new last row, `row`. Freed slots are used again, the lowest first, so that the same calls give
     /// the same handles.
     HandleType insert(Index row) {
-        std::uint32_t slot = 0;
+        std::uint32_t slot = lowest_free_;
         while (slot < row_.size() && row_[slot] != no_index) ++slot;
         if (slot == row_.size()) {
             row_.push_back(no_index);
             generation_.push_back(0);
         }
         row_[slot] = row;
-        return {slot, generation_[slot]};
+        lowest_free_ = slot + 1;
+        return handle_of_slot(slot);
     }
 
     /// The row of a live handle, or no_index for a stale or foreign one.
     Index row(HandleType handle) const {
-        if (handle.slot >= row_.size() || generation_[handle.slot] != handle.generation) return no_index;
+        if (handle.world != world_ || handle.slot >= row_.size() || generation_[handle.slot] != handle.generation)
+            return no_index;
         return row_[handle.slot];
     }
 
@@ -52,6 +60,7 @@ public:
         const Index erased = row_[handle.slot];
         row_[handle.slot] = no_index;
         ++generation_[handle.slot];
+        if (handle.slot < lowest_free_) lowest_free_ = handle.slot;
         row_erased(erased);
     }
 
@@ -62,7 +71,7 @@ public:
     }
 
     /// The live handle of a slot that a table row stores.
-    HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot]}; }
+    HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot], world_}; }
 
     void for_each_column(auto&& visit) {
         visit("row", row_);
@@ -72,6 +81,8 @@ public:
 private:
     Column<Index> row_;  // by slot; no_index: free
     Column<std::uint32_t> generation_;
+    std::uint32_t world_ = 0;
+    std::uint32_t lowest_free_ = 0;  // no slot below it is free
 };
 
 }  // namespace skerry

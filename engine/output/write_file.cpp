@@ -91,11 +91,11 @@ void make_folder(const std::filesystem::path& folder) {
 void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write) {
     const Target target = target_of(file);
     if (target.path.has_parent_path()) make_folder(target.path.parent_path());
-    const Temporary temporary{target.takes_bytes ? std::filesystem::path()
-                                                 : std::filesystem::path(target.path) += ".part"};
+    const std::filesystem::path part = std::filesystem::path(target.path) += ".part";
     errno = 0;
-    std::ofstream out(target.takes_bytes ? target.path : temporary.path, std::ios::binary | std::ios::trunc);
+    std::ofstream out(target.takes_bytes ? target.path : part, std::ios::binary | std::ios::trunc);
     if (!out) complain(file, "\"" + what(errno) + "\"", "a file that can be written");
+    const Temporary temporary{target.takes_bytes ? std::filesystem::path() : part};
     write(out);
     out.close();
     if (!out) complain(file, "\"" + what(errno) + "\" while writing", "room for the whole file");

@@ -17,6 +17,7 @@ enum ExitCode : int {
     exit_ok = 0,
     exit_failed = 1,     // a step could not be committed, a problem did not converge
     exit_bad_input = 2,  // a file or the command line
+    exit_output = 3,     // all is well but an output, which could not be written
 };
 inline constexpr int exit_signal = 128;  // plus the number of the signal
 

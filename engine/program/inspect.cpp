@@ -4,6 +4,7 @@
 
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
+#include "engine/program/course.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
@@ -74,6 +75,13 @@ Json bound_json(const StepBound& bound) {
     return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
 }
 
+/// A step beside the one that there is. Without some tetrahedra the others carry less mass: it may be shorter.
+std::string compared(Real ratio) {
+    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter";
+    if (ratio < 1) return "hardly shorter";
+    return ratio < hardly_longer ? "hardly longer" : short_number(ratio) + " times as long";
+}
+
 /// Which tetrahedra bound the step, and what it would be without the worst.
 void print_bound(const StepBound& bound, const char* indent) {
     for (const CostlyTetrahedron& t : bound.worst)
@@ -84,9 +92,7 @@ void print_bound(const StepBound& bound, const char* indent) {
     for (const StepWithout& w : bound.without)
         std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
                   << short_number(100 * w.share) << " %): " << with_unit(w.step, "s") << ", "
-                  << (w.step < hardly_longer * bound.step ? "hardly longer"
-                                                          : short_number(w.step / bound.step) + " times as long")
-                  << "\n";
+                  << compared(w.step / bound.step) << "\n";
 }
 
 /// "1: 300, 2: 20 tetrahedra"; of many the first.
@@ -294,6 +300,9 @@ int inspect_scene(const InspectOptions& options) {
     const std::vector<BodyKindReport> kinds = body_kinds(plan, true);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
+    RunOptions run;
+    run.scene = options.file;
+    const double steps = course_of(scene, run).steps(scene.world);
     const SceneCost cost = try_steps(scene.world);
     const Problems problems = problems_of(kinds, cost);
     if (options.json) {
@@ -319,6 +328,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
                            {"stable_dt_body", report.stable_step_body},
+                           {"steps", steps},
                            {"clusters",
                             {{"count", report.clusters},
                              {"nodes", report.cluster_nodes},
@@ -326,6 +336,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"contacts_at_start", cost.contacts},
                            {"overlap_at_start", cost.overlap},
                            {"wall_seconds_per_second", cost.seconds_per_second},
+                           {"wall_seconds", cost.seconds_per_second * scene.seconds},
                            {"body_kinds", bodies},
                            {"problems", problems}};
         std::cout << json.dump(1) << std::endl;
@@ -336,10 +347,10 @@ int inspect_scene(const InspectOptions& options) {
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " (" << report.stable_step_body << "), "
-              << grouped(static_cast<std::uint64_t>(scene.seconds / stable_step)) << " steps for "
-              << short_number(scene.seconds) << " s\n"
-              << "  cost          about " << with_unit(cost.seconds_per_second, "s")
-              << " a simulated second, as it starts\n"
+              << count_text(steps) << " steps for " << short_number(scene.seconds) << " s\n"
+              << "  cost          about " << duration_text(cost.seconds_per_second)
+              << " a simulated second, as it starts; " << duration_text(cost.seconds_per_second * scene.seconds)
+              << " for all of it\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name

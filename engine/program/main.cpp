@@ -20,7 +20,8 @@ const char* const general_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality and faults of a mesh
   skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
 
-Exit codes: 0 ok, 1 the simulation failed or a problem did not converge, 2 bad input, 128 + n stopped by signal n.
+Exit codes: 0 ok, 1 the simulation failed or a problem did not converge, 2 bad input, 3 an output of a run could not be
+written, 128 + n stopped by signal n.
 `skerry COMMAND --help` says more.)";
 
 const char* const run_examples = R"(Examples:
@@ -94,7 +95,8 @@ void add_run(CLI::App& app, RunOptions& options) {
             "--threads", [&options](const int& count) { options.overrides.threads = count; },
             "worker threads; 0: as many as there are")
         ->check(CLI::Range(0, 1024));
-    command.add_option("--out", options.out, "folder for ParaView frames (SCENE.pvd)");
+    command.add_option("--out", options.out,
+                       "folder for ParaView frames (SCENE.pvd), in place of those of an earlier run");
     command.add_option("--page", options.page, "HTML file that plays the run in a browser, offline");
     command.add_option("--stats", options.stats, "JSON file with the figures of the run");
     command.add_option("--trace", options.trace, "file with what every thread did, for Perfetto or chrome://tracing");

@@ -22,6 +22,12 @@ inline std::string grouped(std::uint64_t value) {
     return digits;
 }
 
+/// A count that was estimated, as a double.
+inline std::string count_text(double count) {
+    constexpr double most_written_out = 1e15;  // beyond it a number says less than its power
+    return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_number(count);
+}
+
 /// With the prefix that leaves one to three digits before the point: 0.00031, "s" is 310 us.
 inline std::string with_unit(double value, const char* unit) {
     struct Prefix {
@@ -33,6 +39,19 @@ inline std::string with_unit(double value, const char* unit) {
     for (const Prefix& prefix : prefixes)
         if (size >= prefix.factor) return short_number(value / prefix.factor) + " " + prefix.name + unit;
     return short_number(value) + " " + unit;
+}
+
+/// "40 s", "12 min", "3.5 h", "20 days"
+inline std::string duration_text(double seconds) {
+    struct Unit {
+        double seconds;
+        const char* name;
+    };
+    constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
+    constexpr double enough = 2;  // of a unit
+    for (const Unit& unit : units)
+        if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
+    return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");
 }
 
 }  // namespace skerry

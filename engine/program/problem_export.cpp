@@ -40,10 +40,9 @@ ProblemExport::ProblemExport(const RunOptions& options, std::string scene)
             .raise();
 }
 
-void ProblemExport::watch(World& world, double steps_to_come) {
-    const std::uint64_t every =
-        options_.problems_every ? static_cast<std::uint64_t>(*options_.problems_every) : default_every(steps_to_come);
-    world.watch_contact_problems([this](const StepProblem& step) { write_step(step); }, every);
+std::uint64_t ProblemExport::every(double steps_to_come) const {
+    return options_.problems_every ? static_cast<std::uint64_t>(*options_.problems_every)
+                                   : default_every(steps_to_come);
 }
 
 void ProblemExport::write_step(const StepProblem& step) {

@@ -15,15 +15,14 @@ public:
     /// Throws SceneError when the scene's name is no file name.
     ProblemExport(const RunOptions& options, std::string scene);
 
-    /// Writes from now on, while the world advances; this must outlive that. Unless the options say so, every how many
-    /// steps follows from how many are to come.
-    void watch(World& world, double steps_to_come);
+    /// Every how many steps; unless the options say so, that follows from how many are to come.
+    std::uint64_t every(double steps_to_come) const;
+    void write_step(const StepProblem& step);
     long files() const { return files_; }
     long steps() const { return steps_; }
     double seconds() const { return seconds_; }  // spent on it
 
 private:
-    void write_step(const StepProblem& step);
     void write(ContactProblem problem, const StepProblem& step, const std::string& name, std::span<const Vec3> impulse);
 
     const RunOptions& options_;

@@ -2,37 +2,80 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <string>
+
+#include "engine/program/number_text.h"
 
 namespace skerry {
 
 namespace {
 
-constexpr double refresh_interval = 0.1;  // s
+constexpr double refresh_interval = 0.1;  // s, of the bar
+constexpr double first_line = 1;          // s; by then the speed is known well enough
+constexpr double longest_silence = 600;   // s, between two lines
 constexpr int bar_width = 24;             // characters
+
+double share_of(double time, double seconds) {
+    return time < seconds ? time / seconds : 1;
+}
 
 }  // namespace
 
-Progress::Progress(bool wanted, double seconds) : shown_(wanted && isatty(STDERR_FILENO) != 0), seconds_(seconds) {}
-
-Progress::~Progress() {
-    if (shown_) std::fputs("\r\033[K", stderr);
+void clear_bar() {
+    if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
 }
 
-void Progress::show(double time) {
-    if (!shown_) return;
+Progress::Progress(bool wanted, double seconds, double steps, double step)
+    : wanted_(wanted),
+      bar_(wanted && isatty(STDERR_FILENO) != 0),
+      seconds_(seconds),
+      steps_(steps),
+      step_(step),
+      next_(bar_ ? 0 : first_line) {}
+
+void Progress::begin() {
+    begun_ = true;
+    std::fprintf(stderr, "skerry: %s s to simulate, about %s steps of %s\n", short_number(seconds_).c_str(),
+                 count_text(steps_).c_str(), with_unit(step_, "s").c_str());
+}
+
+Progress::~Progress() {
+    if (bar_ && begun_) clear_bar();
+}
+
+void Progress::show(double time, std::uint64_t steps) {
+    if (!wanted_) return;
     const double wall = watch_.seconds();
-    if (last_ >= 0 && wall - last_ < refresh_interval) return;
-    last_ = wall;
-    const double share = time < seconds_ ? time / seconds_ : 1;
+    if (wall < next_) return;
+    if (!begun_) begin();
+    if (bar_)
+        show_bar(wall, time);
+    else
+        show_line(wall, time, steps);
+    next_ = bar_ ? wall + refresh_interval : wall + std::clamp(wall, first_line, longest_silence);
+    std::fflush(stderr);
+}
+
+void Progress::show_bar(double wall, double time) {
+    const double share = share_of(time, seconds_);
     const int filled = static_cast<int>(share * bar_width);
     const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                             std::string(static_cast<std::size_t>(bar_width - filled), '.');
-    std::fprintf(stderr, "\r\033[K[%s] %3.0f %%  %.2f of %.4g s", bar.c_str(), 100 * share, time, seconds_);
-    if (share > 0 && wall > 0)
-        std::fprintf(stderr, "  %.2f x real time  %.0f s left", time / wall, wall * (1 - share) / share);
-    std::fflush(stderr);
+    std::fprintf(stderr, "\r\033[K[%s] %s %%  %s of %s s", bar.c_str(), short_number(100 * share).c_str(),
+                 short_number(time).c_str(), short_number(seconds_).c_str());
+    if (share > 0)
+        std::fprintf(stderr, "  %s x real time  %s left", short_number(time / wall).c_str(),
+                     duration_text(wall * (1 - share) / share).c_str());
+}
+
+void Progress::show_line(double wall, double time, std::uint64_t steps) {
+    const double share = share_of(time, seconds_);
+    std::fprintf(stderr, "skerry: after %s: %s of %s s (%s %%), %s steps", duration_text(wall).c_str(),
+                 short_number(time).c_str(), short_number(seconds_).c_str(), short_number(100 * share).c_str(),
+                 grouped(steps).c_str());
+    if (share > 0) std::fprintf(stderr, "; about %s left", duration_text(wall * (1 - share) / share).c_str());
+    std::fputc('\n', stderr);
 }
 
 }  // namespace skerry

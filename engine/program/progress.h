@@ -1,7 +1,8 @@
-// A progress bar on a terminal, and nothing anywhere else.
+// How far a run is and how long it will take: a bar on a terminal, lines now and then anywhere else.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace skerry {
 
@@ -14,22 +15,33 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Takes a bar away for what is to be said; does nothing where there is none.
+void clear_bar();
+
 class Progress {
 public:
-    /// `wanted` false, or standard error not being a terminal: nothing is ever shown.
-    Progress(bool wanted, double seconds);
+    /// Of a run of so many seconds, in about so many steps of `step` seconds. All goes to standard error; `wanted`
+    /// false: nothing is ever shown.
+    Progress(bool wanted, double seconds, double steps, double step);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// Percent, simulated time, real-time factor and time left; at most ten times a second.
-    void show(double time);
+    /// What there is to do, once, and where the run is now, as often as anyone wants to read it: a bar ten times a
+    /// second, lines after 1, 2, 4, ... s and in the end every ten minutes. Cheap enough to be called before every
+    /// step.
+    void show(double time, std::uint64_t steps);
 
 private:
-    bool shown_;
-    double seconds_;
+    void begin();
+    void show_bar(double wall, double time);
+    void show_line(double wall, double time, std::uint64_t steps);
+
+    bool wanted_, bar_;
+    double seconds_, steps_, step_;
+    bool begun_ = false;
     Stopwatch watch_;
-    double last_ = -1;
+    double next_;  // s of wall time, when to show something again
 };
 
 }  // namespace skerry

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/program/probe_recorder.h"
 #include "skerry/scene.h"
@@ -24,6 +26,7 @@ struct RunResult {
     WorldReport report;
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
+    std::vector<std::pair<std::string, std::string>> outputs_failed;  // option, and what stood in the way
 };
 
 /// Why not to rely on the run, a sentence each; empty when all estimates are small.

@@ -51,7 +51,7 @@ Json trust_of(const RunResult& result) {
 std::vector<std::string> doubts_of(const RunResult& result) {
     const WorldReport& r = result.report;
     std::vector<std::string> doubts;
-    constexpr double small_share = 0.05;  // of the energy: quick scenes at the stable step stay below it
+    constexpr double small_share = 0.02;  // of the energy: at the stable step what is resolved stays below 1 %
     if (r.unconverged > 0)
         doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
                          " contact regions ended above the tolerance, the worst at " + short_number(r.worst_error) +
@@ -83,7 +83,8 @@ std::vector<std::string> doubts_of(const RunResult& result) {
 
 Json statistics_of(const RunResult& result) {
     const WorldReport& r = result.report;
-    Json stages = Json::object(), probes = Json::object(), limits = Json::array();
+    Json stages = Json::object(), probes = Json::object(), limits = Json::array(), failed = Json::object();
+    for (const auto& [option, failure] : result.outputs_failed) failed[option] = failure;
     for (const StepLimitReport& of : r.step_limits)
         limits.push_back({{"limit", name_of(of.limit)},
                           {"body", of.body_name},
@@ -110,6 +111,7 @@ Json statistics_of(const RunResult& result) {
         {"seconds_output", result.seconds_output},
         {"real_time_factor", wall > 0 ? simulated / wall : 0},
         {"frames", result.frames},
+        {"outputs_failed", failed},
         {"threads", result.threads},
         {"backend", name_of(result.settings.backend)},
         {"bodies", r.bodies},

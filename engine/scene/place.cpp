@@ -95,7 +95,10 @@ std::string nearest_name(std::string_view text, std::span<const std::string> nam
 
 std::string nearest_hint(std::string_view text, std::span<const std::string> names) {
     const std::string nearest = nearest_name(text, names);
-    return nearest.empty() ? std::string() : "the nearest known one is " + in_quotes(nearest);
+    constexpr std::size_t letters_per_slip = 3;  // with more slips than that it is another word
+    const std::size_t most = std::max<std::size_t>(1, std::max(text.size(), nearest.size()) / letters_per_slip);
+    return nearest.empty() || edit_distance(text, nearest) > most ? std::string()
+                                                                  : "the nearest known one is " + in_quotes(nearest);
 }
 
 }  // namespace skerry

@@ -59,7 +59,7 @@ std::string described(const Json& value);
 /// The name that `text` was probably meant to be: the fewest changed, missing, added or swapped letters. Empty without
 /// names.
 std::string nearest_name(std::string_view text, std::span<const std::string> names);
-/// A hint with the nearest name, or nothing when there are no names.
+/// A hint with the nearest name, or nothing when none is near: more than a third of the letters are others.
 std::string nearest_hint(std::string_view text, std::span<const std::string> names);
 
 }  // namespace skerry

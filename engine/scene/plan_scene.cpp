@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <set>
 
 #include "components/split_mix.h"
 #include "engine/mesh/labels.h"
@@ -124,7 +125,8 @@ std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan
     return found;
 }
 
-void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
+/// `names` are those of the bodies so far.
+void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>& names, ScenePlan& plan) {
     const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
     const Mesh& mesh = plan.meshes.emplace_back(make_mesh(entry.mesh));
     const std::vector<std::pair<int, std::size_t>> materials = find_materials_by_label(plan, entry, mesh);
@@ -149,10 +151,9 @@ void plan_body(const BodyEntry& entry, std::size_t number, ScenePlan& plan) {
         body.materials = materials;
         body.pins = pins;
         body.place = entry.place;
-        for (const BodyPlan& other : plan.bodies)
-            if (other.settings.name == body.settings.name)
-                entry.place.key("name").refuse(in_quotes(body.settings.name) + " again",
-                                               "a name of its own for every body");
+        if (!names.insert(body.settings.name).second)
+            entry.place.key("name").refuse(in_quotes(body.settings.name) + " again",
+                                           "a name of its own for every body");
         plan.bodies.push_back(std::move(body));
     }
 }
@@ -211,7 +212,8 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
     plan.settings = scene.settings;
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, plan);
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, names, plan);
     if (overrides.element)
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)

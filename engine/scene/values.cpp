@@ -1,6 +1,7 @@
 #include "engine/scene/values.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -149,14 +150,18 @@ Json Value<RotationRows>::schema(SchemaBook& book, const KeyDoc&) {
 }
 
 void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& doc, Rotation& out) {
+    const std::string spellings = R"({"axis": [x, y, z], "degrees": angle} or three rows of a rotation matrix)";
     if (json.is_array()) {
+        if (!json.empty() && std::ranges::all_of(json, [](const Json& item) { return item.is_number(); }))
+            place.refuse(described(json), spellings,
+                         json.size() == 4 ? "the quaternion cos(a/2), sin(a/2) (x, y, z) is the angle a about (x, y, z)"
+                                          : "angles about several axes are no rotation until their order is said");
         RotationRows rows;
         Value<RotationRows>::read(json, place, doc, rows);
         out.value = rows.value;
         return;
     }
-    if (!json.is_object())
-        place.refuse(described(json), R"({"axis": [x, y, z], "degrees": angle} or three rows of a rotation matrix)");
+    if (!json.is_object()) place.refuse(described(json), spellings);
     AxisAngle turn;
     Value<AxisAngle>::read(json, place, doc, turn);
     const Real angle = turn.radians ? *turn.radians : *turn.degrees * std::numbers::pi / 180;

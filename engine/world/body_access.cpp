@@ -102,6 +102,7 @@ Real World::mean_edge(BodyHandle body) const {
 }
 
 bool World::asleep(BodyHandle body) const {
+    state_->settle();
     return state_->model.bodies.asleep[static_cast<std::size_t>(state_->model.row(body, "asleep"))] != 0;
 }
 
@@ -137,56 +138,6 @@ const Shape& World::shape(ColliderHandle collider) const {
 
 const std::string& World::name(ColliderHandle collider) const {
     return state_->model.collider_records[static_cast<std::size_t>(state_->model.row(collider, "name"))].name;
-}
-
-std::span<const Contact> World::contacts() const {
-    WorldState& world = *state_;
-    // of a step that was not taken: numbers that may not be finite
-    if (world.scratch.findings.verdict.fault != StepFault::none) return {};
-    if (world.record.contact_view_is_current) return world.record.contact_view;
-    const ContactTable& table = world.scratch.contacts;
-    world.record.contact_view.resize(table.size());
-    for (std::size_t c = 0; c < table.size(); ++c) {
-        Contact& contact = world.record.contact_view[c];
-        const auto first = static_cast<std::size_t>(table.first_body[c]);
-        const auto handle_of = [&](Index body) {
-            return world.model.body_map.handle_of_slot(world.model.bodies.slot[static_cast<std::size_t>(body)]);
-        };
-        const bool first_deforms = world.model.bodies.kind[first] == BodyKind::deformable;
-        contact = {};
-        if (first_deforms) contact.first = handle_of(table.first_body[c]);
-        Index collider = table.collider[c];
-        for (Index body : {table.first_body[c], table.second_body[c]})
-            if (body != no_index && world.model.bodies.kind[static_cast<std::size_t>(body)] == BodyKind::kinematic)
-                collider = world.model.bodies.collider[static_cast<std::size_t>(body)];
-        const Index second = table.second_body[c];
-        if (second != no_index && world.model.bodies.kind[static_cast<std::size_t>(second)] == BodyKind::deformable)
-            contact.second = handle_of(second);
-        if (collider != no_index)
-            contact.collider =
-                world.model.collider_map.handle_of_slot(world.model.colliders.slot[static_cast<std::size_t>(collider)]);
-        for (std::size_t a = 0; a < 4; ++a) {
-            const Index node = table.stencil[c].node[a];
-            contact.weight[a] = table.stencil[c].weight[a];
-            contact.node[a] =
-                contact.weight[a] == 0
-                    ? -1
-                    : node -
-                          world.model.bodies
-                              .nodes[static_cast<std::size_t>(world.model.nodes.body[static_cast<std::size_t>(node)])]
-                              .begin;
-        }
-        contact.point = table.point[c];
-        contact.normal = table.normal[c];
-        contact.distance = table.distance[c];
-        contact.gap = table.gap[c];
-        contact.slip = table.slip[c];
-        contact.impulse = table.impulse[c];
-        contact.motion = static_cast<ContactMotion>(table.state[c]);
-        contact.region = table.region[c];
-    }
-    world.record.contact_view_is_current = true;
-    return world.record.contact_view;
 }
 
 }  // namespace skerry

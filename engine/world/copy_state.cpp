@@ -27,6 +27,8 @@ void copy_pairs(const PairTable& from, PairTable& to) {
 }  // namespace
 
 void copy_state(WorldState& from, WorldState& to) {
+    from.settle();
+    to.settle();
     const Backend backend = to.model.settings.backend;
     const int threads = to.model.settings.threads;
     from.cache.forget_distances(from.model);

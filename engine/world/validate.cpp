@@ -124,6 +124,14 @@ void validate(const MaterialSettings& material, const Settings& settings) {
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
+    // Each may be any number, the two together not: a step that is no number would only be found when it is taken.
+    constexpr Real speed_of_light = 299792458;  // m/s
+    const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
+    if (!(wave_speed <= speed_of_light))
+        refuse(object, "young_modulus, density",
+               text(material.young_modulus) + " Pa and " + text(material.density) + " kg/m^3: waves of " +
+                   text(wave_speed) + " m/s",
+               "a material whose waves are slower than light (3e8 m/s)");
     require(material.friction >= 0, object, "friction", material.friction, "a number >= 0");
     const Real dynamic = material.dynamic_friction.value_or(material.friction);
     const Real still = material.static_friction.value_or(std::max(material.friction, dynamic));
@@ -217,6 +225,17 @@ void validate(const Motion& motion, const std::string& object) {
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,
                 "ascending times (s)");
     }
+}
+
+void validate_step(const Model& model, Index body, const std::string& name) {
+    const auto b = static_cast<std::size_t>(body);
+    const Real step = model.bodies.rest_step[b];
+    if (step > 0 && std::isfinite(step)) return;
+    const auto material = static_cast<std::size_t>(model.bodies.material[b]);
+    refuse(titled("body", name), "mesh, material",
+           "edges of " + text(model.bodies.mean_edge[b]) + " m, " + text(model.materials.young_modulus[material]) +
+               " Pa and " + text(model.materials.constants[material].density) + " kg/m^3",
+           "sizes and a material whose stable step can be calculated: it is " + text(step) + " s");
 }
 
 void validate(const Motion& motion, const Vec3& pivot) {

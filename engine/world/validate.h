@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "engine/world/state/model.h"
 #include "skerry/settings.h"
 #include "skerry/world.h"
 
@@ -11,6 +12,8 @@ namespace skerry {
 void validate(const Settings& settings);
 void validate(const MaterialSettings& material, const Settings& settings);
 void validate(const Mesh& mesh, const BodySettings& body);
+/// Of a body that has its rows: that its stable step is a number.
+void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);

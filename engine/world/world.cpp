@@ -1,10 +1,13 @@
 #include "skerry/world.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <ostream>
+#include <random>
 #include <utility>
 
+#include "engine/world/contact_view.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
@@ -26,9 +29,22 @@ std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh,
     return rows;
 }
 
+/// A mesh is a body, too; other colliders have no nodes.
+EditedRows rows_of(const Shape& shape) {
+    return std::holds_alternative<SurfaceMesh>(shape) ? EditedRows::bodies : EditedRows::colliders;
+}
+
+/// Of no two worlds of this process the same, and hardly the same as that of a world that another process saved.
+std::uint32_t next_world_number() {
+    static std::atomic<std::uint32_t> next = std::random_device{}();
+    const std::uint32_t number = next++;
+    return number != 0 ? number : next++;  // 0: no world
+}
+
 }  // namespace
 
 WorldState::WorldState(const Settings& settings) : executor(make_executor(settings.backend, settings.threads)) {
+    model.set_world(next_world_number());
     model.settings = settings;
     model.settings.backend = executor->backend();
     scratch.parameters = step_parameters(settings);
@@ -36,27 +52,65 @@ WorldState::WorldState(const Settings& settings) : executor(make_executor(settin
     build_step(*this);
 }
 
-void WorldState::topology_changed() {
-    model.rebuild_derived();
-    model.clusters.clear();  // of rows that have moved
-    model.clusters_open = true;
+void WorldState::require_between_steps(const char* call) const {
+    if (!advancing) return;
+    Complaint{.file = {},
+              .object = call,
+              .field = {},
+              .found = "a call in the middle of advance",
+              .expected = "one between two calls of it",
+              .hint = "what advance calls back may look at the world, and not build, remove or advance"}
+        .raise();
+}
+
+void WorldState::begin_edit(const char* call) {
+    require_between_steps(call);
+    view_contacts(*this);  // while rows are where contacts say
+}
+
+void WorldState::end_edit(EditedRows rows) {
+    edited_ = std::max(edited_, rows);
+}
+
+void WorldState::settle() {
+    if (edited_ == EditedRows::none) return;
+    if (edited_ == EditedRows::bodies) {
+        model.rebuild_derived();
+        model.clusters.clear();  // of rows that have moved
+        model.clusters_open = true;
+    }
     model.wake_all();
     cache.drop_pairs(model);
     record.balance.close();
     scratch.contacts.resize(0);
     scratch.regions = RegionTable{};
-    record.contact_view_is_current = false;
+    edited_ = EditedRows::none;
 }
 
-World::World(const Settings& settings) {
-    validate(settings);
-    state_ = std::make_unique<WorldState>(settings);
+World::StateOwner::StateOwner(std::unique_ptr<WorldState> owned) : owned_(std::move(owned)) {}
+World::StateOwner::~StateOwner() = default;
+World::StateOwner::StateOwner(StateOwner&&) noexcept = default;
+World::StateOwner& World::StateOwner::operator=(StateOwner&&) noexcept = default;
+
+WorldState& World::StateOwner::operator*() const {
+    if (!owned_)
+        Complaint{.file = {},
+                  .object = "world",
+                  .field = {},
+                  .found = "one that was moved from",
+                  .expected = "a world",
+                  .hint = "use the one that it was moved to"}
+            .raise();
+    return *owned_;
 }
+
+World::World(const Settings& settings) : state_((validate(settings), std::make_unique<WorldState>(settings))) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 MaterialHandle World::add_material(const MaterialSettings& material) {
+    state_->require_between_steps("add_material");
     validate(material, state_->model.settings);
     MaterialTable& table = state_->model.materials;
     const std::size_t row = table.slot.size();
@@ -80,35 +134,46 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     validate(mesh, body);
     const Index material = state_->model.row(body.material, "add_body");
     const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(state_->model, mesh, body);
+    state_->begin_edit("add_body");
     const BodyHandle handle = state_->model.body_map.insert(static_cast<Index>(state_->model.bodies.slot.size()));
-    append_body(state_->model, {.slot = handle.slot,
-                                .kind = BodyKind::deformable,
-                                .self_contact = body.self_contact,
-                                .element = body.element,
-                                .material = material,
-                                .tetrahedron_material = tetrahedron_material,
-                                .collider = no_index,
-                                .contact_distance = body.contact_distance.value_or(-1),
-                                .nodes = mesh.nodes,
-                                .tetrahedra = mesh.tetrahedra,
-                                .triangles = {},
-                                .position = body.position,
-                                .rotation = rotation_matrix(body.rotation),
-                                .velocity = body.velocity,
-                                .angular_velocity = body.angular_velocity});
-    state_->model.body_records.back().name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
-    state_->topology_changed();
+    append_body(state_->model, state_->scratch.stiffness_sum,
+                {.slot = handle.slot,
+                 .kind = BodyKind::deformable,
+                 .self_contact = body.self_contact,
+                 .element = body.element,
+                 .material = material,
+                 .tetrahedron_material = tetrahedron_material,
+                 .collider = no_index,
+                 .contact_distance = body.contact_distance.value_or(-1),
+                 .nodes = mesh.nodes,
+                 .tetrahedra = mesh.tetrahedra,
+                 .triangles = {},
+                 .position = body.position,
+                 .rotation = rotation_matrix(body.rotation),
+                 .velocity = body.velocity,
+                 .angular_velocity = body.angular_velocity});
+    const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
+    state_->model.body_records.back().name = name;
+    try {
+        validate_step(state_->model, state_->model.row(handle, "add_body"), name);
+    } catch (const SceneError&) {
+        erase_body(state_->model, state_->model.row(handle, "add_body"));
+        state_->model.body_map.erase(handle);
+        throw;
+    }
+    state_->end_edit(EditedRows::bodies);
     return handle;
 }
 
 ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& collider) {
     validate(shape, collider);
+    state_->begin_edit("add_collider");
     const ColliderHandle handle =
         state_->model.collider_map.insert(static_cast<Index>(state_->model.colliders.slot.size()));
-    append_collider(state_->model, handle.slot, shape, collider, state_->clock.time);
+    append_collider(state_->model, state_->scratch.stiffness_sum, handle.slot, shape, collider, state_->clock.time);
     std::string& name = state_->model.collider_records.back().name;
     if (name.empty()) name = "collider " + std::to_string(handle.slot);
-    state_->topology_changed();
+    state_->end_edit(rows_of(shape));
     return handle;
 }
 
@@ -125,32 +190,39 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
+    state_->begin_edit("attach");
     const AttachmentHandle handle =
         state_->model.attachment_map.insert(static_cast<Index>(state_->model.attachments.slot.size()));
     append_attachment(state_->model, handle.slot, row, nodes, {pivot, Mat3::Identity()}, motion, state_->clock.time);
-    state_->topology_changed();
+    state_->end_edit(EditedRows::bodies);
     return handle;
 }
 
 void World::remove(BodyHandle body) {
     const Index row = state_->model.row(body, "remove");
+    state_->begin_edit("remove");
+    forget_contacts_of(body, state_->record);
     erase_body(state_->model, row);
     state_->model.body_map.erase(body);
-    state_->topology_changed();
+    state_->end_edit(EditedRows::bodies);
 }
 
 void World::remove(ColliderHandle collider) {
     const Index row = state_->model.row(collider, "remove");
+    state_->begin_edit("remove");
+    forget_contacts_of(collider, state_->record);
+    const EditedRows rows = rows_of(state_->model.collider_records[static_cast<std::size_t>(row)].shape);
     erase_collider(state_->model, row);
     state_->model.collider_map.erase(collider);
-    state_->topology_changed();
+    state_->end_edit(rows);
 }
 
 void World::remove(AttachmentHandle attachment) {
     const Index row = state_->model.row(attachment, "remove");
+    state_->begin_edit("remove");
     erase_attachment(state_->model, row);
     state_->model.attachment_map.erase(attachment);
-    state_->topology_changed();
+    state_->end_edit(EditedRows::bodies);
 }
 
 bool World::alive(BodyHandle body) const {
@@ -181,6 +253,7 @@ void World::set_gravity(const Vec3& gravity) {
 }
 
 Real World::stable_step() const {
+    state_->settle();
     settle_clusters(state_->model, state_->scratch.stiffness_sum);
     return skerry::stable_step(state_->model.bodies);
 }

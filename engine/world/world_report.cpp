@@ -59,6 +59,8 @@ std::string StepReport::message() const {
     switch (status) {
         case StepStatus::ok:
             return {};
+        case StepStatus::stopped:
+            return "stopped between two steps, as was asked for";
         case StepStatus::not_finite:
             return "the step was not taken: " + who + where +
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
@@ -90,6 +92,7 @@ std::string StepReport::warning() const {
 }
 
 std::uint64_t World::state_hash() const {
+    state_->settle();
     return skerry::state_hash(*state_);
 }
 Energy World::energy() const {
@@ -97,6 +100,7 @@ Energy World::energy() const {
 }
 
 WorldReport World::report() const {
+    state_->settle();
     const WorldState& world = *state_;
     WorldReport report;
     static_cast<RunCounters&>(report) = world.record.counters;

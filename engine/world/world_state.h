@@ -16,6 +16,9 @@
 
 namespace skerry {
 
+/// What has come or gone: nothing, analytic colliders alone, or rows of nodes and elements, or their freedom.
+enum class EditedRows { none, colliders, bodies };
+
 struct WorldState {
     explicit WorldState(const Settings& settings);
 
@@ -27,14 +30,29 @@ struct WorldState {
     StepTransaction transaction;
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
+    bool advancing = false;  // what it calls back must not change what it goes over
 
-    /// After bodies or colliders came or went: what is derived from all of them, and what counted on them.
-    void topology_changed();
+    /// Refuses a call from what advance calls back.
+    void require_between_steps(const char* call) const;
+    /// Before bodies, colliders or attachments come or go.
+    void begin_edit(const char* call);
+    /// After they did. What follows from all rows is left as it was until somebody needs it: many changes in a row cost
+    /// it once.
+    void end_edit(EditedRows rows);
+    /// What follows from all rows, if these have changed: derived columns, pairs, who rests. Called by whatever reads
+    /// any of it, functions that only look included.
+    void settle();
+
+private:
+    EditedRows edited_ = EditedRows::none;  // since it was settled
 };
 
 /// For what stands beside World: tests, and what reads and writes whole worlds.
 struct WorldAccess {
-    static WorldState& state_of(World& world) { return *world.state_; }
+    static WorldState& state_of(World& world) {
+        world.state_->settle();
+        return *world.state_;
+    }
 };
 
 /// What lies at a place in a WorldState, for messages: "nodes.velocity".

@@ -33,3 +33,33 @@ TEST_CASE("tetrahedra that lie in each other are refused by their numbers", "[sc
     CHECK_THROWS_WITH(world.add_body(inside, {.material = rubber}), Contains("tetrahedra 0 and 2 on the same side"));
     CHECK(world.bodies().size() == 1);
 }
+
+TEST_CASE("a material with waves faster than light is refused by its numbers", "[scene]") {
+    World world;
+    CHECK_THROWS_WITH(world.add_material({.young_modulus = 1e308}),
+                      Contains("material: young_modulus, density: found 1e+308 Pa and 1000 kg/m^3"));
+    CHECK_THROWS_WITH(world.add_material({.density = 1e-300}),
+                      Contains("1e-300 kg/m^3: waves of") && Contains("light"));
+    CHECK_NOTHROW(world.add_material({.young_modulus = 1e12, .density = 1}));
+}
+
+TEST_CASE("a body whose stable step is no number is refused by name, with its size and material", "[scene]") {
+    World world;
+    const MaterialHandle rubber = world.add_material({});
+    world.add_body(mesh::box({1, 1, 1}, {2, 2, 2}), {.material = rubber, .position = {9, 0, 0}});
+    const std::uint64_t before = world.state_hash();
+    CHECK_THROWS_WITH(world.add_body(mesh::box({1e-30, 1e-30, 1e-30}, {2, 2, 2}), {.material = rubber, .name = "dot"}),
+                      Contains("body 'dot': mesh, material: found edges of") && Contains("100000 Pa and 1000 kg/m^3") &&
+                          Contains("stable step"));
+    CHECK(world.bodies().size() == 1);
+    CHECK(world.state_hash() == before);
+    CHECK(world.advance(0.01).ok());
+}
+
+TEST_CASE("a time that would take steps without end names the body that asks for them", "[scene]") {
+    World world;
+    const MaterialHandle hard = world.add_material({.young_modulus = 1e15, .density = 0.1});
+    world.add_body(mesh::box({1e-6, 1e-6, 1e-6}, {2, 2, 2}), {.material = hard, .name = "grain"});
+    CHECK_THROWS_WITH(world.advance(1),
+                      Contains("dt: found 1 s in steps of") && Contains("stable step of body 'grain'"));
+}

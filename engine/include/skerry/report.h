@@ -13,7 +13,7 @@
 
 namespace skerry {
 
-enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff };
+enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff, stopped };
 enum class ContactMotion { open, stick, slide };
 /// What keeps a step from being longer (docs/step_length.md). setting: step_size. rest: the stable step of a body as it
 /// is at rest; strain: that of a body as it is deformed. speed: an element would deform by more than max_strain_step
@@ -71,6 +71,7 @@ struct Energy {
 /// What `advance` did. Cheap: no allocation unless something went wrong.
 class StepReport {
 public:
+    /// False where a step could not be committed, and where the call was asked to stop.
     bool ok() const { return status == StepStatus::ok; }
     /// Empty when ok; else the body, the stage and the reason.
     std::string message() const;

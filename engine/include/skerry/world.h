@@ -18,8 +18,9 @@ namespace skerry {
 
 struct StepProblem;  // problem.h
 
-/// A simulation. Not safe for use from several threads at once; different worlds are independent. Functions that take a
-/// handle throw SceneError when it is stale, functions that take settings when a value is out of range.
+/// A simulation. Not safe for use from several threads at once, not even to look at; different worlds are independent.
+/// Functions that take a handle throw SceneError when it is stale or of another world, functions that take settings
+/// when a value is out of range, and all of them after the world was moved from.
 class World {
 public:
     explicit World(const Settings& settings = {});
@@ -27,7 +28,9 @@ public:
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
 
-    // Building. Allowed between steps; handles to everything else stay valid.
+    // Building. Allowed between calls of advance, and refused with SceneError in what these call; handles to everything
+    // else stay valid. What is derived of all bodies is made anew when it is next asked for: adding many costs no more
+    // than adding each.
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
@@ -47,6 +50,9 @@ public:
     /// Moves time on by dt in equal steps no longer than the stable step. A step that cannot be committed changes
     /// nothing and ends the call: the report says which body and why.
     StepReport advance(Real dt);
+    /// The same, but before each try of a step asks whether to go on, with the report so far. An answer of false ends
+    /// the call between two steps: the report says `stopped`, and the world may go on from there.
+    StepReport advance(Real dt, const std::function<bool(const StepReport&)>& go_on);
     Real time() const;
     const Settings& settings() const;
     void set_gravity(const Vec3& gravity);
@@ -90,7 +96,8 @@ public:
     const std::string& name(ColliderHandle collider) const;
 
     // What happened.
-    std::span<const Contact> contacts() const;  // of the last step, in a fixed order; none when it was refused
+    /// Of the last step, in a fixed order, without those of what was removed since; none when the step was refused.
+    std::span<const Contact> contacts() const;
     WorldReport report() const;
     Energy energy() const;
     /// Hash of everything that the next step depends on; equal on any number of threads and on every backend.
@@ -108,7 +115,20 @@ public:
 
 private:
     friend struct WorldAccess;
-    std::unique_ptr<struct WorldState> state_;
+    /// Refuses use after the world was moved from.
+    class StateOwner {
+    public:
+        explicit StateOwner(std::unique_ptr<struct WorldState> owned);
+        ~StateOwner();
+        StateOwner(StateOwner&&) noexcept;
+        StateOwner& operator=(StateOwner&&) noexcept;
+        WorldState& operator*() const;
+        WorldState* operator->() const { return &**this; }
+
+    private:
+        std::unique_ptr<WorldState> owned_;
+    };
+    StateOwner state_;
 };
 
 }  // namespace skerry

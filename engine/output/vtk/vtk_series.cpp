@@ -16,6 +16,9 @@ namespace skerry {
 namespace {
 
 constexpr std::uint8_t vtk_tetra = 10;
+constexpr std::size_t least_digits = 4;  // of the number of a frame
+constexpr std::pair<const char*, const char*> kinds[] = {
+    {"bodies", ".vtu"}, {"contacts", ".vtp"}, {"colliders", ".vtp"}};
 
 void put_vector(auto& put, const Vec3& v) {
     put(v.x());
@@ -61,6 +64,21 @@ std::string count_attribute(std::string_view name, std::size_t count) {
 
 }  // namespace
 
+bool is_series_file(std::string_view file_name, std::string_view name) {
+    if (!file_name.starts_with(name)) return false;
+    file_name.remove_prefix(name.size());
+    if (file_name == ".pvd") return true;
+    for (const auto& [what, extension] : kinds) {
+        const std::string before = "_" + std::string(what) + "_";
+        if (!file_name.starts_with(before) || !file_name.ends_with(extension)) continue;
+        const std::size_t around = before.size() + std::string_view(extension).size();
+        if (file_name.size() < around + least_digits) return false;
+        const std::string_view digits = file_name.substr(before.size(), file_name.size() - around);
+        return std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; });
+    }
+    return false;
+}
+
 VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
     : folder_(std::move(folder)), name_(std::move(name)) {
     if (name_.empty() || name_.find_first_of("/\\") != std::string::npos)
@@ -72,11 +90,19 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
                   .hint = {}}
             .raise();
     make_folder(folder_);
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+        if (entry.symlink_status().type() == std::filesystem::file_type::regular &&
+            is_series_file(entry.path().filename().string(), name_))
+            earlier_.push_back(entry.path());
+    for (const std::filesystem::path& file : earlier_) require_replaceable(file);
+    // Should the rest stay, no index lists what is gone.
+    std::stable_partition(earlier_.begin(), earlier_.end(),
+                          [](const auto& file) { return file.extension() == ".pvd"; });
 }
 
 std::string VtkSeries::frame_file(const char* what, const char* extension) const {
     std::string digits = std::to_string(frame_count_);
-    if (digits.size() < 4) digits.insert(0, 4 - digits.size(), '0');
+    if (digits.size() < least_digits) digits.insert(0, least_digits - digits.size(), '0');
     return name_ + "_" + what + "_" + digits + extension;
 }
 
@@ -87,7 +113,39 @@ void VtkSeries::number(const Frame& frame) {
         collider_number_.try_emplace(collider.handle, static_cast<Index>(collider_number_.size()));
 }
 
+void VtkSeries::remove_earlier() {
+    for (const std::filesystem::path& file : earlier_) {
+        std::error_code error;
+        std::filesystem::remove(file, error);
+        if (error)
+            Complaint{.file = file.string(),
+                      .object = "output",
+                      .field = {},
+                      .found = "\"" + error.message() + "\" on removing it, a file of an earlier run",
+                      .expected = "a file that can be replaced",
+                      .hint = {}}
+                .raise();
+    }
+    earlier_.clear();
+}
+
 void VtkSeries::write_frame(const Frame& frame) {
+    remove_earlier();
+    try {
+        write_files(frame);
+    } catch (...) {
+        for (const auto& [what, extension] : kinds) {
+            const std::filesystem::path file = folder_ / frame_file(what, extension);
+            std::error_code ignored;
+            if (std::filesystem::symlink_status(file, ignored).type() == std::filesystem::file_type::regular)
+                std::filesystem::remove(file, ignored);
+        }
+        colliders_prev_.clear();
+        throw;
+    }
+}
+
+void VtkSeries::write_files(const Frame& frame) {
     number(frame);
     const std::string bodies = frame_file("bodies", ".vtu"), contacts = frame_file("contacts", ".vtp");
     write_bodies(frame, bodies);

@@ -4,15 +4,21 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/output/frame.h"
 
 namespace skerry {
 
+/// Whether a series of that name writes files of that file name.
+bool is_series_file(std::string_view file_name, std::string_view name);
+
 /// NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, whenever a collider came, went or moved, NAME_colliders_0000.vtp;
 /// NAME.pvd lists them by time. Bodies and colliders are numbered in the order in which they were first seen, and keep
-/// their number.
+/// their number. Throws SceneError where an earlier series of the name cannot be replaced. The first frame takes the
+/// place of all of an earlier series of the name: what is there under the names above is removed, and nothing else. A
+/// frame that cannot be written whole leaves nothing.
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
@@ -26,6 +32,8 @@ private:
         std::string file;  // beside the index
     };
 
+    void remove_earlier();
+    void write_files(const Frame& frame);
     void number(const Frame& frame);
     void write_bodies(const Frame& frame, const std::string& file) const;
     void write_contacts(const Frame& frame, const std::string& file) const;
@@ -34,6 +42,7 @@ private:
     void measure_patch(const Frame& frame);
     std::string frame_file(const char* what, const char* extension) const;
 
+    std::vector<std::filesystem::path> earlier_;  // files of an earlier series of this name, its index first
     std::filesystem::path folder_;
     std::string name_;
     std::size_t frame_count_ = 0;

@@ -148,9 +148,7 @@ AppendedElements append_elements_of(Model& model, const ElementList& list, std::
 }
 
 /// Elements by level, so that blocks have one level.
-void sort_by_level(Model& model, const ElementList& list, BodyRows& rows) {
-    Column<Real> stiffness_sum;
-    stiffness_sum.resize(model.nodes.position.size());
+void sort_by_level(Model& model, const ElementList& list, std::span<Real> stiffness_sum, BodyRows& rows) {
     const Range blocks = rows.elements.blocks;
     std::vector<std::uint8_t> at_place(rows.elements.element.size()), level(list.size());
     const ElementInputs elements = model.all_elements();
@@ -306,20 +304,21 @@ private:
 
 }  // namespace
 
-Index append_body(Model& model, const NewBody& body) {
+Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body) {
     BodyTable& bodies = model.bodies;
     const std::size_t b = bodies.slot.size();
     const auto row = static_cast<Index>(b);
     bodies.for_each_column([b](const char*, auto& column, ColumnRole) { column.resize(b + 1); });
 
     const Range nodes = append_nodes(model, body, row);
+    stiffness_sum.resize(model.nodes.position.size());
     set_masses_and_motion(model, body, nodes);
     BodyRows rows{row, nodes, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
     const std::vector<MaterialZone> zones = zones_of(model, body);
     const ElementList list = elements_of({body.tetrahedra, body.nodes, body.rotation}, zones);
     rows.elements = append_elements_of(model, list, {}, rows);
-    if (model.settings.multirate && !body.tetrahedra.empty()) sort_by_level(model, list, rows);
+    if (model.settings.multirate && !body.tetrahedra.empty()) sort_by_level(model, list, stiffness_sum, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;
@@ -346,8 +345,6 @@ Index append_body(Model& model, const NewBody& body) {
     bodies.contact_distance[b] =
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);
-    Column<Real> stiffness_sum;
-    stiffness_sum.resize(model.nodes.position.size());
     const auto step = [&] {
         return stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     };

@@ -142,8 +142,8 @@ void erase_attachment(Model& model, Index row) {
         }
 }
 
-Index append_collider(Model& model, std::uint32_t slot, const Shape& shape, const ColliderSettings& settings,
-                      Real now) {
+Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t slot, const Shape& shape,
+                      const ColliderSettings& settings, Real now) {
     ColliderTable& table = model.colliders;
     const std::size_t row = table.slot.size();
     table.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
@@ -161,19 +161,20 @@ Index append_collider(Model& model, std::uint32_t slot, const Shape& shape, cons
     model.collider_records.push_back({settings.name, shape});
 
     if (const auto* surface = std::get_if<SurfaceMesh>(&shape)) {
-        table.body[row] = append_body(model, {.slot = slot,
-                                              .kind = BodyKind::kinematic,
-                                              .self_contact = false,
-                                              .material = no_index,
-                                              .collider = static_cast<Index>(row),
-                                              .contact_distance = settings.contact_distance,
-                                              .nodes = surface->nodes,
-                                              .tetrahedra = {},
-                                              .triangles = surface->triangles,
-                                              .position = present.position,
-                                              .rotation = present.rotation,
-                                              .velocity = Vec3::Zero(),
-                                              .angular_velocity = Vec3::Zero()});
+        table.body[row] = append_body(model, stiffness_sum,
+                                      {.slot = slot,
+                                       .kind = BodyKind::kinematic,
+                                       .self_contact = false,
+                                       .material = no_index,
+                                       .collider = static_cast<Index>(row),
+                                       .contact_distance = settings.contact_distance,
+                                       .nodes = surface->nodes,
+                                       .tetrahedra = {},
+                                       .triangles = surface->triangles,
+                                       .position = present.position,
+                                       .rotation = present.rotation,
+                                       .velocity = Vec3::Zero(),
+                                       .angular_velocity = Vec3::Zero()});
         std::vector<Index> all(surface->nodes.size());
         for (std::size_t n = 0; n < all.size(); ++n) all[n] = static_cast<Index>(n);
         append_attachment(model, no_slot, table.body[row], all, placed, settings.motion, now);

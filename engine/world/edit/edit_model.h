@@ -1,5 +1,5 @@
 // Rows of the tables come and go between steps. The caller says so to what is derived from all of them
-// (Model::rebuild_derived).
+// (WorldState::settle).
 #pragma once
 
 #include <array>
@@ -28,15 +28,17 @@ struct NewBody {
 };
 
 // edit_bodies.cpp
-/// Appends a surface with or without tetrahedra as a body; returns its row.
-Index append_body(Model& model, const NewBody& body);
+/// Appends a surface with or without tetrahedra as a body; returns its row. `stiffness_sum` is memory to work in, by
+/// node: kept from body to body, so that each costs what it has itself.
+Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body);
 void erase_body(Model& model, Index row);
 
 // edit_colliders.cpp; `now` is the time at which they come, s
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
                         const RigidPose& pose, const Motion& motion, Real now);
 void erase_attachment(Model& model, Index row);
-Index append_collider(Model& model, std::uint32_t slot, const Shape& shape, const ColliderSettings& settings, Real now);
+Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t slot, const Shape& shape,
+                      const ColliderSettings& settings, Real now);
 void erase_collider(Model& model, Index row);
 
 }  // namespace skerry

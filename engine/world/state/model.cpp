@@ -17,7 +17,7 @@ namespace {
               .field = kind,
               .found = "a handle to nothing",
               .expected = "one that lives in this world",
-              .hint = "it was removed, or never made here"}
+              .hint = "it was removed, or made in another world"}
         .raise();
 }
 
@@ -29,6 +29,13 @@ Index live_row(const Map& map, HandleType handle, const char* call, const char* 
 }
 
 }  // namespace
+
+void Model::set_world(std::uint32_t number) {
+    material_map.set_world(number);
+    body_map.set_world(number);
+    collider_map.set_world(number);
+    attachment_map.set_world(number);
+}
 
 Index Model::row(BodyHandle body, const char* call) const {
     return live_row(body_map, body, call, "body");

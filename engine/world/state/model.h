@@ -73,6 +73,9 @@ struct Model {
     bool loaded = false;      // some node has a load; derived: note_loads
     bool any_asleep = false;  // some body rests; derived: note_rest. While none does, no stage asks
 
+    /// The number that its handles bear.
+    void set_world(std::uint32_t number);
+
     Index row(BodyHandle body, const char* call) const;
     Index row(ColliderHandle collider, const char* call) const;
     Index row(MaterialHandle material, const char* call) const;

@@ -96,19 +96,37 @@ void note_limit(WorldState& world, StepReport& report) {
 }
 
 /// Steps are counted with an int; a step so small that time does not move on by it would go on for ever.
-void require_countable(Real dt, Real step) {
+void require_countable(const Model& model, Real dt) {
     constexpr Real most = std::numeric_limits<int>::max();
+    Index body = no_index;
+    const Real stable = stable_step(model.bodies, &body) * model.settings.step_safety;
+    const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
     char found[64];
     std::snprintf(found, sizeof found, "%g s in steps of %g s", dt, step);
+    const bool of_body = !model.settings.step_size && body != no_index;
     Complaint{.file = {},
               .object = "advance",
               .field = "dt",
-              .found = found,
+              .found = found + (of_body ? ", the stable step of body '" +
+                                              model.body_records[static_cast<std::size_t>(body)].name + "'"
+                                        : std::string()),
               .expected = "at most 2147483647 steps",
-              .hint = {}}
+              .hint = of_body ? "check its size and material" : ""}
         .raise();
 }
+
+/// Says that steps are being taken, until its end, however that comes.
+class AdvanceScope {
+public:
+    explicit AdvanceScope(bool& advancing) : advancing_(advancing) { advancing_ = true; }
+    ~AdvanceScope() { advancing_ = false; }
+    AdvanceScope(const AdvanceScope&) = delete;
+    AdvanceScope& operator=(const AdvanceScope&) = delete;
+
+private:
+    bool& advancing_;
+};
 
 }  // namespace
 
@@ -119,6 +137,12 @@ Real lag_between_steps(const WorldState& world) {
 }
 
 StepReport World::advance(Real dt) {
+    return advance(dt, {});
+}
+
+StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>& go_on) {
+    WorldState& world = *state_;
+    world.require_between_steps("advance");
     if (!(dt >= 0) || !std::isfinite(dt))
         Complaint{.file = {},
                   .object = "advance",
@@ -128,14 +152,14 @@ StepReport World::advance(Real dt) {
                   .hint = {}}
             .raise();
     const ArithmeticScope arithmetic;  // what is done between the stages depends on the host no more than they do
-    WorldState& world = *state_;
+    const AdvanceScope scope(world.advancing);
     Model& model = world.model;
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
+    world.settle();
     settle_clusters(model, world.scratch.stiffness_sum);
-    require_countable(
-        dt, model.settings.step_size.value_or(skerry::stable_step(model.bodies) * model.settings.step_safety));
+    require_countable(model, dt);
     StepReport report;
     const Real end = clock.time + dt;
     Real left = dt;
@@ -146,6 +170,10 @@ StepReport World::advance(Real dt) {
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     world.transaction.begin_call(model, clock);
     while (left > 0) {
+        if (go_on && !go_on(report)) {
+            report.status = StepStatus::stopped;
+            break;
+        }
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
         if (!(std::min(trusted, tries.longest) > std::numeric_limits<Real>::epsilon() * end)) {

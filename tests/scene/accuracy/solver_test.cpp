@@ -28,21 +28,24 @@ World pile(Settings settings) {
 
 Real differing_numbers(const World& one, const World& other) {
     Real count = 0;
-    for (BodyHandle body : one.bodies())
+    for (std::size_t b = 0; b < one.bodies().size(); ++b) {
+        const BodyHandle body = one.bodies()[b], twin = other.bodies()[b];
         for (std::size_t n = 0; n < one.positions(body).size(); ++n)
             for (int i = 0; i < 3; ++i) {
-                count += one.positions(body)[n][i] != other.positions(body)[n][i];
-                count += one.velocities(body)[n][i] != other.velocities(body)[n][i];
+                count += one.positions(body)[n][i] != other.positions(twin)[n][i];
+                count += one.velocities(body)[n][i] != other.velocities(twin)[n][i];
             }
+    }
     return count + (one.state_hash() != other.state_hash());
 }
 
 /// m, root mean square over the nodes of two worlds with the same bodies.
 Real distance(const World& one, const World& other) {
     Real sum = 0, count = 0;
-    for (const BodyHandle body : one.bodies())
-        for (std::size_t n = 0; n < one.positions(body).size(); ++n, ++count)
-            sum += (one.positions(body)[n] - other.positions(body)[n]).squaredNorm();
+    for (std::size_t b = 0; b < one.bodies().size(); ++b) {
+        const auto x = one.positions(one.bodies()[b]), y = other.positions(other.bodies()[b]);
+        for (std::size_t n = 0; n < x.size(); ++n, ++count) sum += (x[n] - y[n]).squaredNorm();
+    }
     return std::sqrt(sum / count);
 }
 

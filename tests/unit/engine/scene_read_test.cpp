@@ -101,6 +101,14 @@ TEST_CASE("unknown keys are named with their place and the nearest known key", "
     });
 }
 
+TEST_CASE("a key that is near none gets no suggestion", "[unit]") {
+    for (const char* key : {"pressure", "weight", "colour", "x"}) {
+        CAPTURE(key);
+        const std::string message = complaint_about(body_with("\"" + std::string(key) + "\": 1"));
+        CHECK_THAT(message, Catch::Contains("found an unknown key, expected one of") && !Catch::Contains("nearest"));
+    }
+}
+
 TEST_CASE("values of the wrong kind or out of range are refused with unit and range", "[unit]") {
     check_messages({
         {"text for a number",
@@ -146,6 +154,13 @@ TEST_CASE("values of the wrong kind or out of range are refused with unit and ra
         {"two angles",
          body_with(R"("rotation": {"axis": [0, 0, 1], "degrees": 3, "radians": 1})"),
          {"bodies[0].rotation", "exactly one of"}},
+        {"quaternion",
+         body_with(R"("rotation": [1, 0, 0, 0])"),
+         {"bodies[0].rotation: found the list [1,0,0,0]", R"(expected {"axis": [x, y, z], "degrees": angle})",
+          "quaternion"}},
+        {"angles about the axes",
+         body_with(R"("rotation": [0, 90, 0])"),
+         {"bodies[0].rotation: found the list [0,90,0]", R"({"axis": [x, y, z], "degrees": angle})", "order"}},
         {"skewed rotation",
          body_with(R"("rotation": [[1, 0, 0], [0, 1, 0.001], [0, 0, 1]])"),
          {"bodies[0].rotation", "not orthonormal", "to 1e-6"}},

@@ -1,0 +1,141 @@
+#include "engine/program/run_outputs.h"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <iostream>
+#include <ostream>
+
+#include "engine/output/vtk/vtk_series.h"
+#include "engine/output/write_file.h"
+#include "engine/program/progress.h"
+#include "engine/program/require_writable.h"
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+/// A file among the frames would be replaced by one of them, or replace one.
+void require_no_frame(const NamedFile& file, const RunOptions& options, const std::string& scene) {
+    if (file.file.empty() || options.out.empty()) return;
+    std::error_code error;
+    const auto folder = [&](const std::filesystem::path& place) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(place), error);
+    };
+    const std::filesystem::path place = folder(file.file);
+    if (place.parent_path() != folder(options.out / "frame").parent_path() ||
+        !is_series_file(place.filename().string(), scene))
+        return;
+    Complaint{.file = file.file.string(),
+              .object = std::string(file.name),
+              .field = {},
+              .found = "a file that --out writes, too",
+              .expected = "one of its own",
+              .hint = {}}
+        .raise();
+}
+
+void check_places(const RunOptions& options, const std::string& scene) {
+    for (const auto* folder : {&options.out, &options.problems})
+        if (!folder->empty()) require_writable_folder(*folder);
+    for (const auto* file : {&options.stats, &options.page, &options.trace})
+        if (!file->empty()) require_writable_file(*file);
+    const std::array<NamedFile, 4> files{{{"the scene", options.scene},
+                                          {"--page", options.page},
+                                          {"--stats", options.stats},
+                                          {"--trace", options.trace}}};
+    require_distinct(files);
+    for (const NamedFile& file : files) require_no_frame(file, options, scene);
+}
+
+}  // namespace
+
+RunOutputs::RunOutputs(const RunOptions& options, const Scene& scene)
+    : out_{"--out", options.out},
+      page_file_{"--page", options.page},
+      trace_{"--trace", options.trace},
+      problem_folder_{"--export-problems", options.problems},
+      stats_{"--stats", options.stats},
+      problems_(options, scene.name) {
+    check_places(options, scene.name);
+    if (out_.open()) vtk_ = std::make_unique<VtkWriter>(out_.place, scene.name);
+    if (page_file_.open()) page_ = std::make_unique<PageWriter>(page_file_.place, scene.name);
+}
+
+void RunOutputs::attempt(Output& output, FunctionRef<void()> write) {
+    if (!output.open()) return;
+    try {
+        write();
+    } catch (const std::exception& error) {
+        output.failure = error.what();
+        clear_bar();
+        std::cerr << "skerry: " << error.what() << "; " << output.option << " ends here, the rest goes on" << std::endl;
+    }
+}
+
+void RunOutputs::watch(World& world, double steps_to_come) {
+    if (!problem_folder_.open()) return;
+    const auto take = [this, &world](const StepProblem& step) {
+        attempt(problem_folder_, [&] { problems_.write_step(step); });
+        if (!problem_folder_.open()) world.watch_contact_problems({});
+    };
+    world.watch_contact_problems(take, problems_.every(steps_to_come));
+}
+
+void RunOutputs::add_frame(const World& world) {
+    const Stopwatch watch;
+    attempt(out_, [&] { vtk_->write_frame(world); });
+    if (vtk_ && !out_.open()) {
+        try {
+            vtk_->close();  // the frames so far can be opened, if there is room for that
+        } catch (const SceneError&) {
+        }
+        vtk_.reset();
+    }
+    attempt(page_file_, [&] { page_->add_frame(world); });
+    ++frames_;
+    seconds_ += watch.seconds();
+}
+
+void RunOutputs::finish(const World& world, RunResult& result) {
+    const Stopwatch watch;
+    attempt(out_, [&] { vtk_->close(); });
+    attempt(page_file_, [&] { page_->close(world); });
+    attempt(trace_, [&] { write_file(trace_.place, [&](std::ostream& out) { world.write_trace(out); }); });
+    result.seconds_output = seconds_ + watch.seconds() + problems_.seconds();
+    result.frames = frames_;
+    const auto note_failures = [&] {
+        result.outputs_failed.clear();
+        for (const Output* output : all())
+            if (!output->failure.empty()) result.outputs_failed.emplace_back(output->option, output->failure);
+    };
+    note_failures();
+    attempt(stats_, [&] {
+        write_file(stats_.place, [&](std::ostream& out) { out << statistics_of(result).dump(1) << "\n"; });
+    });
+    note_failures();
+}
+
+bool RunOutputs::all_failed() const {
+    const std::vector<const Output*> outputs = all();
+    const auto is_open = [](const Output* output) { return output->open(); };
+    const auto has_failed = [](const Output* output) { return !output->failure.empty(); };
+    return std::ranges::none_of(outputs, is_open) && std::ranges::any_of(outputs, has_failed);
+}
+
+std::string RunOutputs::summary() const {
+    std::string text;
+    const auto add = [&](const std::string& line) { text += "  wrote         " + line + "\n"; };
+    for (const Output* output : {&out_, &page_file_, &stats_, &trace_})
+        if (output->open()) add(output->place.string());
+    if (!problem_folder_.place.empty())
+        add(std::to_string(problems_.files()) + " contact problems of " + std::to_string(problems_.steps()) +
+            " steps to " + problem_folder_.place.string());
+    for (const Output* output : all())
+        if (!output->failure.empty())
+            text += "  NOT WRITTEN   " + std::string(output->option) + ": " + output->failure + "\n";
+    return text;
+}
+
+}  // namespace skerry

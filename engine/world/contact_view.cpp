@@ -1,0 +1,78 @@
+#include "engine/world/contact_view.h"
+
+#include <algorithm>
+
+namespace skerry {
+
+namespace {
+
+bool deforms(const Model& model, Index body) {
+    return body != no_index && model.bodies.kind[static_cast<std::size_t>(body)] == BodyKind::deformable;
+}
+
+BodyHandle body_handle(const Model& model, Index body) {
+    return deforms(model, body) ? model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(body)])
+                                : BodyHandle{};
+}
+
+ColliderHandle collider_handle(const Model& model, const ContactTable& table, std::size_t c) {
+    Index collider = table.collider[c];
+    for (Index body : {table.first_body[c], table.second_body[c]})
+        if (body != no_index && !deforms(model, body)) collider = model.bodies.collider[static_cast<std::size_t>(body)];
+    if (collider == no_index) return {};
+    return model.collider_map.handle_of_slot(model.colliders.slot[static_cast<std::size_t>(collider)]);
+}
+
+Index local_node(const Model& model, Index node) {
+    const Index body = model.nodes.body[static_cast<std::size_t>(node)];
+    return node - model.bodies.nodes[static_cast<std::size_t>(body)].begin;
+}
+
+Contact contact_at(const Model& model, const ContactTable& table, std::size_t c) {
+    Contact contact;
+    contact.first = body_handle(model, table.first_body[c]);
+    contact.second = body_handle(model, table.second_body[c]);
+    contact.collider = collider_handle(model, table, c);
+    for (std::size_t a = 0; a < 4; ++a) {
+        contact.weight[a] = table.stencil[c].weight[a];
+        contact.node[a] = contact.weight[a] == 0 ? -1 : local_node(model, table.stencil[c].node[a]);
+    }
+    contact.point = table.point[c];
+    contact.normal = table.normal[c];
+    contact.distance = table.distance[c];
+    contact.gap = table.gap[c];
+    contact.slip = table.slip[c];
+    contact.impulse = table.impulse[c];
+    contact.motion = static_cast<ContactMotion>(table.state[c]);
+    contact.region = table.region[c];
+    return contact;
+}
+
+}  // namespace
+
+void view_contacts(WorldState& world) {
+    RunRecord& record = world.record;
+    if (record.contact_view_is_current) return;
+    const ContactTable& table = world.scratch.contacts;
+    record.contact_view.resize(table.size());
+    for (std::size_t c = 0; c < table.size(); ++c) record.contact_view[c] = contact_at(world.model, table, c);
+    record.contact_view_is_current = true;
+}
+
+void forget_contacts_of(BodyHandle body, RunRecord& record) {
+    std::erase_if(record.contact_view, [&](const Contact& c) { return c.first == body || c.second == body; });
+}
+
+void forget_contacts_of(ColliderHandle collider, RunRecord& record) {
+    std::erase_if(record.contact_view, [&](const Contact& c) { return c.collider == collider; });
+}
+
+std::span<const Contact> World::contacts() const {
+    WorldState& world = *state_;
+    // of a step that was not taken: numbers that may not be finite
+    if (world.scratch.findings.verdict.fault != StepFault::none) return {};
+    view_contacts(world);
+    return world.record.contact_view;
+}
+
+}  // namespace skerry

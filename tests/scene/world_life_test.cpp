@@ -1,0 +1,219 @@
+// Handles, and what is left of the last step, while bodies and colliders come and go and worlds are moved.
+#include <catch2/catch.hpp>
+#include <utility>
+
+#include "skerry/problem.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+/// Three boxes lie on a plane, side by side.
+struct ThreeBoxes {
+    World world;
+    MaterialHandle rubber;
+    ColliderHandle floor;
+    std::vector<BodyHandle> box;
+
+    ThreeBoxes() : rubber(world.add_material({})), floor(world.add_collider(Plane{})) {
+        for (int i = 0; i < 3; ++i) box.push_back(add(i));
+        REQUIRE(world.advance(0.02).ok());
+    }
+    BodyHandle add(int place) {
+        return world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+                              {.material = rubber, .position = {0.3 * place, 0, 0.052}, .contact_distance = 0.002});
+    }
+    std::vector<Contact> contacts_of(BodyHandle body) const {
+        std::vector<Contact> found;
+        for (const Contact& contact : world.contacts())
+            if (contact.first == body || contact.second == body) found.push_back(contact);
+        return found;
+    }
+};
+
+void check_same(const std::vector<Contact>& now, const std::vector<Contact>& before) {
+    REQUIRE(now.size() == before.size());
+    for (std::size_t c = 0; c < now.size(); ++c) {
+        CHECK(now[c].first == before[c].first);
+        CHECK(now[c].collider == before[c].collider);
+        CHECK(now[c].node == before[c].node);
+        CHECK(now[c].impulse == before[c].impulse);
+        CHECK(now[c].point == before[c].point);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("contacts of the others stay when a body is removed, and those of it go", "[scene]") {
+    ThreeBoxes scene;
+    const auto first = scene.contacts_of(scene.box[0]), last = scene.contacts_of(scene.box[2]);
+    REQUIRE(first.size() >= 4);
+    REQUIRE(scene.contacts_of(scene.box[1]).size() >= 4);
+    scene.world.remove(scene.box[1]);
+    check_same(scene.contacts_of(scene.box[0]), first);
+    check_same(scene.contacts_of(scene.box[2]), last);
+    CHECK(scene.contacts_of(scene.box[1]).empty());
+    CHECK(scene.world.contacts().size() == first.size() + last.size());
+    for (const Contact& contact : scene.world.contacts()) {
+        CHECK(scene.world.alive(contact.first));
+        CHECK(scene.world.alive(contact.collider));
+    }
+}
+
+TEST_CASE("contacts stay when something is added, and those of a collider go with it", "[scene]") {
+    ThreeBoxes scene;
+    const auto first = scene.contacts_of(scene.box[0]);
+    const BodyHandle added = scene.add(5);
+    const ColliderHandle ball = scene.world.add_collider(Sphere{}, {.position = {0, 0, 9}});
+    const Index node = 0;
+    const AttachmentHandle held = scene.world.attach(added, {&node, 1});
+    check_same(scene.contacts_of(scene.box[0]), first);
+    scene.world.remove(held);
+    scene.world.remove(ball);
+    check_same(scene.contacts_of(scene.box[0]), first);
+    scene.world.remove(scene.floor);
+    CHECK(scene.world.contacts().empty());
+    REQUIRE(scene.world.advance(0.001).ok());
+    CHECK(scene.world.contacts().empty());
+}
+
+TEST_CASE("a world is built and advanced between steps only, also by what it calls", "[scene]") {
+    ThreeBoxes scene;
+    World& world = scene.world;
+    int calls = 0;
+    const auto try_all = [&] {
+        ++calls;
+        CHECK_THROWS_WITH(world.advance(0.01), Catch::Contains("advance: found a call in the middle of advance"));
+        CHECK_THROWS_WITH(scene.add(7), Catch::Contains("add_body: found a call in the middle"));
+        CHECK_THROWS_AS(world.add_material({}), SceneError);
+        CHECK_THROWS_AS(world.add_collider(Plane{}), SceneError);
+        CHECK_THROWS_AS(world.attach(scene.box[0], std::array<Index, 1>{0}), SceneError);
+        CHECK_THROWS_AS(world.remove(scene.box[0]), SceneError);
+        CHECK_THROWS_AS(world.remove(scene.floor), SceneError);
+        CHECK_FALSE(world.contacts().empty());
+    };
+    const std::uint64_t steps = world.report().steps;
+    world.watch_contact_problems([&](const StepProblem&) { try_all(); });
+    REQUIRE(world.advance(2 * world.stable_step()).ok());
+    world.watch_contact_problems({});
+    REQUIRE(world
+                .advance(2 * world.stable_step(),
+                         [&](const StepReport&) {
+                             try_all();
+                             return true;
+                         })
+                .ok());
+    CHECK(calls == static_cast<int>(world.report().steps - steps));
+    CHECK(world.bodies().size() == 3);
+    world.remove(scene.box[0]);  // between calls again, also after one that ended by an exception
+    CHECK_THROWS_AS(world.advance(0.01, [](const StepReport&) -> bool { throw SceneError("mine"); }), SceneError);
+    world.remove(scene.box[1]);
+    CHECK(world.advance(0.01).ok());
+}
+
+TEST_CASE("advance ends between two steps when it is asked to, and goes on from there", "[scene]") {
+    for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
+        CAPTURE(name_of(integrator));
+        Settings settings;
+        settings.integrator = integrator;
+        BlockOnPlane stopped(settings, {}), whole(settings, {});
+        const Real h = stopped.world.stable_step();
+        const StepReport report =
+            stopped.world.advance(100 * h, [](const StepReport& so_far) { return so_far.steps < 7; });
+        CHECK(report.status == StepStatus::stopped);
+        CHECK_FALSE(report.ok());
+        CHECK(report.steps == 7);
+        CHECK(stopped.world.time() == Approx(7 * h));
+        CHECK_THAT(report.message(), Catch::Contains("stopped"));
+        REQUIRE(stopped.world.advance(100 * h - stopped.world.time()).ok());
+        REQUIRE(whole.world.advance(100 * h).ok());
+        CHECK(stopped.world.time() == Approx(whole.world.time()));
+        const Vec3 apart = stopped.world.center_of_mass(stopped.block) - whole.world.center_of_mass(whole.block);
+        CHECK(apart.norm() < 1e-9);  // m; times of steps differ by rounding
+        const std::uint64_t before = stopped.world.state_hash();
+        const StepReport none = stopped.world.advance(h, [](const StepReport&) { return false; });
+        CHECK(none.steps == 0);
+        CHECK(none.status == StepStatus::stopped);
+        CHECK(stopped.world.state_hash() == before);
+    }
+}
+
+TEST_CASE("a handle of another world names nothing", "[scene]") {
+    ThreeBoxes one, other;
+    REQUIRE(one.box[1].slot == other.box[1].slot);
+    CHECK(one.box[1] != other.box[1]);
+    CHECK(one.world.alive(one.box[1]));
+    CHECK_FALSE(one.world.alive(other.box[1]));
+    CHECK_FALSE(one.world.alive(other.floor));
+    CHECK_THROWS_WITH(one.world.positions(other.box[1]), Catch::Contains("positions: body: found a handle to nothing"));
+    CHECK_THROWS_AS(one.world.remove(other.floor), SceneError);
+    CHECK_THROWS_AS(one.world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}), {.material = other.rubber}), SceneError);
+    CHECK(one.world.bodies() == one.box);
+}
+
+TEST_CASE("handles go with a world that is moved, and what is left refuses all use", "[scene]") {
+    ThreeBoxes scene;
+    World moved = std::move(scene.world);
+    CHECK(moved.alive(scene.box[0]));
+    CHECK(moved.advance(0.001).ok());
+    const World& left = scene.world;
+    const auto said = Catch::Contains("world: found one that was moved from");
+    CHECK_THROWS_WITH(scene.world.advance(0.001), said);
+    CHECK_THROWS_WITH(scene.world.add_material({}), said);
+    CHECK_THROWS_WITH(scene.world.remove(scene.box[0]), said);
+    CHECK_THROWS_WITH(left.alive(scene.box[0]), said);
+    CHECK_THROWS_WITH(left.contacts(), said);
+    CHECK_THROWS_WITH(left.time(), said);
+    CHECK_THROWS_WITH(left.report(), said);
+    CHECK_THROWS_WITH(left.state_hash(), said);
+    CHECK_THROWS_WITH(left.bodies(), said);
+    scene.world = std::move(moved);
+    CHECK(scene.world.alive(scene.box[0]));
+    CHECK(scene.world.advance(0.001).ok());
+}
+
+TEST_CASE("many changes in a row give the same bits as the same with a look at the world after each", "[scene]") {
+    const auto built = [](auto look) {
+        Settings settings;
+        settings.sleep_speed = 0.05;
+        settings.sleep_time = 0.02;
+        World world(settings);
+        const auto rubber = world.add_material({.young_modulus = 3e4});
+        const ColliderHandle floor = world.add_collider(Plane{});
+        const Mesh mesh = mesh::ball(0.05, 3);
+        std::vector<BodyHandle> balls;
+        const auto add = [&](int i) {
+            balls.push_back(world.add_body(mesh, {.material = rubber, .position = {0.11 * (i % 3), 0.02 * i, 0.055}}));
+            look(world);
+        };
+        for (int i = 0; i < 5; ++i) add(i);
+        REQUIRE(world.advance(0.2).ok());
+        world.set_velocities(balls[0], std::vector<Vec3>(mesh.nodes.size(), Vec3(0.1, 0, 0.2)));
+        world.remove(balls[1]);
+        look(world);
+        for (int i = 5; i < 8; ++i) add(i);
+        const AttachmentHandle held = world.attach(balls[2], std::array<Index, 2>{0, 1});
+        look(world);
+        world.add_collider(mesh::boundary(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1})), {.position = {0.05, 0.3, 0.2}});
+        look(world);
+        const ColliderHandle wall = world.add_collider(Box{}, {.position = {2, 0, 0}});
+        look(world);
+        world.remove(wall);
+        world.remove(floor);
+        look(world);
+        world.add_collider(Plane{});
+        look(world);
+        for (const BodyHandle ball : {balls[0], balls[2], balls[6]}) CHECK_FALSE(world.asleep(ball));
+        world.remove(held);
+        REQUIRE(world.advance(0.1).ok());
+        return world.state_hash();
+    };
+    const std::uint64_t expected = built([](World&) {});
+    CHECK(built([](World& world) { world.stable_step(); }) == expected);
+    CHECK(built([](World& world) {
+              world.report();
+              world.state_hash();
+          }) == expected);
+}

@@ -1,0 +1,168 @@
+"""What a run says while it lasts, how it ends, and what becomes of its outputs and of inputs beyond all numbers.
+
+Called as: program_run_test.py PROGRAM SOURCE_FOLDER
+"""
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from program_case import PROGRAM, ROOT, SCENE, ProgramCase
+
+# One step after the other: no frame and no sample ends for a day.
+SLOW = {**SCENE, "seconds": 1e5, "frame_step": 1e5, "probe_step": 1e5}
+
+
+class ProgramRunTest(ProgramCase):
+    def test_energy_that_misses_some_per_cent_is_doubted(self):
+        crushed = {"name": "crushed", "seconds": 0.15, "materials": {"soft": {"E": 2e4, "nu": 0.3, "rho": 1000}},
+                   "bodies": [{"name": "torus", "mesh": {"file": str(ROOT / "scenes/meshes/torus.msh")},
+                               "material": "soft", "position": [0, 0, 0.13], "velocity": [0, 0, -5]}],
+                   "colliders": [{"shape": {"plane": {}}}]}
+        trust = json.loads(self.run_with_stats(self.write("crushed.json", crushed)))["trust"]
+        self.assertGreater(trust["energy"]["share"], 0.02)
+        self.assertTrue(any("energy does not add up" in doubt for doubt in trust["doubts"]), trust)
+        calm = json.loads(self.run_with_stats(self.scene))["trust"]
+        self.assertLess(calm["energy"]["share"], 0.01)
+        self.assertEqual(calm["doubts"], [])
+
+    def blocked(self, *names):
+        """A name at which a file cannot be written, from a certain moment of the run on: a full disk to the program."""
+        place = self.folder.joinpath(*names)
+        (place / "not empty").mkdir(parents=True)
+
+    def test_an_output_that_cannot_be_written_takes_no_other_with_it(self):
+        out, page, stats, trace = (self.folder / name for name in ("out", "page.html", "stats.json", "trace.json"))
+        outputs = ("--out", out, "--page", page, "--stats", stats, "--trace", trace)
+        self.blocked("out", "drop_contacts_0003.vtp.part")
+        done = self.skerry("run", self.scene, *outputs, code=3)
+        self.assertIn("drop_contacts_0003.vtp: output: found", done.stderr)
+        self.assertIn("--out ends here", done.stderr)
+        self.assertIn("NOT WRITTEN   --out", done.stdout)
+        self.assertNotIn(f"wrote         {out}", done.stdout)
+        found = json.loads(stats.read_text())
+        self.assertEqual((found["status"], list(found["outputs_failed"])), ("ok", ["--out"]))
+        self.assertAlmostEqual(found["seconds_simulated"], 0.2)
+        self.assertIn("<html", page.read_text()[:2000].lower())
+        self.assertTrue(json.loads(trace.read_text()))
+        frames = sorted(path.name for path in out.glob("drop_*.vt*") if path.is_file())
+        self.assertEqual(frames, sorted([f"drop_bodies_000{i}.vtu" for i in range(3)] + ["drop_colliders_0000.vtp"] +
+                                        [f"drop_contacts_000{i}.vtp" for i in range(3)]))
+        self.assertTrue(all(name in (out / "drop.pvd").read_text() for name in frames))
+
+        self.blocked("page.html.part")
+        done = self.skerry("run", self.scene, "--page", page, "--stats", stats, "--out", self.folder / "good", code=3)
+        self.assertIn("--page ends here", done.stderr)
+        self.assertEqual(list(json.loads(stats.read_text())["outputs_failed"]), ["--page"])
+        self.assertTrue((self.folder / "good" / "drop.pvd").exists())
+
+        endless = self.write("endless.json", {**SCENE, "seconds": 1e6})  # with nothing left to write it ends
+        done = self.skerry("run", endless, "--out", out, code=3)
+        self.assertIn("no output is left", done.stderr)
+
+    def test_frames_of_an_earlier_run_make_room_and_nothing_else_does(self):
+        out = self.folder / "out"
+        self.skerry("run", self.scene, "--out", out, "--quiet")
+        mine = ["notes.txt", "drop_bodies_old.vtu", "drop_bodies_0009.vtp", "drop_bodies_001.vtu",
+                "drop_extra_0009.vtu", "drop2_bodies_0009.vtu", "xdrop_bodies_0009.vtu", "stats.json"]
+        for name in mine:
+            (out / name).write_text("mine")
+        (out / "drop_bodies_0010.vtu").unlink()
+        (out / "drop_bodies_0010.vtu").symlink_to("notes.txt")
+        self.assertTrue((out / "drop_bodies_0012.vtu").exists())
+        self.skerry("run", self.scene, "--seconds", 0.05, "--out", out, "--quiet")
+        frames = sorted(path.name for path in out.iterdir() if path.name not in mine)
+        self.assertEqual(frames, sorted([f"drop_bodies_000{i}.vtu" for i in range(4)] + ["drop_colliders_0000.vtp"] +
+                                        [f"drop_contacts_000{i}.vtp" for i in range(4)] +
+                                        ["drop.pvd", "drop_bodies_0010.vtu"]))
+        for name in mine:
+            self.assertEqual((out / name).read_text(), "mine")
+        kept = out / "drop_bodies_0003.vtu"
+        kept.chmod(0o444)
+        self.assert_refused("run", self.scene, "--seconds", 0.01, "--out", out, said=["drop_bodies_0003", "protected"])
+        kept.chmod(0o644)
+
+    def test_no_output_goes_among_the_frames_under_their_names(self):
+        out = self.folder / "out"
+        for name in ("drop.pvd", "drop_bodies_0000.vtu", "drop_colliders_0007.vtp"):
+            self.assert_refused("run", self.scene, "--out", out, "--stats", out / name,
+                                said=["--stats", "--out writes"])
+        self.skerry("run", self.scene, "--seconds", 0.02, "--out", out, "--quiet", "--stats", out / "drop_0000.json")
+
+    def test_a_material_or_a_mesh_beyond_all_numbers_is_named(self):
+        for change in ({"rho": 1e-300}, {"E": 1e308}):
+            scene = {**SCENE, "materials": {"rubber": {**SCENE["materials"]["rubber"], **change}}}
+            self.assert_refused("run", self.write("wild.json", scene), said=["materials.rubber", "kg/m^3", "light"])
+        scene = json.loads(json.dumps(SCENE))
+        scene["bodies"][0]["mesh"]["scale"] = 1e-30
+        scene["probes"] = []
+        self.assert_refused("run", self.write("dot.json", scene), said=["block", "mesh, material: found edges of"])
+
+    def test_a_step_that_gets_shorter_is_not_called_longer(self):
+        for scene in (self.scene, ROOT / "scenes/skittles.json"):
+            kinds = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"]
+            lines = [line for line in self.skerry("inspect", scene).stdout.splitlines() if "without the worst" in line]
+            steps = [(bound["stable_dt"], without["stable_dt"]) for bound in (kind["step_bound"] for kind in kinds)
+                     for without in bound["without"]]
+            self.assertEqual(len(lines), len(steps))
+            self.assertTrue(lines)
+            for line, (with_it, without) in zip(lines, steps):
+                self.assertEqual("shorter" in line, without < with_it, line)
+
+    def test_an_interrupt_ends_a_run_within_a_frame_that_would_take_hours_and_what_there_is_is_whole(self):
+        slow = self.write("slow.json", SLOW)
+        stats, page, out = (self.folder / name for name in ("stats.json", "page.html", "out"))
+        with subprocess.Popen([PROGRAM, "run", slow, "--stats", stats, "--page", page, "--out", out],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(1.5)
+            process.send_signal(signal.SIGINT)
+            sent = time.monotonic()
+            stdout, stderr = process.communicate(timeout=60)
+        self.assertLess(time.monotonic() - sent, 5)  # hundredths of a second on a machine that is not busy
+        self.assertEqual(process.returncode, 130, stderr)
+        found = json.loads(stats.read_text())
+        self.assertIn("stopped by a signal", found["status"])
+        self.assertGreater(found["seconds_simulated"], 0)
+        self.assertIn("stopped by a signal", stdout)
+        self.assertTrue(page.exists())
+        frames = sorted(path.name for path in out.glob("drop_bodies_*.vtu"))
+        self.assertEqual(frames, ["drop_bodies_0000.vtu", "drop_bodies_0001.vtu"])
+        for frame in frames:
+            self.assertIn(frame, (out / "drop.pvd").read_text())
+        self.assertEqual(list(self.folder.rglob("*.part")), [])
+        probe = found["probes"]["base"]
+        self.assertAlmostEqual(sum(probe[key] for key in ("stick_time", "slide_time", "open_time")),
+                               found["seconds_simulated"])
+
+    def test_a_run_says_how_much_there_is_to_do_and_how_long_it_will_take(self):
+        with subprocess.Popen([PROGRAM, "run", self.write("slow.json", SLOW)],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            lines = [process.stderr.readline() for _ in range(3)]
+            process.send_signal(signal.SIGTERM)
+            process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 128 + signal.SIGTERM)
+        self.assertRegex(lines[0], r"^skerry: 1e\+05 s to simulate, about [\d,]+ steps of [\d.]+ ms$")
+        for line in lines[1:]:
+            self.assertRegex(line, r"after [\d.]+ s: .* of 1e\+05 s .* steps; about .* left$")
+        steps = [int(re.search(r"([\d,]+) steps", line)[1].replace(",", "")) for line in lines[1:]]
+        self.assertGreater(steps[1], steps[0])
+
+    def test_inspect_estimates_the_cost_of_the_whole_run(self):
+        found = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
+        run = json.loads(self.run_with_stats(self.scene))
+        self.assertAlmostEqual(found["steps"], run["steps"], delta=0.05 * run["steps"])
+        self.assertAlmostEqual(found["wall_seconds"], 0.2 * found["wall_seconds_per_second"])
+        self.assertRegex(self.skerry("inspect", self.scene).stdout,
+                         r"a simulated second, as it starts; .* for all of it")
+
+    def run_with_stats(self, scene, *arguments):
+        stats = self.folder / "stats.json"
+        self.skerry("run", scene, "--quiet", "--stats", stats, *arguments)
+        return stats.read_text()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
