@@ -159,6 +159,8 @@ void write_results(const RunOptions& options, const RunResult& result, const Pro
             std::cout << "  wrote         " << problems.files() << " contact problems of " << problems.steps()
                       << " steps to " << options.problems.string() << "\n";
         std::cout.flush();
+    } else {
+        for (const std::string& doubt : doubts_of(result)) std::cerr << "skerry: DOUBT: " << doubt << "\n";
     }
 }
 

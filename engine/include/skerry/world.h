@@ -44,8 +44,12 @@ public:
     bool alive(AttachmentHandle attachment) const;
 
     // Running.
+    /// Looks for overlaps of what was added since the last look, and does about them what the settings say. `advance`
+    /// begins with it; it may be called before to have it done, or known (WorldReport::start_overlaps). Throws
+    /// SceneError, and changes nothing, where they are refused.
+    void settle_start();
     /// Moves time on by dt in equal steps no longer than the stable step. A step that cannot be committed changes
-    /// nothing and ends the call: the report says which body and why.
+    /// nothing and ends the call: the report says which body and why. Throws what settle_start throws.
     StepReport advance(Real dt);
     Real time() const;
     const Settings& settings() const;

@@ -132,6 +132,7 @@ StepReport World::advance(Real dt) {
     Model& model = world.model;
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
+    settle_start();
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
     settle_clusters(model, world.scratch.stiffness_sum);
     require_countable(

@@ -11,22 +11,10 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-PROGRAM, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
-
-SCENE = {
-    "name": "drop",
-    "seconds": 0.2,
-    "materials": {"rubber": {"E": 2e4, "nu": 0.3, "rho": 500, "mu": 0.5}},
-    "bodies": [{"name": "block", "mesh": {"box": {"size": [0.2, 0.2, 0.2], "cells": [2, 2, 2]}}, "material": "rubber",
-                "position": [0, 0, 0.11]}],
-    "colliders": [{"name": "floor", "shape": {"plane": {}}}],
-    "probes": [{"name": "base", "body": "block", "box": {"lower": [-1, -1, -1], "upper": [1, 1, -0.09]}}],
-    "probe_step": 0.005,
-}
+from program_case import PROGRAM, ROOT, SCENE, ProgramCase
 
 STATS_KEYS = {
     "": "schema scene seconds_simulated steps seconds_wall threads bodies nodes elements stable_dt contacts regions "
@@ -40,35 +28,7 @@ STATS_KEYS = {
 }
 
 
-class ProgramTest(unittest.TestCase):
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self.temporary.name)
-        self.scene = self.write("drop.json", SCENE)
-
-    def tearDown(self):
-        self.temporary.cleanup()
-
-    def write(self, name, content):
-        path = self.folder / name
-        path.write_text(content if isinstance(content, str) else json.dumps(content))
-        return path
-
-    def skerry(self, *arguments, code=0):
-        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300, check=False)
-        self.assertEqual(done.returncode, code, f"{arguments}\n{done.stdout}\n{done.stderr}")
-        return done
-
-    def assert_refused(self, *arguments, said):
-        """Exit code 2, one line on standard error, nothing on standard output, no file that was not there."""
-        before = sorted(self.folder.rglob("*"))
-        done = self.skerry(*arguments, code=2)
-        for part in said:
-            self.assertIn(part, done.stderr)
-        self.assertEqual(done.stdout, "")
-        self.assertEqual(sorted(self.folder.rglob("*")), before)
-        return done
-
+class ProgramTest(ProgramCase):
     def test_a_run_writes_statistics_with_every_promised_key(self):
         stats = self.folder / "deep" / "stats.json"
         done = self.skerry("run", self.scene, "--threads", 1, "--stats", stats)
@@ -375,7 +335,8 @@ class ProgramTest(unittest.TestCase):
         sunk = json.loads(json.dumps(SCENE))
         sunk["bodies"][0]["position"][2] = 0.09
         problems = json.loads(self.skerry("inspect", self.write("sunk.json", sunk), "--json").stdout)["problems"]
-        self.assertTrue(any("overlap by 10 mm" in problem for problem in problems), problems)
+        self.assertIn("body 'block' and collider 'floor' overlap by 0.01 m at (0, 0, -0.01) m at the start", problems)
+        self.assertTrue(any("a run takes that apart" in problem for problem in problems), problems)
 
     def test_a_step_that_fails_ends_with_one_and_keeps_the_figures(self):
         fast = json.loads(json.dumps(SCENE))
