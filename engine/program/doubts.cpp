@@ -3,12 +3,11 @@
 
 #include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
+#include "engine/program/start_text.h"
 
 namespace skerry {
 
 namespace {
-
-constexpr double visible = 0.05;  // of the mean edge
 
 std::string percent(double share) {
     return short_number(100 * share) + " %";
@@ -26,11 +25,9 @@ bool doubt_start(const RunResult& result, std::vector<std::string>& doubts) {
                 (overlap.kind == OverlapKind::crossing ? ", or set settings.start_overlaps to \"resolve\"" : ""));
     if (left > most_named) doubts.push_back(grouped(left - most_named) + " more overlaps at the start");
     const Real into_shell = r.start_gap_violation - r.start_penetration;
-    const bool in_shell = into_shell > visible * result.mean_edge;
-    if (in_shell)
-        doubts.push_back("surfaces begin " + with_unit(into_shell, "m") +
-                         " too deep in each other's contact distance: start further apart, or lower contact_distance");
-    if (left == 0 && r.start_penetration > visible * result.mean_edge)
+    const bool in_shell = into_shell > visible_share * result.mean_edge;
+    if (in_shell) doubts.push_back(into_shell_text(into_shell));
+    if (left == 0 && r.start_penetration > visible_share * result.mean_edge)
         doubts.push_back("surfaces overlap by " + with_unit(r.start_penetration, "m") + " in the first step");
     return left > 0 || in_shell;
 }
@@ -55,6 +52,7 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     const WorldReport& r = result.report;
     std::vector<std::string> doubts;
     const bool bad_start = doubt_start(result, doubts);
+    doubts.insert(doubts.end(), result.bad_boundaries.begin(), result.bad_boundaries.end());
     const std::string shorter = bad_start ? "begin as said above"
                                           : "shorten the step (settings.step_safety below " +
                                                 short_number(result.settings.step_safety) + ", or --step)";
@@ -71,7 +69,7 @@ std::vector<std::string> doubts_of(const RunResult& result) {
         doubts.push_back("momentum does not add up by " + percent(r.momentum_error_share));
     if (r.crossed > 0) doubts.push_back(grouped(r.crossed) + " features went through each other: " + shorter);
     const bool arose = r.max_penetration > 1.01 * r.start_penetration;
-    if (arose && result.mean_edge > 0 && r.max_penetration > visible * result.mean_edge)
+    if (arose && result.mean_edge > 0 && r.max_penetration > visible_share * result.mean_edge)
         doubts.push_back("surfaces came to overlap by " + percent(r.max_penetration / result.mean_edge) +
                          " of the mean edge: " + shorter);
     doubt_elements(r, doubts);

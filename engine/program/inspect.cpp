@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <map>
 
 #include "engine/program/cluster_text.h"
@@ -246,6 +247,7 @@ SceneStart start_of(const ScenePlan& plan) {
 struct SceneCost {
     double seconds_per_second = 0;  // wall time of a simulated second as the scene starts
     Real overlap = 0;               // m, at the start
+    Real into_shell = 0;            // m, pressed into the contact distance at the start
     Index contacts = 0;             // at the start
     std::string failure{};
 };
@@ -256,6 +258,7 @@ SceneCost try_steps(World& world, Real overlap) {
     constexpr Real hardly = 1e-9;  // s: finds contacts, moves nothing that matters
     const StepReport first = world.advance(hardly);
     cost.overlap = std::max(overlap, first.max_penetration);
+    cost.into_shell = first.max_gap_violation - first.max_penetration;
     cost.contacts = first.contacts;
     if (!first.ok()) cost.failure = first.message();
     const Stopwatch watch;
@@ -287,6 +290,9 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
         problems.push_back(start.outcome);
     else if (cost.overlap > 0)
         problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " in the first step");
+    Real shortest_edge = std::numeric_limits<Real>::infinity();
+    for (const BodyKindReport& kind : kinds) shortest_edge = std::min(shortest_edge, kind.mesh.mean_edge);
+    if (cost.into_shell > visible_share * shortest_edge) problems.push_back(into_shell_text(cost.into_shell));
     if (!cost.failure.empty()) problems.push_back("the first steps fail: " + cost.failure);
     return problems;
 }

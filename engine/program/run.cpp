@@ -7,12 +7,14 @@
 #include <memory>
 #include <ostream>
 
+#include "engine/mesh/manifold_fault.h"
 #include "engine/output/write_file.h"
 #include "engine/program/commands.h"
 #include "engine/program/problem_export.h"
 #include "engine/program/progress.h"
 #include "engine/program/require_writable.h"
 #include "engine/program/run_result.h"
+#include "engine/scene/scene_plan.h"
 #include "jobs/executor.h"
 #include "skerry/error.h"
 #include "skerry/output.h"
@@ -164,13 +166,29 @@ void write_results(const RunOptions& options, const RunResult& result, const Pro
     }
 }
 
+/// One of each mesh. Contacts find the way out of a body by its surface: where that has no two sides they may not.
+std::vector<std::string> bad_boundaries(const ScenePlan& plan) {
+    std::vector<std::string> found;
+    std::size_t last = plan.meshes.size();
+    for (const BodyPlan& body : plan.bodies) {
+        if (body.mesh == last) continue;
+        last = body.mesh;
+        const std::string fault = mesh::manifold_fault(boundary_triangles(plan.meshes[body.mesh].tetrahedra));
+        if (!fault.empty())
+            found.push_back("the boundary of body '" + body.settings.name + "' is not a closed manifold: " + fault);
+    }
+    return found;
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
     const Stopwatch loading;
-    Scene scene = load_scene(options.scene, options.overrides);
+    const ScenePlan plan = plan_scene(options.scene, options.overrides);
+    Scene scene = build_scene(plan);
     World& world = scene.world;
     RunResult result;
+    result.bad_boundaries = bad_boundaries(plan);
     result.seconds_load = loading.seconds();
     result.scene = scene.name;
     result.scene_file = options.scene.string();

@@ -24,6 +24,7 @@ struct RunResult {
     WorldReport report;
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
+    std::vector<std::string> bad_boundaries;  // of the bodies' meshes, a sentence each
 };
 
 /// Why not to rely on the run, a sentence each; empty when all estimates are small.

@@ -22,6 +22,14 @@ inline Json overlaps_json(const WorldReport& report) {
     return overlaps;
 }
 
+/// Of the mean edge: what is less is not worth a word.
+inline constexpr Real visible_share = 0.05;
+
+inline std::string into_shell_text(Real depth) {
+    return "surfaces begin " + with_unit(depth, "m") +
+           " too deep in each other's contact distance: start further apart, or lower contact_distance";
+}
+
 /// "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm"
 inline std::string moves_text(const WorldReport& report) {
     const StartMove* furthest = nullptr;

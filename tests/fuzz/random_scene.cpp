@@ -59,7 +59,7 @@ private:
     Json settings() {
         Json s;
         // what overlaps and goes on is worth more scenes than what is taken apart, or refused, at the start
-        constexpr std::uint64_t one_in = 4;
+        constexpr std::uint64_t one_in = 16;
         s["start_overlaps"] = seed_ % one_in == 0 ? "resolve" : "ignore";
         // as on Earth, none, or strong enough to be felt within so short a run
         const Real strong = random_.by_decade(1e-4, 1e-1) * wave_speed_ * wave_speed_ / scene_.length;

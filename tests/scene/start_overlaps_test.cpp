@@ -235,6 +235,18 @@ TEST_CASE("what touches, or lies within the contact distance, is no overlap", "[
     }
 }
 
+TEST_CASE("a mesh collider seen from inside is a room, and what is in it may begin there", "[scene]") {
+    SurfaceMesh room = mesh::boundary(mesh::box({1, 1, 1}, {4, 4, 4}));
+    for (auto& triangle : room.triangles) std::swap(triangle[0], triangle[1]);
+    World world;
+    const auto rubber = world.add_material({});
+    const auto ball = world.add_body(mesh::ball(0.05, 4), {.material = rubber, .position = {0.02, 0.03, -0.4}});
+    world.add_collider(room);
+    REQUIRE(world.advance(0.5).ok());
+    CHECK(world.report().start_overlaps.empty());
+    CHECK(world.center_of_mass(ball).z() == Approx(-0.45).margin(0.01));  // it lies on a facet
+}
+
 TEST_CASE("only what is new is moved: a body that is held or has made a step stays", "[scene]") {
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
     Stage s(StartOverlaps::resolve);

@@ -1,5 +1,6 @@
 // Before the first step after something was added: overlaps are found, and taken apart, refused or left.
 #include <algorithm>
+#include <map>
 
 #include "engine/world/start/start_messages.h"
 #include "engine/world/start/start_search.h"
@@ -32,36 +33,39 @@ StartOverlap report_of(const Model& model, const PairOverlap& found) {
     return report;
 }
 
-/// Moves bodies apart, pair after pair and round after round, until a round has nothing to move.
+/// Moves bodies apart in rounds: what overlaps is looked for, and everything found so far is satisfied at once.
 class MoveApart {
 public:
     MoveApart(const Model& model, StartSearch& search) : model_(model), search_(search) {}
 
     void run(std::span<const PairOverlap> overlaps) {
         others_ = overlaps.size() - 1;
-        for (const PairOverlap& found : overlaps) require_way_out(found);
-        std::vector<char> marked(model_.bodies.slot.size(), 0);
-        for (const auto& [pair, overlap] : overlaps) mark(pair, marked);
-        // A long row of bodies passes on a push by a part in each round.
-        constexpr int most_rounds = 1000;
-        for (int round = 0; round < most_rounds; ++round) {
-            std::vector<char> moved(marked.size(), 0);
-            std::optional<PairOverlap> last;
-            if (round > 0) others_ = 0;
-            for (const StartPair& pair : search_.close_pairs(marked))
-                if (const std::optional<Overlap> overlap = search_.look_at(pair)) {
-                    last = PairOverlap{pair, *overlap};
-                    require_way_out(*last);
-                    push(*last);
-                    mark(pair, moved);
-                }
-            if (!last) return;
-            if (round + 1 == most_rounds) refuse(*last, "what is around them leaves no room");
-            marked = std::move(moved);
+        std::vector<PairOverlap> found(overlaps.begin(), overlaps.end());
+        constexpr int most_rounds = 100;
+        for (int round = 0; !found.empty(); ++round, others_ = 0) {
+            if (round == most_rounds) refuse(found.front(), "what is around them leaves no room");
+            for (const PairOverlap& each : found) {
+                require_way_out(each);
+                ask_for(each);
+            }
+            const std::vector<Vec3> before(search_.shifts().begin(), search_.shifts().end());
+            satisfy();
+            std::vector<char> moved(before.size(), 0);
+            for (std::size_t b = 0; b < moved.size(); ++b) moved[b] = before[b] != search_.shifts()[b];
+            for (const PairOverlap& each : found) require_near(each);
+            found.clear();
+            for (const StartPair& pair : search_.close_pairs(moved))
+                if (const std::optional<Overlap> overlap = search_.look_at(pair)) found.push_back({pair, *overlap});
         }
     }
 
 private:
+    /// The shift of the first of a pair, less that of the second, has to come this far along a direction.
+    struct Gap {
+        Vec3 direction;  // unit
+        Real least;      // m
+    };
+
     [[noreturn]] void refuse(const PairOverlap& found, const std::string& why) const {
         refuse_overlap(report_of(model_, found), others_, why);
     }
@@ -75,11 +79,6 @@ private:
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
 
-    void mark(const StartPair& pair, std::vector<char>& marked) const {
-        if (mobility(pair.first) > 0) marked[static_cast<std::size_t>(pair.first)] = 1;
-        if (mobility_of_second(pair) > 0) marked[static_cast<std::size_t>(pair.second)] = 1;
-    }
-
     /// Half through, it is a matter of chance on which side the way out is shorter.
     Real deepest(const StartPair& pair) {
         Real thickness = search_.extent(pair.first).minCoeff();
@@ -89,6 +88,12 @@ private:
     }
 
     void require_way_out(const PairOverlap& found) {
+        const bool in_surface = !found.pair.is_analytic && found.overlap.kind == OverlapKind::inside &&
+                                model_.bodies.kind[found.pair.second] == BodyKind::kinematic;
+        if (in_surface)
+            refuse(found,
+                   "a mesh collider is what its surface goes around; one that holds bodies, as a room does, has "
+                   "its triangles counter-clockwise seen from inside");
         if (found.overlap.kind != OverlapKind::crossing) refuse(found, "which way out is meant cannot be told");
         if (found.overlap.depth > deepest(found.pair))
             refuse(found, "that is more than half of the thinner one, so that which way out is meant cannot be told");
@@ -96,24 +101,55 @@ private:
             refuse(found, "neither may be moved: bodies that are attached or have made a step stay where they are");
     }
 
-    /// By the shortest way; their common centre of mass stays.
-    void push(const PairOverlap& found) {
-        const Vec3 way = (found.overlap.depth + search_.margin(found.pair)) * found.overlap.direction;
-        const Real first = mobility(found.pair.first), second = mobility_of_second(found.pair);
-        if (first > 0) move(found, found.pair.first, first / (first + second) * way);
-        if (second > 0) move(found, found.pair.second, -second / (first + second) * way);
+    void require_near(const PairOverlap& found) const {
+        const auto check = [&](Index body) {
+            if (search_.shift(body).norm() > search_.extent(body).maxCoeff())
+                refuse(found, "'" + model_.body_records[static_cast<std::size_t>(body)].name +
+                                  "' would have to go further than it is long");
+        };
+        check(found.pair.first);
+        if (!found.pair.is_analytic) check(found.pair.second);
     }
 
-    void move(const PairOverlap& found, Index body, const Vec3& way) {
-        search_.move(body, way);
-        if (search_.shift(body).norm() > search_.extent(body).maxCoeff())
-            refuse(found, "'" + model_.body_records[static_cast<std::size_t>(body)].name +
-                              "' would have to go further than it is long");
+    Real shift_along(const StartPair& pair, const Vec3& direction) const {
+        const Real first = direction.dot(search_.shift(pair.first));
+        return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
+    }
+
+    /// In a corner a pair has several; a new one of about the same direction takes the place of the old.
+    void ask_for(const PairOverlap& found) {
+        constexpr Real about_the_same = 0.9;  // cosine
+        const Vec3& direction = found.overlap.direction;
+        const Gap gap{direction, shift_along(found.pair, direction) + found.overlap.depth + search_.margin(found.pair)};
+        std::vector<Gap>& gaps = gaps_[found.pair];
+        std::erase_if(gaps, [&](const Gap& other) { return other.direction.dot(direction) > about_the_same; });
+        gaps.push_back(gap);
+    }
+
+    /// Pair after pair, until none has to move by more than a part of what is left free. Of each pair the common centre
+    /// of mass stays.
+    void satisfy() {
+        constexpr int most_sweeps = 1000;
+        constexpr Real slack = 0.1;  // of the margin
+        bool moving = true;
+        for (int sweep = 0; sweep < most_sweeps && moving; ++sweep) {
+            moving = false;
+            for (const auto& [pair, gaps] : gaps_)
+                for (const Gap& gap : gaps) {
+                    const Real missing = gap.least - shift_along(pair, gap.direction);
+                    if (!(missing > 0)) continue;
+                    moving |= missing > slack * search_.margin(pair);
+                    const Real first = mobility(pair.first), second = mobility_of_second(pair);
+                    if (first > 0) search_.move(pair.first, first / (first + second) * missing * gap.direction);
+                    if (second > 0) search_.move(pair.second, -second / (first + second) * missing * gap.direction);
+                }
+        }
     }
 
     const Model& model_;
     StartSearch& search_;
-    std::size_t others_ = 0;  // overlaps beside the one that is looked at
+    std::map<StartPair, std::vector<Gap>> gaps_;  // in the order of the rows
+    std::size_t others_ = 0;                      // overlaps beside the one that is looked at
 };
 
 std::vector<StartMove> take_over_shifts(const StartSearch& search, Model& model) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/world/state/model.h"
@@ -37,6 +38,7 @@ public:
     std::optional<Overlap> look_at(const StartPair& pair);
 
     void move(Index body, const Vec3& by) { shift_[static_cast<std::size_t>(body)] += by; }
+    std::span<const Vec3> shifts() const { return shift_; }
     const Vec3& shift(Index body) const { return shift_[static_cast<std::size_t>(body)]; }
     /// m, of the box of a body.
     Vec3 extent(Index body) const;

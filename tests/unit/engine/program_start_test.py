@@ -52,6 +52,17 @@ class ProgramStartTest(ProgramCase):
         done = self.skerry("run", self.write("shell.json", sunk), "--seconds", 0.05)
         self.assertIn("too deep in each other's contact distance", done.stdout)
         self.assertNotIn("shorten the step", done.stdout)
+        problems = json.loads(self.skerry("inspect", self.folder / "shell.json", "--json").stdout)["problems"]
+        self.assertTrue(any("contact distance" in problem for problem in problems), problems)
+
+    def test_a_run_says_that_a_boundary_is_no_manifold(self):
+        self.write("m.node", "7 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 -1 0 0\n6 0 -1 0\n7 0 0 -1\n")
+        self.write("m.ele", "2 4 0\n1 1 2 3 4\n2 1 6 5 7\n")
+        scene = self.write("joined.json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
+            {"name": "pair", "mesh": {"file": "m.ele"}, "material": "rubber"}]})
+        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0 joins parts that share no edge there",
+                      self.skerry("run", scene).stdout)
+        self.assertIn("not a closed manifold", self.skerry("inspect", scene).stdout)
 
     def test_advice_names_an_option_that_there_is(self):
         stack = json.loads(json.dumps(SCENE))
