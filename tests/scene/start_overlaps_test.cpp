@@ -187,6 +187,18 @@ TEST_CASE("a shallow overlap is taken apart by the shortest way, as much as mass
     CHECK(s.world.report().start_moves.size() == 2);
 }
 
+TEST_CASE("bodies without a contact distance are moved until they touch", "[scene]") {
+    Stage s(StartOverlaps::resolve);
+    std::vector<BodyHandle> row;
+    for (int i = 0; i < 4; ++i)
+        row.push_back(s.world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}),
+                                       {.material = s.rubber, .position = {0.09 * i, 0, 0}, .contact_distance = 0}));
+    s.world.settle_start();
+    CHECK(s.world.report().start_overlaps.size() == 3);
+    for (std::size_t i = 1; i < row.size(); ++i)
+        CHECK(s.world.center_of_mass(row[i]).x() - s.world.center_of_mass(row[i - 1]).x() == Approx(0.1).margin(1e-9));
+}
+
 TEST_CASE("a body a bit in any collider is lifted out of it", "[scene]") {
     const Mesh mesh = mesh::box({0.2, 0.2, 0.2}, {2, 2, 2});
     struct Case {

@@ -45,8 +45,8 @@ void finish(Solid& solid) {
     for (const SolidTriangle& t : solid.surface)
         solid.surface_point.insert(solid.surface_point.end(), t.node.begin(), t.node.end());
     std::ranges::sort(solid.surface_point);
-    const auto rest = std::ranges::unique(solid.surface_point);
-    solid.surface_point.erase(rest.begin(), rest.end());
+    solid.surface_point.erase(std::unique(solid.surface_point.begin(), solid.surface_point.end()),
+                              solid.surface_point.end());
 }
 
 /// On which side of the line from a to b a point lies, seen along z: 1 is left. No point lies on it: each is taken for

@@ -60,8 +60,8 @@ class ProgramStartTest(ProgramCase):
         self.write("m.ele", "2 4 0\n1 1 2 3 4\n2 1 6 5 7\n")
         scene = self.write("joined.json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
             {"name": "pair", "mesh": {"file": "m.ele"}, "material": "rubber"}]})
-        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0 joins parts that share no edge there",
-                      self.skerry("run", scene).stdout)
+        said = self.skerry("run", scene).stdout
+        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0 joins parts", said)
         self.assertIn("not a closed manifold", self.skerry("inspect", scene).stdout)
 
     def test_advice_names_an_option_that_there_is(self):
