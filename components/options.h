@@ -24,6 +24,13 @@ enum class ContactRegions { separate, global, paper_algorithm_1 };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr, nncg, apgd, mprgp };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
 enum class WarmStart { off, on };
+/// What is done about bodies that overlap each other or colliders before the first step after one of them was added.
+/// resolve: they are moved apart, without energy, where the way out is short, and refused where it is not; refuse: they
+/// are refused; ignore: the run reports them and begins as it is (docs/decisions/0016-start-overlaps.md).
+enum class StartOverlaps { resolve, refuse, ignore };
+/// How two things overlap. crossing: their surfaces go through each other; inside: the first is inside the second;
+/// around: the second is inside the first; coincident: each is inside the other.
+enum class OverlapKind { crossing, inside, around, coincident };
 /// symplectic_euler: first order where it is started from given velocities, bounded energy. leapfrog: the same kicks
 /// and drifts with positions drifted by half a step before the first and after the last, second order in smooth motion.
 /// forward_euler: forward Euler as the paper writes it; unstable without damping at any step, for comparison only
@@ -96,6 +103,24 @@ struct EnumNames<WarmStart> {
     static constexpr std::array<std::pair<WarmStart, std::string_view>, 2> table{{
         {WarmStart::off, "off"},
         {WarmStart::on, "on"},
+    }};
+};
+
+template <>
+struct EnumNames<StartOverlaps> {
+    static constexpr std::array<std::pair<StartOverlaps, std::string_view>, 3> table{{
+        {StartOverlaps::resolve, "resolve"},
+        {StartOverlaps::refuse, "refuse"},
+        {StartOverlaps::ignore, "ignore"},
+    }};
+};
+template <>
+struct EnumNames<OverlapKind> {
+    static constexpr std::array<std::pair<OverlapKind, std::string_view>, 4> table{{
+        {OverlapKind::crossing, "crossing"},
+        {OverlapKind::inside, "inside"},
+        {OverlapKind::around, "around"},
+        {OverlapKind::coincident, "coincident"},
     }};
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/mesh/labels.h"
+#include "engine/mesh/manifold_fault.h"
 #include "engine/mesh/tetrahedron.h"
 #include "skerry/mesh.h"
 #include "systems/collision/build_surface.h"
@@ -47,22 +48,6 @@ std::size_t count_components(const Mesh& mesh) {
     std::size_t count = 0;
     for (std::size_t n = 0; n < parent.size(); ++n) count += used[n] && parent[n] == static_cast<Index>(n);
     return count;
-}
-
-bool is_closed_manifold(const std::vector<BoundaryTriangle>& triangles) {
-    std::vector<Edge> edges;
-    edges.reserve(3 * triangles.size());
-    for (const BoundaryTriangle& t : triangles)
-        for (std::size_t a = 0; a < 3; ++a) edges.emplace_back(std::minmax(t.node[a], t.node[(a + 1) % 3]));
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t first = 0; first < edges.size();) {
-        const auto last = static_cast<std::size_t>(
-            std::upper_bound(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end(), edges[first]) -
-            edges.begin());
-        if (last - first != 2) return false;
-        first = last;
-    }
-    return !edges.empty();
 }
 
 void measure_edges(const Mesh& mesh, MeshReport& report) {
@@ -120,7 +105,7 @@ MeshReport inspect(const Mesh& mesh) {
     const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
     report.boundary_triangles = triangles.size();
     report.labels = mesh::count_labels(mesh);
-    report.closed_manifold = is_closed_manifold(triangles);
+    report.closed_manifold = mesh::manifold_fault(triangles).empty();
     report.components = count_components(mesh);
     measure_edges(mesh, report);
     measure_tetrahedra(mesh, report);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <map>
 
 #include "engine/program/cluster_text.h"
@@ -8,6 +9,7 @@
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
+#include "engine/program/start_text.h"
 #include "engine/scene/scene_plan.h"
 
 namespace skerry {
@@ -224,18 +226,45 @@ std::string materials_text(const BodyKindReport& kind) {
     return text;
 }
 
+/// A scene as a run begins it, and what overlaps before that.
+struct SceneStart {
+    Scene scene;
+    WorldReport as_written;  // where nothing is moved
+    std::string outcome;     // what a run does about overlaps; empty without any
+};
+
+SceneStart start_of(const ScenePlan& plan) {
+    ScenePlan as_written = plan;
+    as_written.settings.start_overlaps = StartOverlaps::ignore;
+    SceneStart start{build_scene(as_written), {}, {}};
+    start.as_written = start.scene.world.report();
+    if (start.as_written.start_overlaps.empty()) return start;
+    start.outcome = "a run begins with what overlaps as it is (settings.start_overlaps)";
+    if (plan.settings.start_overlaps == StartOverlaps::ignore) return start;
+    try {
+        start.scene = build_scene(plan);
+        start.outcome = "a run takes that apart: " + moves_text(start.scene.world.report());
+    } catch (const SceneError& error) {
+        start.outcome = std::string("a run refuses that: ") + error.what();
+    }
+    return start;
+}
+
 struct SceneCost {
     double seconds_per_second = 0;  // wall time of a simulated second as the scene starts
     Real overlap = 0;               // m, at the start
+    Real into_shell = 0;            // m, pressed into the contact distance at the start
     Index contacts = 0;             // at the start
-    std::string failure;
+    std::string failure{};
 };
 
-SceneCost try_steps(World& world) {
-    SceneCost cost;
+/// `overlap`: m, the deepest that was found before.
+SceneCost try_steps(World& world, Real overlap) {
+    SceneCost cost{.overlap = overlap};
     constexpr Real hardly = 1e-9;  // s: finds contacts, moves nothing that matters
     const StepReport first = world.advance(hardly);
-    cost.overlap = first.max_penetration;
+    cost.overlap = std::max(overlap, first.max_penetration);
+    cost.into_shell = first.max_gap_violation - first.max_penetration;
     cost.contacts = first.contacts;
     if (!first.ok()) cost.failure = first.message();
     const Stopwatch watch;
@@ -246,7 +275,7 @@ SceneCost try_steps(World& world) {
     return cost;
 }
 
-Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneCost& cost) {
+Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart& start, const SceneCost& cost) {
     Problems problems;
     for (const BodyKindReport& kind : kinds)
         for (const std::string& problem : problems_of(kind.mesh))
@@ -257,7 +286,19 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneCost& 
         problems.push_back("body \"" + by_step[0].first_name + "\" makes all steps " +
                            short_number(by_step[1].bound.step / by_step[0].bound.step) +
                            " times shorter than the others need");
-    if (cost.overlap > 0) problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " at the start");
+    constexpr std::size_t most_named = 20;
+    const std::vector<StartOverlap>& overlaps = start.as_written.start_overlaps;
+    for (std::size_t i = 0; i < overlaps.size() && i < most_named; ++i)
+        problems.push_back(overlaps[i].message() + " at the start");
+    if (overlaps.size() > most_named)
+        problems.push_back(grouped(overlaps.size() - most_named) + " more overlaps at the start");
+    if (!overlaps.empty())
+        problems.push_back(start.outcome);
+    else if (cost.overlap > 0)
+        problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " in the first step");
+    Real shortest_edge = std::numeric_limits<Real>::infinity();
+    for (const BodyKindReport& kind : kinds) shortest_edge = std::min(shortest_edge, kind.mesh.mean_edge);
+    if (cost.into_shell > visible_share * shortest_edge) problems.push_back(into_shell_text(cost.into_shell));
     if (!cost.failure.empty()) problems.push_back("the first steps fail: " + cost.failure);
     return problems;
 }
@@ -296,15 +337,18 @@ int inspect_scene(const InspectOptions& options) {
                                .scaled = true},
                               options);
     }
-    Scene scene = build_scene(plan);
+    SceneStart start = start_of(plan);
+    Scene& scene = start.scene;
     const std::vector<BodyKindReport> kinds = body_kinds(plan, true);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
     RunOptions run;
     run.scene = options.file;
     const double steps = course_of(scene, run).steps(scene.world);
-    const SceneCost cost = try_steps(scene.world);
-    const Problems problems = problems_of(kinds, cost);
+    Real overlap = 0;
+    for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
+    const SceneCost cost = try_steps(scene.world, overlap);
+    const Problems problems = problems_of(kinds, start, cost);
     if (options.json) {
         Json bodies = Json::array();
         for (const BodyKindReport& kind : kinds) {
@@ -335,6 +379,7 @@ int inspect_scene(const InspectOptions& options) {
                              {"implicit_elements", report.implicit_elements}}},
                            {"contacts_at_start", cost.contacts},
                            {"overlap_at_start", cost.overlap},
+                           {"start_overlaps", overlaps_json(start.as_written)},
                            {"wall_seconds_per_second", cost.seconds_per_second},
                            {"wall_seconds", cost.seconds_per_second * scene.seconds},
                            {"body_kinds", bodies},

@@ -115,13 +115,21 @@ void add_run(CLI::App& app, RunOptions& options) {
     add_choice<SolverMethod>(command, "--method", options.overrides.method, "contact solver");
     add_choice<Friction>(command, "--friction", options.overrides.friction, "friction law");
     add_number(command, "--tolerance", options.overrides.tolerance, "relative error of a region");
+    command
+        .add_option_function<int>(
+            "--max-iterations", [&options](const int& sweeps) { options.overrides.max_iterations = sweeps; },
+            "sweeps of a region")
+        ->check(CLI::Range(1, 2147483647));
+    add_choice<StartOverlaps>(command, "--start-overlaps", options.overrides.start_overlaps,
+                              "what is done about bodies that overlap something at the start");
     add_number(command, "--relaxation", options.overrides.relaxation,
                "of the sweeps, below 2; above 1 is over-relaxation");
     add_choice<ElementKind>(command, "--element", options.overrides.element,
                             "what carries the stress of all bodies; smoothed bends as it should on coarse meshes");
     add_choice<ContactRegions>(command, "--contact-regions", options.overrides.contact_regions,
                                "how contacts are grouped");
-    command.add_flag("--quiet", options.quiet, "no progress, no summary");
+    command.add_flag("--quiet", options.quiet,
+                     "no progress, no summary; what speaks against relying on the run goes to standard error");
 }
 
 void add_solve(CLI::App& app, SolveOptions& options) {

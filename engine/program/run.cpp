@@ -3,12 +3,14 @@
 #include <iostream>
 #include <ostream>
 
+#include "engine/mesh/manifold_fault.h"
 #include "engine/program/commands.h"
 #include "engine/program/course.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_outputs.h"
 #include "engine/program/run_result.h"
+#include "engine/scene/scene_plan.h"
 #include "jobs/executor.h"
 
 namespace skerry {
@@ -80,13 +82,29 @@ void run_frames(Scene& scene, const Course& course, RunOutputs& outputs, Progres
     result.probes = probes.records();
 }
 
+/// One of each mesh. Contacts find the way out of a body by its surface: where that has no two sides they may not.
+std::vector<std::string> bad_boundaries(const ScenePlan& plan) {
+    std::vector<std::string> found;
+    std::size_t last = plan.meshes.size();
+    for (const BodyPlan& body : plan.bodies) {
+        if (body.mesh == last) continue;
+        last = body.mesh;
+        const std::string fault = mesh::manifold_fault(boundary_triangles(plan.meshes[body.mesh].tetrahedra));
+        if (!fault.empty())
+            found.push_back("the boundary of body '" + body.settings.name + "' is not a closed manifold: " + fault);
+    }
+    return found;
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
     const Stopwatch loading;
-    Scene scene = load_scene(options.scene, options.overrides);
+    const ScenePlan plan = plan_scene(options.scene, options.overrides);
+    Scene scene = build_scene(plan);
     World& world = scene.world;
     RunResult result;
+    result.bad_boundaries = bad_boundaries(plan);
     result.seconds_load = loading.seconds();
     result.scene = scene.name;
     result.scene_file = options.scene.string();
@@ -110,7 +128,10 @@ int run(const RunOptions& options) {
     result.seconds_simulated = world.time();
     result.seconds_wall -= outputs.seconds_in_steps();
     outputs.finish(world, result);
-    if (!options.quiet) std::cout << summary_of(result) << outputs.summary() << std::flush;
+    if (options.quiet)
+        for (const std::string& doubt : doubts_of(result)) std::cerr << "skerry: DOUBT: " << doubt << "\n";
+    else
+        std::cout << summary_of(result) << outputs.summary() << std::flush;
     if (result.status != "ok") std::cerr << "skerry: " << result.status << "\n";
     if (caught_signal != 0) return exit_signal + caught_signal;
     if (!result.outputs_failed.empty()) return exit_output;

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
+#include "engine/program/start_text.h"
 
 namespace skerry {
 
@@ -48,43 +48,13 @@ Json trust_of(const RunResult& result) {
 
 }  // namespace
 
-std::vector<std::string> doubts_of(const RunResult& result) {
-    const WorldReport& r = result.report;
-    std::vector<std::string> doubts;
-    constexpr double small_share = 0.02;  // of the energy: at the stable step what is resolved stays below 1 %
-    if (r.unconverged > 0)
-        doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
-                         " contact regions ended above the tolerance, the worst at " + short_number(r.worst_error) +
-                         ": raise max_iterations");
-    if (r.energy_error_share > small_share)
-        doubts.push_back("energy does not add up by " + short_number(100 * r.energy_error_share) +
-                         " %: shorten the step (step_safety)");
-    constexpr double rounding = 1e-9;  // sums of millions of terms stay far below
-    if (r.momentum_error_share > rounding)
-        doubts.push_back("momentum does not add up by " + short_number(100 * r.momentum_error_share) + " %");
-    if (r.crossed > 0) doubts.push_back(grouped(r.crossed) + " features went through each other");
-    constexpr double visible = 0.05;
-    if (result.mean_edge > 0 && r.max_penetration > visible * result.mean_edge)
-        doubts.push_back("surfaces overlapped by " + short_number(100 * r.max_penetration / result.mean_edge) +
-                         " % of the mean edge");
-    if (r.inverted > 0)
-        doubts.push_back(std::to_string(r.inverted) + " elements are inverted, the worst in " + r.worst_volume_body +
-                         ", element " + std::to_string(r.worst_volume_element));
-    else if (r.inversions > 0)
-        doubts.push_back(grouped(r.inversions) + " times an element was inverted for some steps");
-    else if (r.near_inversion > 0)
-        doubts.push_back(std::to_string(r.near_inversion) + " elements are near inversion, the worst in " +
-                         r.worst_volume_body + ", element " + std::to_string(r.worst_volume_element));
-    if (r.folded > 0)
-        doubts.push_back(std::to_string(r.folded) + " smoothed elements are folded, some of them in " + r.folded_body +
-                         ", the worst at element " + std::to_string(r.folded_element));
-    return doubts;
-}
-
 Json statistics_of(const RunResult& result) {
     const WorldReport& r = result.report;
     Json stages = Json::object(), probes = Json::object(), limits = Json::array(), failed = Json::object();
+    Json moves = Json::array();
     for (const auto& [option, failure] : result.outputs_failed) failed[option] = failure;
+    for (const StartMove& move : r.start_moves)
+        moves.push_back({{"body", move.name}, {"translation", vector_json(move.translation)}});
     for (const StepLimitReport& of : r.step_limits)
         limits.push_back({{"limit", name_of(of.limit)},
                           {"body", of.body_name},
@@ -114,6 +84,11 @@ Json statistics_of(const RunResult& result) {
         {"outputs_failed", failed},
         {"threads", result.threads},
         {"backend", name_of(result.settings.backend)},
+        {"start",
+         {{"overlaps", overlaps_json(r)},
+          {"moves", moves},
+          {"penetration", r.start_penetration},
+          {"gap_violation", r.start_gap_violation}}},
         {"bodies", r.bodies},
         {"asleep", r.asleep},
         {"colliders", r.colliders},

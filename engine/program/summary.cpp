@@ -6,6 +6,7 @@
 #include "engine/program/cluster_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
+#include "engine/program/start_text.h"
 
 namespace skerry {
 
@@ -149,6 +150,7 @@ std::string summary_of(const RunResult& result) {
                      (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : "") +
                      (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long"
                                     : ""));
+    if (!r.start_moves.empty()) text += line("start", moves_text(r));
     text += limit_lines(r);
     if (r.clusters > 0) text += line("clusters", cluster_text(r));
     if (r.element_steps > 0) text += line("multirate", level_text(r));

@@ -29,6 +29,7 @@ Scene build_scene(const ScenePlan& plan) {
     }
     for (const ColliderPlan& collider : plan.colliders)
         called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); });
+    called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     return scene;
 }

@@ -198,6 +198,10 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "what overlaps, or lies within the contact distance, is pushed apart no faster",
                   .unit = "m/s",
                   .limits = above(0)})
+            .key("start_overlaps", &S::start_overlaps,
+                 {.meaning = "what is done about bodies that overlap each other or colliders at the start: resolve "
+                             "(default) moves them apart where the way out is short and refuses them where it is not, "
+                             "refuse refuses them, ignore reports them and begins as it is"})
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step in which F of an element changes by more (Frobenius norm) is tried again, shorter",
                   .limits = above(0)})

@@ -119,6 +119,8 @@ WorldReport World::report() const {
     report.stable_step = skerry::stable_step(world.model.bodies, &stiffest);
     if (stiffest != no_index)
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;
+    report.start_overlaps = world.record.start_overlaps;
+    report.start_moves = world.record.start_moves;
     report.step_limits = world.record.limits.report();
     for (const StageStats& stage : world.graph.stats())
         report.stages.push_back({stage.name, stage.seconds, stage.runs, stage.skipped});

@@ -19,7 +19,7 @@ Json list(const Vec3& v) {
 /// One scene in the making: sizes and speeds are chosen so that something happens within a few hundred stable steps.
 class SceneMaker {
 public:
-    explicit SceneMaker(std::uint64_t seed) : random_(seed) {}
+    explicit SceneMaker(std::uint64_t seed) : seed_(seed), random_(seed) {}
 
     RandomScene make() {
         scene_.advances = random_.count(10, 60);
@@ -58,6 +58,9 @@ private:
 
     Json settings() {
         Json s;
+        // what overlaps and goes on is worth more scenes than what is taken apart, or refused, at the start
+        constexpr std::uint64_t one_in = 16;
+        s["start_overlaps"] = seed_ % one_in == 0 ? "resolve" : "ignore";
         // as on Earth, none, or strong enough to be felt within so short a run
         const Real strong = random_.by_decade(1e-4, 1e-1) * wave_speed_ * wave_speed_ / scene_.length;
         s["gravity"] = list(random_.one_of<Real>({0, 9.81, strong, strong}) * random_.direction());
@@ -285,6 +288,7 @@ private:
                          [](const SceneChange& a, const SceneChange& b) { return a.advance < b.advance; });
     }
 
+    const std::uint64_t seed_;
     RandomNumbers random_;
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material

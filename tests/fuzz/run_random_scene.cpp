@@ -196,7 +196,14 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
             changer.make(scene.changes[next_change]);
         const Real step = world.stable_step();
         const Real before = world.time(), dt = std::isfinite(step) ? scene.steps_per_advance * step : 1e-3;
-        const StepReport report = world.advance(dt);
+        StepReport report;
+        try {
+            report = world.advance(dt);
+        } catch (const SceneError& error) {  // what a change added overlaps something and has no way out
+            run.end = SceneEnd::refused;
+            run.message = error.what();
+            break;
+        }
         run.steps += static_cast<std::uint64_t>(report.steps);
         run.max_contacts = std::max(run.max_contacts, report.contacts);
         check_report(report, extent_of(world, scene) + way);

@@ -103,7 +103,7 @@ struct MeshReport {
     // 12 (3 V)^(2/3) / sum of squared edges: 1 is regular, < 0 inverted
     Real min_quality = 0, mean_quality = 0;
     std::size_t inverted = 0, flat = 0;  // tetrahedra of negative, of no volume
-    bool closed_manifold = false;        // every boundary edge has two triangles
+    bool closed_manifold = false;        // of the boundary: edges of two triangles, a ring of them at each node
     std::map<int, std::size_t> labels;   // tetrahedra with each label; none without labels
 };
 MeshReport inspect(const Mesh& mesh);

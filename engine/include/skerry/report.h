@@ -123,6 +123,30 @@ struct StepLimitReport {
     Real seconds = 0;         // s, simulated in these steps
 };
 
+/// Two bodies, or a body and a collider, that overlapped before the first step after one of them was added. Surfaces
+/// that only touch, or lie within the contact distance, do not.
+struct StartOverlap {
+    BodyHandle first{};
+    BodyHandle second{};                  // the other body; a stale handle where that is a collider
+    ColliderHandle collider{};            // the collider, or a stale handle
+    std::string first_name, second_name;  // as they were then
+    OverlapKind kind = OverlapKind::crossing;
+    Real depth = 0;                 // m, a translation of the first that takes it out, about the shortest
+    Vec3 direction = Vec3::Zero();  // unit, of that translation
+    Vec3 place = Vec3::Zero();      // m, the middle of what both fill
+    bool resolved = false;          // they were moved apart
+
+    /// "bodies 'a' and 'b' overlap by 0.02 m at (0, 0, 0.1) m"
+    std::string message() const;
+};
+
+/// A body that was moved as a whole before it made a step, so that it overlaps nothing.
+struct StartMove {
+    BodyHandle body{};
+    std::string name;
+    Vec3 translation = Vec3::Zero();  // m
+};
+
 /// Sums, and largest values, over all steps since the world was made. Each step adds to them.
 struct RunCounters {
     std::uint64_t steps = 0;
@@ -146,9 +170,10 @@ struct RunCounters {
     std::uint64_t element_impulses = 0;                // of them, how many were evaluated
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
-    Index worst_region = 0;                           // contacts of the region that had the worst error
-    Real dissipated = 0;                              // J, by contacts, damping and losses
-    Real max_penetration = 0, max_gap_violation = 0;  // m
+    Index worst_region = 0;                               // contacts of the region that had the worst error
+    Real dissipated = 0;                                  // J, by contacts, damping and losses
+    Real max_penetration = 0, max_gap_violation = 0;      // m
+    Real start_penetration = 0, start_gap_violation = 0;  // m, of these, what the first step began with
 };
 
 /// The sums, and the state as it is now. Asking walks all tables; the run itself keeps only the sums.
@@ -161,6 +186,9 @@ struct WorldReport : RunCounters {
     // Groups of nodes that implicit elements couple, so that these do not make the step shorter
     // (docs/methods/clusters.md).
     std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;
+    // Of the last look, which is taken before the first step after something was added.
+    std::vector<StartOverlap> start_overlaps;
+    std::vector<StartMove> start_moves;
     std::vector<StepLimitReport> step_limits;                         // most steps first
     std::vector<StageReport> stages;                                  // in the order of the step
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region

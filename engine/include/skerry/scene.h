@@ -18,6 +18,8 @@ struct SceneOverrides {
     std::optional<SolverMethod> method{};
     std::optional<Friction> friction{};
     std::optional<Real> tolerance{};
+    std::optional<int> max_iterations{};
+    std::optional<StartOverlaps> start_overlaps{};
     std::optional<Real> relaxation{};
     std::optional<Real> step_size{};
     std::optional<ElementKind> element{};  // of all bodies

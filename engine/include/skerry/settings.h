@@ -128,6 +128,8 @@ struct Settings {
     Real restitution_speed = 0.05;  // m/s, >= 0: slower impacts do not bounce, whatever the restitution
     // m/s, > 0: what overlaps, or lies within the contact distance, is pushed apart no faster
     Real recovery_speed = 0.5;
+    // Bodies that overlap each other or colliders when they are added. What is attached, or has made a step, stays.
+    StartOverlaps start_overlaps = StartOverlaps::resolve;
     Real max_strain_step = 0.2;  // a step in which F of an element changes by more (Frobenius norm) is refused
     // A body all of whose nodes have been slower than sleep_speed for sleep_time is put to rest, together with all that
     // it touches: it is left out of the step and its contacts are not reported until something presses on it or changes

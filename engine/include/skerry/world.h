@@ -47,8 +47,12 @@ public:
     bool alive(AttachmentHandle attachment) const;
 
     // Running.
+    /// Looks for overlaps of what was added since the last look, and does about them what the settings say. `advance`
+    /// begins with it; it may be called before to have it done, or known (WorldReport::start_overlaps). Throws
+    /// SceneError, and changes nothing, where they are refused.
+    void settle_start();
     /// Moves time on by dt in equal steps no longer than the stable step. A step that cannot be committed changes
-    /// nothing and ends the call: the report says which body and why.
+    /// nothing and ends the call: the report says which body and why. Throws what settle_start throws.
     StepReport advance(Real dt);
     /// The same, but before each try of a step asks whether to go on, with the report so far. An answer of false ends
     /// the call between two steps: the report says `stopped`, and the world may go on from there.

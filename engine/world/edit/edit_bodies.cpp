@@ -340,6 +340,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
                                   .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
                                   .surface = outline(body),
                                   .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
+    model.settled = false;
     model.append_outline(b);
     bodies.mean_edge[b] = mean_edge_length(model, bodies.edges[b]);
     bodies.contact_distance[b] =

@@ -158,7 +158,8 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
     table.surface[row] = surface_of(settings);
     table.body[row] = no_index;
     table.travel[row] = 0;
-    model.collider_records.push_back({settings.name, shape});
+    model.collider_records.push_back({.name = settings.name, .shape = shape});
+    model.settled = false;
 
     if (const auto* surface = std::get_if<SurfaceMesh>(&shape)) {
         table.body[row] = append_body(model, stiffness_sum,

@@ -35,11 +35,13 @@ struct BodyRecord {
     std::vector<std::array<Index, 3>> surface;     // local nodes
     // the tetrahedra that the element at each place of its blocks covers; none in a lane that is left over
     Ragged<Index> element_tetrahedra;
+    bool settled = false;  // it was looked at for overlaps
 };
 
 struct ColliderRecord {
     std::string name;
     Shape shape;
+    bool settled = false;  // as BodyRecord::settled
 };
 
 struct Model {
@@ -70,6 +72,7 @@ struct Model {
     Column<Real> body_mass;  // kg, of all nodes of a body, held ones, too; derived: rebuild_derived
     // bodies, colliders or settings have changed since it was last decided which elements are implicit
     bool clusters_open = true;
+    bool settled = true;      // all bodies and colliders are
     bool loaded = false;      // some node has a load; derived: note_loads
     bool any_asleep = false;  // some body rests; derived: note_rest. While none does, no stage asks
 

@@ -23,6 +23,8 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
+    std::vector<StartOverlap> start_overlaps;  // of the last look
+    std::vector<StartMove> start_moves;
     StepLimits limits;
     Balance balance;
     Trace trace;

@@ -156,6 +156,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     Model& model = world.model;
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
+    settle_start();
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
     world.settle();
     settle_clusters(model, world.scratch.stiffness_sum);

@@ -28,7 +28,10 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
     const StepFindings& findings = scratch.findings;
     const auto contact_count = static_cast<Index>(scratch.contacts.size());
     const auto region_count = static_cast<Index>(regions.size());
-    ++counters.steps;
+    if (counters.steps++ == 0) {
+        counters.start_penetration = findings.measures.max_penetration;
+        counters.start_gap_violation = findings.measures.max_gap_violation;
+    }
     counters.contact_sum += static_cast<std::uint64_t>(contact_count);
     counters.solved += static_cast<std::uint64_t>(region_count);
     counters.max_contacts = std::max(counters.max_contacts, contact_count);

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "engine/mesh/manifold_fault.h"
 #include "engine/mesh/require_positive.h"
 #include "skerry/error.h"
 #include "skerry/mesh.h"
@@ -72,6 +73,19 @@ TEST_CASE("two tetrahedra that meet in one edge are one piece but no manifold", 
     const MeshReport report = inspect(mesh);
     CHECK(report.components == 1);
     CHECK_FALSE(report.closed_manifold);
+}
+
+TEST_CASE("two tetrahedra that meet in one node are no manifold, and the node is named", "[unit]") {
+    Mesh mesh = regular();
+    for (const Vec3& x : {Vec3(-1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, -1)}) mesh.nodes.push_back(mesh.nodes[0] + x);
+    mesh.tetrahedra.push_back({0, 5, 4, 6});
+    CHECK(inspect(mesh).components == 1);
+    CHECK_FALSE(inspect(mesh).closed_manifold);
+    CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) == "node 0 joins parts that share no edge there");
+    CHECK(mesh::manifold_fault(boundary_triangles(mesh::ball(1, 4).tetrahedra)).empty());
+    mesh.tetrahedra.back() = {0, 1, 4, 5};
+    CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) == "the edge of nodes 0 and 1 has 4 triangles");
+    CHECK(mesh::manifold_fault({}) == "there is none");
 }
 
 TEST_CASE("separate tetrahedra are separate pieces, unused nodes none", "[unit]") {

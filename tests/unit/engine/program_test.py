@@ -335,7 +335,8 @@ class ProgramTest(ProgramCase):
         sunk = json.loads(json.dumps(SCENE))
         sunk["bodies"][0]["position"][2] = 0.09
         problems = json.loads(self.skerry("inspect", self.write("sunk.json", sunk), "--json").stdout)["problems"]
-        self.assertTrue(any("overlap by 10 mm" in problem for problem in problems), problems)
+        self.assertIn("body 'block' and collider 'floor' overlap by 0.01 m at (0, 0, -0.01) m at the start", problems)
+        self.assertTrue(any("a run takes that apart" in problem for problem in problems), problems)
 
     def test_a_step_that_fails_ends_with_one_and_keeps_the_figures(self):
         fast = json.loads(json.dumps(SCENE))

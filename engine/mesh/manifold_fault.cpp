@@ -1,0 +1,65 @@
+#include "engine/mesh/manifold_fault.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "components/union_find.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+/// An edge of a triangle, and which corners of the triangle its ends are: three a triangle.
+struct Side {
+    std::array<Index, 2> node;    // ascending
+    std::array<Index, 2> corner;  // in the same order
+};
+
+std::vector<Side> sides_of(std::span<const BoundaryTriangle> boundary) {
+    std::vector<Side> sides;
+    sides.reserve(3 * boundary.size());
+    for (std::size_t t = 0; t < boundary.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
+            Side side{{boundary[t].node[k], boundary[t].node[next]},
+                      {static_cast<Index>(3 * t + k), static_cast<Index>(3 * t + next)}};
+            if (side.node[0] > side.node[1]) {
+                std::swap(side.node[0], side.node[1]);
+                std::swap(side.corner[0], side.corner[1]);
+            }
+            sides.push_back(side);
+        }
+    std::ranges::sort(sides, {}, [](const Side& side) { return std::pair(side.node, side.corner); });
+    return sides;
+}
+
+}  // namespace
+
+std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
+    if (boundary.empty()) return "there is none";
+    const std::vector<Side> sides = sides_of(boundary);
+    UnionFind rings;
+    rings.start(3 * boundary.size());
+    for (std::size_t first = 0; first < sides.size();) {
+        std::size_t last = first;
+        while (last < sides.size() && sides[last].node == sides[first].node) ++last;
+        if (last - first != 2)
+            return "the edge of nodes " + std::to_string(sides[first].node[0]) + " and " +
+                   std::to_string(sides[first].node[1]) + " has " + std::to_string(last - first) + " triangles";
+        for (std::size_t end = 0; end < 2; ++end) rings.join(sides[first].corner[end], sides[first + 1].corner[end]);
+        first = last;
+    }
+    // of each node the first corner; all others are in its ring
+    std::vector<std::pair<Index, Index>> corners;
+    for (std::size_t c = 0; c < 3 * boundary.size(); ++c)
+        corners.emplace_back(boundary[c / 3].node[c % 3], rings.root(static_cast<Index>(c)));
+    std::ranges::sort(corners);
+    for (std::size_t c = 1; c < corners.size(); ++c)
+        if (corners[c].first == corners[c - 1].first && corners[c].second != corners[c - 1].second)
+            return "node " + std::to_string(corners[c].first) + " joins parts that share no edge there";
+    return {};
+}
+
+}  // namespace skerry::mesh

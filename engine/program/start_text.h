@@ -1,0 +1,45 @@
+// What the program says of overlaps at the start.
+#pragma once
+
+#include "engine/program/number_text.h"
+#include "engine/scene/place.h"
+#include "skerry/report.h"
+
+namespace skerry {
+
+inline Json overlap_json(const StartOverlap& overlap) {
+    return {{"first", overlap.first_name},
+            {"second", overlap.second_name},
+            {"kind", name_of(overlap.kind)},
+            {"depth", overlap.depth},
+            {"place", {overlap.place.x(), overlap.place.y(), overlap.place.z()}},
+            {"resolved", overlap.resolved}};
+}
+
+inline Json overlaps_json(const WorldReport& report) {
+    Json overlaps = Json::array();
+    for (const StartOverlap& overlap : report.start_overlaps) overlaps.push_back(overlap_json(overlap));
+    return overlaps;
+}
+
+/// Of the mean edge: what is less is not worth a word.
+inline constexpr Real visible_share = 0.05;
+
+inline std::string into_shell_text(Real depth) {
+    return "surfaces begin " + with_unit(depth, "m") +
+           " too deep in each other's contact distance: start further apart, or lower contact_distance";
+}
+
+/// "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm"
+inline std::string moves_text(const WorldReport& report) {
+    const StartMove* furthest = nullptr;
+    for (const StartMove& move : report.start_moves)
+        if (furthest == nullptr || move.translation.norm() > furthest->translation.norm()) furthest = &move;
+    if (furthest == nullptr) return {};
+    const std::size_t overlaps = report.start_overlaps.size(), bodies = report.start_moves.size();
+    return grouped(overlaps) + (overlaps == 1 ? " overlap, " : " overlaps, ") + grouped(bodies) +
+           (bodies == 1 ? " body moved: " : " bodies moved apart, the furthest ") + furthest->name + " by " +
+           with_unit(furthest->translation.norm(), "m");
+}
+
+}  // namespace skerry

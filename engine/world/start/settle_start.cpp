@@ -1,0 +1,198 @@
+// Before the first step after something was added: overlaps are found, and taken apart, refused or left.
+#include <algorithm>
+#include <map>
+
+#include "engine/world/start/start_messages.h"
+#include "engine/world/start/start_search.h"
+#include "engine/world/world_state.h"
+#include "jobs/arithmetic_scope.h"
+
+namespace skerry {
+
+namespace {
+
+StartOverlap report_of(const Model& model, const PairOverlap& found) {
+    StartOverlap report;
+    report.kind = found.overlap.kind;
+    report.depth = found.overlap.depth;
+    report.direction = found.overlap.direction;
+    report.place = found.overlap.place;
+    const auto first = static_cast<std::size_t>(found.pair.first), second = static_cast<std::size_t>(found.pair.second);
+    report.first = model.body_map.handle_of_slot(model.bodies.slot[first]);
+    report.first_name = model.body_records[first].name;
+    const bool is_body = !found.pair.is_analytic && model.bodies.kind[second] == BodyKind::deformable;
+    if (is_body) {
+        report.second = model.body_map.handle_of_slot(model.bodies.slot[second]);
+        report.second_name = model.body_records[second].name;
+    } else {
+        const auto row =
+            static_cast<std::size_t>(found.pair.is_analytic ? found.pair.second : model.bodies.collider[second]);
+        report.collider = model.collider_map.handle_of_slot(model.colliders.slot[row]);
+        report.second_name = model.collider_records[row].name;
+    }
+    return report;
+}
+
+/// Moves bodies apart in rounds: what overlaps is looked for, and everything found so far is satisfied at once.
+class MoveApart {
+public:
+    MoveApart(const Model& model, StartSearch& search) : model_(model), search_(search) {}
+
+    void run(std::span<const PairOverlap> overlaps) {
+        others_ = overlaps.size() - 1;
+        std::vector<PairOverlap> found(overlaps.begin(), overlaps.end());
+        constexpr int most_rounds = 100;
+        for (int round = 0; !found.empty(); ++round, others_ = 0) {
+            if (round == most_rounds) refuse(found.front(), "what is around them leaves no room");
+            for (const PairOverlap& each : found) {
+                require_way_out(each);
+                ask_for(each);
+            }
+            const std::vector<Vec3> before(search_.shifts().begin(), search_.shifts().end());
+            satisfy();
+            std::vector<char> moved(before.size(), 0);
+            for (std::size_t b = 0; b < moved.size(); ++b) moved[b] = before[b] != search_.shifts()[b];
+            for (const PairOverlap& each : found) require_near(each);
+            found.clear();
+            for (const StartPair& pair : search_.close_pairs(moved))
+                if (const std::optional<Overlap> overlap = search_.look_at(pair)) found.push_back({pair, *overlap});
+        }
+    }
+
+private:
+    /// The shift of the first of a pair, less that of the second, has to come this far along a direction.
+    struct Gap {
+        Vec3 direction;  // unit
+        Real least;      // m
+    };
+
+    [[noreturn]] void refuse(const PairOverlap& found, const std::string& why) const {
+        refuse_overlap(report_of(model_, found), others_, why);
+    }
+
+    /// 1/kg; 0 for what stays where it is: what is held, what has made a step, a collider.
+    Real mobility(Index body) const {
+        const auto b = static_cast<std::size_t>(body);
+        const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.bodies.pinned_count[b] > 0 ||
+                           model_.body_records[b].settled;
+        return stays ? 0 : 1 / model_.body_mass[b];
+    }
+    Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
+
+    /// Half through, it is a matter of chance on which side the way out is shorter.
+    Real deepest(const StartPair& pair) {
+        Real thickness = search_.extent(pair.first).minCoeff();
+        if (!pair.is_analytic && search_.has_inside(pair.second))
+            thickness = std::min(thickness, search_.extent(pair.second).minCoeff());
+        return thickness / 2;
+    }
+
+    void require_way_out(const PairOverlap& found) {
+        const bool in_surface = !found.pair.is_analytic && found.overlap.kind == OverlapKind::inside &&
+                                model_.bodies.kind[found.pair.second] == BodyKind::kinematic;
+        if (in_surface)
+            refuse(found,
+                   "a mesh collider is what its surface goes around; one that holds bodies, as a room does, has "
+                   "its triangles counter-clockwise seen from inside");
+        if (found.overlap.kind != OverlapKind::crossing) refuse(found, "which way out is meant cannot be told");
+        if (found.overlap.depth > deepest(found.pair))
+            refuse(found, "that is more than half of the thinner one, so that which way out is meant cannot be told");
+        if (!(mobility(found.pair.first) + mobility_of_second(found.pair) > 0))
+            refuse(found, "neither may be moved: bodies that are attached or have made a step stay where they are");
+    }
+
+    void require_near(const PairOverlap& found) const {
+        const auto check = [&](Index body) {
+            if (search_.shift(body).norm() > search_.extent(body).maxCoeff())
+                refuse(found, "'" + model_.body_records[static_cast<std::size_t>(body)].name +
+                                  "' would have to go further than it is long");
+        };
+        check(found.pair.first);
+        if (!found.pair.is_analytic) check(found.pair.second);
+    }
+
+    Real shift_along(const StartPair& pair, const Vec3& direction) const {
+        const Real first = direction.dot(search_.shift(pair.first));
+        return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
+    }
+
+    /// In a corner a pair has several; a new one of about the same direction takes the place of the old.
+    void ask_for(const PairOverlap& found) {
+        constexpr Real about_the_same = 0.9;  // cosine
+        const Vec3& direction = found.overlap.direction;
+        const Gap gap{direction, shift_along(found.pair, direction) + found.overlap.depth + search_.margin(found.pair)};
+        std::vector<Gap>& gaps = gaps_[found.pair];
+        std::erase_if(gaps, [&](const Gap& other) { return other.direction.dot(direction) > about_the_same; });
+        gaps.push_back(gap);
+    }
+
+    /// Pair after pair, until none has to move by more than a part of what is left free. Of each pair the common centre
+    /// of mass stays.
+    void satisfy() {
+        constexpr int most_sweeps = 1000;
+        constexpr Real slack = 0.1;  // of the margin
+        bool moving = true;
+        for (int sweep = 0; sweep < most_sweeps && moving; ++sweep) {
+            moving = false;
+            for (const auto& [pair, gaps] : gaps_)
+                for (const Gap& gap : gaps) {
+                    const Real missing = gap.least - shift_along(pair, gap.direction);
+                    if (!(missing > 0)) continue;
+                    moving |= missing > slack * search_.margin(pair);
+                    const Real first = mobility(pair.first), second = mobility_of_second(pair);
+                    if (first > 0) search_.move(pair.first, first / (first + second) * missing * gap.direction);
+                    if (second > 0) search_.move(pair.second, -second / (first + second) * missing * gap.direction);
+                }
+        }
+    }
+
+    const Model& model_;
+    StartSearch& search_;
+    std::map<StartPair, std::vector<Gap>> gaps_;  // in the order of the rows
+    std::size_t others_ = 0;                      // overlaps beside the one that is looked at
+};
+
+std::vector<StartMove> take_over_shifts(const StartSearch& search, Model& model) {
+    std::vector<StartMove> moves;
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        const Vec3& shift = search.shift(static_cast<Index>(b));
+        if (shift == Vec3::Zero()) continue;
+        for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n) {
+            model.nodes.position[n] += shift;
+            model.nodes.displacement_origin[n] = model.nodes.position[n];
+        }
+        moves.push_back({model.body_map.handle_of_slot(model.bodies.slot[b]), model.body_records[b].name, shift});
+    }
+    return moves;
+}
+
+}  // namespace
+
+void World::settle_start() {
+    WorldState& world = *state_;
+    Model& model = world.model;
+    if (model.settled) return;
+    const ArithmeticScope arithmetic;
+    StartSearch search(model, world.clock.time);
+    const std::vector<PairOverlap> overlaps = search.find_all();
+    std::vector<StartOverlap> reports;
+    for (const PairOverlap& found : overlaps) reports.push_back(report_of(model, found));
+    const StartOverlaps wanted = model.settings.start_overlaps;
+    if (!overlaps.empty() && wanted == StartOverlaps::refuse)
+        refuse_overlap(reports.front(), reports.size() - 1, "start_overlaps is \"refuse\"");
+    std::vector<StartMove> moves;
+    if (!overlaps.empty() && wanted == StartOverlaps::resolve) {
+        MoveApart(model, search).run(overlaps);
+        moves = take_over_shifts(search, model);
+        world.cache.drop_pairs(model);
+        world.record.balance.close();
+        for (StartOverlap& report : reports) report.resolved = true;
+    }
+    world.record.start_overlaps = std::move(reports);
+    world.record.start_moves = std::move(moves);
+    for (BodyRecord& body : model.body_records) body.settled = true;
+    for (ColliderRecord& collider : model.collider_records) collider.settled = true;
+    model.settled = true;
+}
+
+}  // namespace skerry

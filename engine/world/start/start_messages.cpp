@@ -1,0 +1,63 @@
+#include "engine/world/start/start_messages.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+std::string text(Real value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.3g", value);
+    return buffer;
+}
+
+/// Of a component that is rounding beside the others: 0.
+std::string text(Vec3 value) {
+    constexpr Real rounding = 1e-9;
+    const Real largest = value.cwiseAbs().maxCoeff();
+    for (Real& component : value) component = std::abs(component) > rounding * largest ? component : 0;
+    return "(" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + ")";
+}
+
+}  // namespace
+
+std::string StartOverlap::message() const {
+    const bool bodies = collider == ColliderHandle{};
+    const std::string one = "body '" + first_name + "'", other = (bodies ? "body '" : "collider '") + second_name + "'",
+                      both = bodies ? "bodies '" + first_name + "' and '" + second_name + "'" : one + " and " + other,
+                      where = " at " + text(place) + " m";
+    switch (kind) {
+        case OverlapKind::crossing:
+            return both + " overlap by " + text(depth) + " m" + where;
+        case OverlapKind::inside:
+            return one + " is inside " + other + where + ", " + text(depth) + " m from being out of it";
+        case OverlapKind::around:
+            return other + " is inside " + one + where + ", " + text(depth) + " m from being out of it";
+        case OverlapKind::coincident:
+            return both + " coincide" + where;
+    }
+    return {};
+}
+
+void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::string& why) {
+    const bool second_leaves = overlap.kind == OverlapKind::around;
+    const Vec3 direction = second_leaves ? Vec3(-overlap.direction) : overlap.direction;
+    const std::string rest = others == 0   ? ""
+                             : others == 1 ? ", and 1 more"
+                                           : ", and " + std::to_string(others) + " more";
+    Complaint{.file = {},
+              .object = "start_overlaps",
+              .field = {},
+              .found = "an overlap: " + overlap.message() + rest,
+              .expected = "bodies that are apart from each other and from colliders",
+              .hint = why + "; '" + (second_leaves ? overlap.second_name : overlap.first_name) + "' is out " +
+                      text(overlap.depth) + " m along " + text(direction) +
+                      "; start_overlaps \"ignore\" begins as it is"}
+        .raise();
+}
+
+}  // namespace skerry

@@ -1,0 +1,166 @@
+#include "engine/world/start/start_search.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/overlap/collider_overlap.h"
+#include "systems/collision/tree/box.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+// Of the mean edge: a larger contact distance is no measure of what touches, nor of how far things are moved apart.
+constexpr Real largest_margin = 0.02;
+
+/// The nearest that a box comes to what is behind a plane, m; below 0: it is there.
+bool reaches_behind(const Aabb& box, const RigidMotion& plane) {
+    const Vec3 normal = plane.rotation.col(2);
+    const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
+    return normal.dot(lowest - plane.position) < 0;
+}
+
+}  // namespace
+
+StartSearch::StartSearch(const Model& model, Real now)
+    : model_(model), shift_(model.bodies.slot.size(), Vec3::Zero()), solid_(model.bodies.slot.size()) {
+    const ColliderTable& colliders = model.colliders;
+    for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
+        const RigidPose pose = pose_at(colliders.script[c], colliders.keyframe, colliders.initial[c], now);
+        collider_.push_back({pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()});
+    }
+    for (const Range vertices : model.bodies.vertices) {
+        box_.push_back(empty_box());
+        for (Index v = vertices.begin; v < vertices.end; ++v)
+            grow(box_.back(), model.nodes.position[model.surface.vertices.node[v]]);
+    }
+}
+
+std::vector<PairOverlap> StartSearch::find_all() {
+    std::vector<PairOverlap> found;
+    for (const StartPair& pair : close_pairs(std::vector<char>(box_.size(), 1)))
+        if (const std::optional<Overlap> overlap = look_at(pair)) found.push_back({pair, *overlap});
+    return found;
+}
+
+std::vector<StartPair> StartSearch::close_pairs(const std::vector<char>& marked) const {
+    std::vector<Aabb> boxes;
+    for (std::size_t b = 0; b < box_.size(); ++b) boxes.push_back(box(static_cast<Index>(b)));
+    const BoxTree tree(boxes);
+    std::vector<StartPair> pairs;
+    const auto deforms = [&](Index b) { return model_.bodies.kind[b] == BodyKind::deformable; };
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+        const auto row = static_cast<Index>(b);
+        if (!marked[b]) continue;
+        tree.for_each_overlap(boxes[b], [&](Index other) {
+            if (other == row || (marked[static_cast<std::size_t>(other)] && other < row)) return;
+            if (!deforms(row) && !deforms(other)) return;
+            const bool own_first = deforms(row) && (!deforms(other) || row < other);
+            const StartPair pair{own_first ? row : other, own_first ? other : row, false};
+            if (!is_settled(pair)) pairs.push_back(pair);
+        });
+    }
+    add_analytic(marked, tree, pairs);
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& tree,
+                               std::vector<StartPair>& pairs) const {
+    for (std::size_t c = 0; c < collider_.size(); ++c) {
+        const ColliderGeometry& geometry = model_.colliders.geometry[c];
+        if (geometry.shape == ColliderShape::mesh) continue;
+        const auto add = [&](Index b) {
+            const StartPair pair{b, static_cast<Index>(c), true};
+            if (marked[static_cast<std::size_t>(b)] && model_.bodies.kind[b] == BodyKind::deformable &&
+                !is_settled(pair))
+                pairs.push_back(pair);
+        };
+        if (geometry.shape == ColliderShape::plane)
+            tree.for_each([&](const Aabb& box) { return reaches_behind(box, collider_[c]); }, add);
+        else
+            tree.for_each_overlap(collider_box(geometry, collider_[c]), add);
+    }
+}
+
+std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
+    const std::optional<Overlap> overlap = pair.is_analytic ? look_at_collider(pair) : look_at_bodies(pair);
+    // what is less counts as touching in a step, too
+    if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
+    return overlap;
+}
+
+std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
+    return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
+                        rounding(pair));
+}
+
+std::optional<Overlap> StartSearch::look_at_collider(const StartPair& pair) {
+    const PlacedSolid body{solid(pair.first), shift(pair.first)};
+    const ColliderGeometry& geometry = model_.colliders.geometry[pair.second];
+    const RigidMotion& motion = collider_[static_cast<std::size_t>(pair.second)];
+    if (const auto overlap = find_points_inside(geometry, motion, body, rounding(pair))) return overlap;
+    return geometry.shape == ColliderShape::plane ? std::nullopt : find_collider_inside(geometry, motion, body);
+}
+
+Vec3 StartSearch::extent(Index body) const {
+    const Aabb& own = box_[static_cast<std::size_t>(body)];
+    return own.upper - own.lower;
+}
+
+Real StartSearch::margin(const StartPair& pair) const {
+    const Column<Real>& distance = model_.bodies.contact_distance;
+    const Real kept = (distance[pair.first] + (pair.is_analytic ? 0 : distance[pair.second])) / 2;
+    return std::min(kept, largest_margin * mean_edge(pair));
+}
+
+Aabb StartSearch::box(Index body) const {
+    const Aabb& own = box_[static_cast<std::size_t>(body)];
+    return {own.lower + shift(body), own.upper + shift(body)};
+}
+
+bool StartSearch::is_settled(const StartPair& pair) const {
+    const auto second = static_cast<std::size_t>(pair.second);
+    return model_.body_records[static_cast<std::size_t>(pair.first)].settled &&
+           (pair.is_analytic ? model_.collider_records[second].settled : model_.body_records[second].settled);
+}
+
+const Solid& StartSearch::solid(Index body) {
+    std::unique_ptr<Solid>& found = solid_[static_cast<std::size_t>(body)];
+    if (found) return *found;
+    const BodyRecord& record = model_.body_records[static_cast<std::size_t>(body)];
+    const Range nodes = model_.bodies.nodes[body];
+    const std::span<const Vec3> position = model_.nodes.position.span().subspan(static_cast<std::size_t>(nodes.begin),
+                                                                                static_cast<std::size_t>(nodes.size()));
+    if (record.tetrahedra.empty()) {
+        found = std::make_unique<Solid>(solid_of_surface(position, record.surface));
+        return *found;
+    }
+    std::vector<SolidTriangle> surface;
+    const Range triangles = model_.bodies.triangles[body];
+    for (Index t = triangles.begin; t < triangles.end; ++t) {
+        const auto& [a, b, c] = model_.surface.triangles.node[t];
+        surface.push_back(
+            {{a - nodes.begin, b - nodes.begin, c - nodes.begin},
+             model_.user_tetrahedron(static_cast<std::size_t>(body), model_.surface.triangles.element[t])});
+    }
+    found = std::make_unique<Solid>(solid_of_tetrahedra(position, record.tetrahedra, std::move(surface)));
+    return *found;
+}
+
+Real StartSearch::mean_edge(const StartPair& pair) const {
+    const Real own = model_.bodies.mean_edge[pair.first];
+    return pair.is_analytic ? own : std::min(own, model_.bodies.mean_edge[pair.second]);
+}
+
+Real StartSearch::rounding(const StartPair& pair) const {
+    constexpr Real of_positions = 16 * std::numeric_limits<Real>::epsilon(), of_edges = 1e-9;
+    const Aabb own = box(pair.first);
+    const Real furthest = own.lower.cwiseAbs().cwiseMax(own.upper.cwiseAbs()).maxCoeff();
+    return of_edges * mean_edge(pair) + of_positions * furthest;
+}
+
+}  // namespace skerry

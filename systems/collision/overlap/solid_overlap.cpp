@@ -1,0 +1,231 @@
+#include "systems/collision/overlap/solid_overlap.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "systems/collision/tree/box.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
+
+/// Two simplices that overlap, and where.
+struct Meeting {
+    Index first, second;
+    Vec3 place;  // m, the middle of what their boxes share
+};
+
+Aabb box_of(const Simplex& s) {
+    Aabb box = empty_box();
+    for (std::size_t k = 0; k < s.count; ++k) grow(box, s.point[k]);
+    return box;
+}
+
+Aabb shared(const Aabb& a, const Aabb& b) {
+    return {a.lower.cwiseMax(b.lower), a.upper.cwiseMin(b.upper)};
+}
+
+Vec3 middle(const Aabb& box) {
+    return (box.lower + box.upper) / 2;
+}
+
+/// Calls meet(first, second, overlap) for the simplices of two solids that overlap.
+template <class Meet>
+void for_each_meeting(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, Meet&& meet) {
+    // in the second solid's own place
+    const Vec3 shift = first.shift - second.shift;
+    // A triangle that lies in a plane of the grid has a box of no thickness.
+    const Vec3 skin = Vec3::Constant(tolerance);
+    const Aabb of_second{second.solid.box.lower - shift - skin, second.solid.box.upper - shift + skin};
+    first.solid.tree.for_each_overlap(of_second, [&](Index f) {
+        const Simplex own = first.solid.at(f).moved(shift);
+        Aabb box = box_of(own);
+        box.lower -= skin;
+        box.upper += skin;
+        second.solid.tree.for_each_overlap(box, [&](Index s) {
+            const Simplex other = second.solid.at(s);
+            if (const SimplexOverlap overlap(own, other, tolerance); overlap.overlapping())
+                meet(f, s, own, other, overlap);
+        });
+    });
+}
+
+std::vector<Meeting> find_meetings(const PlacedSolid& first, const PlacedSolid& second, Real tolerance) {
+    std::vector<Meeting> found;
+    for_each_meeting(first, second, tolerance,
+                     [&](Index f, Index s, const Simplex& own, const Simplex& other, const SimplexOverlap&) {
+                         found.push_back({f, s, middle(shared(box_of(own), box_of(other))) + second.shift});
+                     });
+    return found;
+}
+
+/// m: how far the first has to go in each direction to come out of what it meets now.
+std::vector<Real> ways_out(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
+                           std::span<const Vec3> direction) {
+    std::vector<Real> way(direction.size(), 0);
+    for_each_meeting(first, second, tolerance,
+                     [&](Index, Index, const Simplex&, const Simplex&, const SimplexOverlap& overlap) {
+                         for (std::size_t d = 0; d < way.size(); ++d)
+                             way[d] = std::max(way[d], overlap.way_out(direction[d]));
+                     });
+    return way;
+}
+
+bool all_inside(const PlacedSolid& inner, const PlacedSolid& outer, Real tolerance) {
+    return std::ranges::all_of(inner.solid.surface_point, [&](Index n) {
+        const Vec3 x = inner.solid.point[static_cast<std::size_t>(n)] + inner.shift - outer.shift;
+        return contains(outer.solid, x, tolerance);
+    });
+}
+
+OverlapKind kind_of(const PlacedSolid& first, const PlacedSolid& second, Real tolerance) {
+    const bool inside = second.solid.has_volume && all_inside(first, second, tolerance);
+    const bool around = all_inside(second, first, tolerance);
+    if (inside && around) return OverlapKind::coincident;
+    return inside ? OverlapKind::inside : around ? OverlapKind::around : OverlapKind::crossing;
+}
+
+/// m: along a unit direction the first ends where the second begins.
+Real way_out_of_points(const PlacedSolid& first, const PlacedSolid& second, const Vec3& direction) {
+    Real lowest = infinite, highest = -infinite;
+    for (const Index n : first.solid.surface_point)
+        lowest = std::min(lowest, direction.dot(first.solid.point[static_cast<std::size_t>(n)] + first.shift));
+    for (const Index n : second.solid.surface_point)
+        highest = std::max(highest, direction.dot(second.solid.point[static_cast<std::size_t>(n)] + second.shift));
+    return highest - lowest;
+}
+
+Vec3 middle_of_points(const PlacedSolid& placed) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index n : placed.solid.surface_point) sum += placed.solid.point[static_cast<std::size_t>(n)];
+    return sum / static_cast<Real>(placed.solid.surface_point.size()) + placed.shift;
+}
+
+/// Directions that are tried, each some degrees from all others.
+class Directions {
+public:
+    void add(const Vec3& along) {
+        constexpr Real nearly_same = 0.995;  // cosine: 6 degrees make a way 0.5 % longer
+        constexpr std::size_t most = 48;
+        const Real length = along.norm();
+        if (!(length > 0) || found_.size() == most) return;
+        const Vec3 direction = along / length;
+        for (const Vec3& other : found_)
+            if (other.dot(direction) > nearly_same) return;
+        found_.push_back(direction);
+    }
+    std::span<const Vec3> span() const { return found_; }
+
+private:
+    std::vector<Vec3> found_;
+};
+
+void add_normals(const Solid& solid, const std::vector<char>& met, Real sign, Directions& directions) {
+    for (const SolidTriangle& t : solid.surface) {
+        if (!met[static_cast<std::size_t>(t.simplex)]) continue;
+        const auto at = [&](std::size_t k) -> const Vec3& { return solid.point[static_cast<std::size_t>(t.node[k])]; };
+        const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
+        directions.add(sign * normal);
+        if (!solid.closed) directions.add(-sign * normal);
+    }
+}
+
+/// From middle to middle, and out of the faces that are met.
+Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const Meeting> meetings) {
+    Directions directions;
+    directions.add(middle_of_points(first) - middle_of_points(second));
+    std::vector<char> met_first(first.solid.simplex.size(), 0), met_second(second.solid.simplex.size(), 0);
+    for (const Meeting& m : meetings)
+        met_first[static_cast<std::size_t>(m.first)] = met_second[static_cast<std::size_t>(m.second)] = 1;
+    add_normals(second.solid, met_second, 1, directions);
+    add_normals(first.solid, met_first, -1, directions);
+    return directions;
+}
+
+/// How far apart the meetings lie along a direction, m.
+Real spread(std::span<const Meeting> meetings, const Vec3& direction) {
+    Real lowest = infinite, highest = -infinite;
+    for (const Meeting& m : meetings) {
+        lowest = std::min(lowest, direction.dot(m.place));
+        highest = std::max(highest, direction.dot(m.place));
+    }
+    return highest - lowest;
+}
+
+/// The direction in which what is shared is thinnest: that of the shortest way out for solids that are a bit in each
+/// other.
+Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
+                    std::span<const Meeting> meetings) {
+    const Directions directions = likely_directions(first, second, meetings);
+    const std::vector<Real> way = ways_out(first, second, tolerance, directions.span());
+    constexpr Real shorter = 1 - 1e-6;  // by more than rounding; of equals the first
+    Vec3 best = Vec3::UnitZ();
+    Real least = infinite;
+    for (std::size_t d = 0; d < way.size(); ++d)
+        if (const Real length = way[d] + spread(meetings, directions.span()[d]); length < shorter * least) {
+            least = length;
+            best = directions.span()[d];
+        }
+    return best;
+}
+
+/// m: goes out of what it meets, and again of what it meets there.
+Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
+    constexpr int most_tries = 16;
+    Real gone = 0;
+    for (int i = 0; i < most_tries; ++i) {
+        const PlacedSolid there{first.solid, first.shift + gone * direction};
+        const Real more = ways_out(there, second, tolerance, {&direction, 1}).front();
+        if (!(more > 0)) return gone;
+        gone += more;
+    }
+    return way_out_of_points(first, second, direction);
+}
+
+/// Out of something that it is in, or around: past its end.
+void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
+    Directions directions;
+    directions.add(middle_of_points(first) - middle_of_points(second));
+    for (Index axis : {2, 0, 1})
+        for (Real sign : {1.0, -1.0}) directions.add(sign * Vec3::Unit(axis));
+    overlap.depth = infinite;
+    for (const Vec3& direction : directions.span())
+        if (const Real way = way_out_of_points(first, second, direction); way < overlap.depth) {
+            overlap.depth = way;
+            overlap.direction = direction;
+        }
+}
+
+}  // namespace
+
+std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance) {
+    if (first.solid.simplex.empty() || !boxes_overlap(first.box(), second.box())) return std::nullopt;
+    const std::vector<Meeting> meetings = find_meetings(first, second, tolerance);
+    Overlap overlap{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
+    if (meetings.empty()) {
+        const Simplex any = first.solid.at(0).moved(first.shift - second.shift);
+        const Vec3 centre = (any.point[0] + any.point[1] + any.point[2] + any.point[3]) / 4;
+        if (second.solid.has_volume || !contains(second.solid, centre, 0)) return std::nullopt;
+        overlap.kind = OverlapKind::inside;
+        overlap.place = middle_of_points(first);
+        go_past(first, second, overlap);
+        return overlap;
+    }
+    Aabb places = empty_box();
+    for (const Meeting& m : meetings) grow(places, m.place);
+    overlap.place = middle(places);
+    overlap.kind = kind_of(first, second, tolerance);
+    if (overlap.kind != OverlapKind::crossing) {
+        go_past(first, second, overlap);
+        return overlap;
+    }
+    overlap.direction = best_direction(first, second, tolerance, meetings);
+    overlap.depth = way_out_along(first, second, tolerance, overlap.direction);
+    return overlap;
+}
+
+}  // namespace skerry

@@ -1,0 +1,77 @@
+"""What the program says and does about bodies that begin in each other. Called as: TEST PROGRAM SOURCE_FOLDER"""
+import json
+import sys
+import unittest
+
+from program_case import SCENE, ProgramCase
+
+
+class ProgramStartTest(ProgramCase):
+    def overlapping(self, x, **settings):
+        """Two balls of 100 mm whose centres are x metres apart."""
+        ball = {"mesh": {"ball": {"radius": 0.05, "resolution": 4}}, "material": "rubber",
+                "velocity": [0, 1, 0]}
+        return self.write("overlapping.json", {
+            "materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "settings": {"gravity": [0, 0, 0], **settings},
+            "bodies": [{"name": "left", "position": [0, 0, 0], **ball},
+                       {"name": "right", "position": [x, 0, 0], **ball}]})
+
+    def test_bodies_that_coincide_are_refused_by_name_before_the_run(self):
+        self.assert_refused("run", self.overlapping(0), said=["overlapping.json", "'left' and 'right' coincide at"])
+        self.assert_refused("run", self.overlapping(0.02), said=["bodies 'left' and 'right' overlap by"])
+        self.assert_refused("run", self.overlapping(0.09), "--start-overlaps", "refuse", said=["overlap by"])
+        problems = json.loads(self.skerry("inspect", self.overlapping(0), "--json").stdout)["problems"]
+        self.assertTrue(any("'left' and 'right' coincide" in problem for problem in problems), problems)
+        self.assertTrue(any("a run refuses that" in problem for problem in problems), problems)
+
+    def test_bodies_that_overlap_a_bit_are_moved_apart_and_the_run_says_so(self):
+        stats = self.folder / "stats.json"
+        done = self.skerry("run", self.overlapping(0.095), "--stats", stats)
+        self.assertIn("1 overlap, 2 bodies moved apart, the furthest ", done.stdout)
+        self.assertNotIn("DOUBT", done.stdout)
+        start = json.loads(stats.read_text())["start"]
+        self.assertEqual([m["body"] for m in start["moves"]], ["left", "right"])
+        self.assertTrue(start["overlaps"][0]["resolved"])
+        self.assertEqual(json.loads(stats.read_text())["max_penetration"], 0)
+
+    def test_what_begins_overlapping_is_doubted_with_both_names_quiet_or_not(self):
+        doubt = "DOUBT"
+        done = self.skerry("run", self.overlapping(0, start_overlaps="ignore"))
+        for part in (doubt, "'left' and 'right' coincide at (0, 0, 0) m at the start: move them apart"):
+            self.assertIn(part, done.stdout)
+        done = self.skerry("run", self.overlapping(0.09, start_overlaps="ignore"))
+        self.assertIn("settings.start_overlaps to \"resolve\"", done.stdout)
+        self.assertNotIn("shorten the step", done.stdout)
+        quiet = self.skerry("run", self.overlapping(0, start_overlaps="ignore"), "--quiet")
+        self.assertEqual(quiet.stdout, "")
+        self.assertIn("skerry: DOUBT: bodies 'left' and 'right' coincide", quiet.stderr)
+
+    def test_a_contact_distance_out_of_proportion_is_what_is_blamed(self):
+        sunk = json.loads(json.dumps(SCENE))
+        sunk["bodies"][0]["contact_distance"] = 10
+        done = self.skerry("run", self.write("shell.json", sunk), "--seconds", 0.05)
+        self.assertIn("too deep in each other's contact distance", done.stdout)
+        self.assertNotIn("shorten the step", done.stdout)
+        problems = json.loads(self.skerry("inspect", self.folder / "shell.json", "--json").stdout)["problems"]
+        self.assertTrue(any("contact distance" in problem for problem in problems), problems)
+
+    def test_a_run_says_that_a_boundary_is_no_manifold(self):
+        self.write("m.node", "7 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 -1 0 0\n6 0 -1 0\n7 0 0 -1\n")
+        self.write("m.ele", "2 4 0\n1 1 2 3 4\n2 1 6 5 7\n")
+        scene = self.write("joined.json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
+            {"name": "pair", "mesh": {"file": "m.ele"}, "material": "rubber"}]})
+        said = self.skerry("run", scene).stdout
+        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0 joins parts", said)
+        self.assertIn("not a closed manifold", self.skerry("inspect", scene).stdout)
+
+    def test_advice_names_an_option_that_there_is(self):
+        stack = json.loads(json.dumps(SCENE))
+        stack["settings"] = {"tolerance": 1e-10}
+        stack["bodies"].append({**stack["bodies"][0], "name": "upper", "position": [0.03, 0.02, 0.32]})
+        scene = self.write("stack.json", stack)
+        self.assertIn("(--max-iterations), now 2", self.skerry("run", scene, "--max-iterations", 2).stdout)
+        self.assertNotIn("max-iterations", self.skerry("run", scene, "--max-iterations", 100000).stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
