@@ -11,20 +11,20 @@ namespace {
 
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
-constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}}};
-constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};
+constexpr std::array<std::array<std::size_t, 2>, 6> edge_corners{{{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}}};
+constexpr std::array<std::array<std::size_t, 3>, 4> face_corners{{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};
 
 std::size_t edge_count(const Simplex& s) {
     return s.count == 4 ? 6 : 3;
 }
 
 Vec3 edge(const Simplex& s, std::size_t e) {
-    return s.point[edges[e][1]] - s.point[edges[e][0]];
+    return s.point[edge_corners[e][1]] - s.point[edge_corners[e][0]];
 }
 
 Vec3 face_normal(const Simplex& s, std::size_t f) {
-    const Vec3& a = s.point[faces[f][0]];
-    return (s.point[faces[f][1]] - a).cross(s.point[faces[f][2]] - a);
+    const Vec3& a = s.point[face_corners[f][0]];
+    return (s.point[face_corners[f][1]] - a).cross(s.point[face_corners[f][2]] - a);
 }
 
 std::pair<Real, Real> interval(const Simplex& s, const Vec3& origin, const Vec3& axis) {
