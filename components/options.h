@@ -26,7 +26,7 @@ enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: t
 enum class WarmStart { off, on };
 /// What is done about bodies that overlap each other or colliders before the first step after one of them was added.
 /// resolve: they are moved apart, without energy, where the way out is short, and refused where it is not; refuse: they
-/// are refused; ignore: the run reports them and begins as it is (docs/decisions/0016-start-overlaps.md).
+/// are refused; ignore: the run reports them and begins as it is (docs/decisions/0017-start-overlaps.md).
 enum class StartOverlaps { resolve, refuse, ignore };
 /// How two things overlap. crossing: their surfaces go through each other; inside: the first is inside the second;
 /// around: the second is inside the first; coincident: each is inside the other.

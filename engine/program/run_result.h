@@ -27,7 +27,7 @@ struct RunResult {
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
     std::vector<std::pair<std::string, std::string>> outputs_failed;  // option, and what stood in the way
-    std::vector<std::string> bad_boundaries;  // of the bodies' meshes, a sentence each
+    std::vector<std::string> bad_boundaries;                          // of the bodies' meshes, a sentence each
 };
 
 /// Why not to rely on the run, a sentence each; empty when all estimates are small.

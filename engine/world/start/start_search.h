@@ -1,4 +1,4 @@
-// Who overlaps whom before anything moves (docs/decisions/0016-start-overlaps.md).
+// Who overlaps whom before anything moves (docs/decisions/0017-start-overlaps.md).
 #pragma once
 
 #include <memory>
