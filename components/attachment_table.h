@@ -26,7 +26,7 @@ struct AttachmentTable {
         visit("slot", slot, ColumnRole::state);
         visit("body", body, ColumnRole::link);
         visit("nodes", nodes, ColumnRole::link);
-        visit("motion", motion, ColumnRole::scratch);
+        visit("motion", motion, ColumnRole::memory);
         visit("initial", initial, ColumnRole::state);
         visit("script", script, ColumnRole::link);
     }

@@ -68,8 +68,7 @@ struct BodyTable {
     Column<Real> travel;
     Column<Real> uninverted_until;  // m: the least of the body's tetrahedra
 
-    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines; frame to
-    /// uninverted_until by ContactCache::forget_distances.
+    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
@@ -100,11 +99,11 @@ struct BodyTable {
         visit("asleep", asleep, ColumnRole::state);
         visit("still_time", still_time, ColumnRole::state);
         visit("max_speed", max_speed, ColumnRole::state);
-        visit("frame", frame, ColumnRole::derived);
-        visit("frame_speed", frame_speed, ColumnRole::derived);
-        visit("displacement", displacement, ColumnRole::derived);
-        visit("travel", travel, ColumnRole::derived);
-        visit("uninverted_until", uninverted_until, ColumnRole::derived);
+        visit("frame", frame, ColumnRole::memory);
+        visit("frame_speed", frame_speed, ColumnRole::memory);
+        visit("displacement", displacement, ColumnRole::memory);
+        visit("travel", travel, ColumnRole::memory);
+        visit("uninverted_until", uninverted_until, ColumnRole::memory);
     }
 };
 

@@ -56,16 +56,15 @@ struct ColliderTable {
     Column<Real> travel;                // m, how far any of its points near a body can have moved, as BodyTable::travel
 
     /// All columns that have one row per collider; `keyframe` is ragged and is visited on its own by for_each_column.
-    /// Derived: travel by ContactCache::forget_distances.
     void for_each_row_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("geometry", geometry, ColumnRole::state);
-        visit("motion", motion, ColumnRole::scratch);
+        visit("motion", motion, ColumnRole::memory);
         visit("initial", initial, ColumnRole::state);
         visit("script", script, ColumnRole::link);
         visit("surface", surface, ColumnRole::state);
         visit("body", body, ColumnRole::link);
-        visit("travel", travel, ColumnRole::derived);
+        visit("travel", travel, ColumnRole::memory);
     }
     void for_each_column(auto&& visit) {
         for_each_row_column(visit);

@@ -33,14 +33,13 @@ struct TetrahedronBlockTable {
     // m: none of the block turns inside out, or back, while the body's travel is below this
     Column<Real> uninverted_until;
 
-    /// The only list of columns: resize, erase, copy and hash walk it. Derived: uninverted_until by
-    /// ContactCache::forget_distances.
+    /// The only list of columns: resize, erase, hash and save walk it.
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::link);
         visit("volume", volume, ColumnRole::state);
         visit("altitude", altitude, ColumnRole::state);
         visit("leeway", leeway, ColumnRole::state);
-        visit("uninverted_until", uninverted_until, ColumnRole::derived);
+        visit("uninverted_until", uninverted_until, ColumnRole::memory);
     }
 };
 
@@ -74,7 +73,7 @@ struct ElementBlockTable {
     // within the body: impulses come every 2^level of the body's steps (step_levels.h)
     Column<std::uint8_t> level;
 
-    /// The only list of columns: resize, erase, copy and hash walk it.
+    /// The only list of columns: resize, erase, hash and save walk it.
     void for_each_column(auto&& visit) {
         visit("first", first, ColumnRole::link);
         visit("count", count, ColumnRole::state);
@@ -104,7 +103,7 @@ struct ElementNodeTable {
     Column<NodeLane> slot;             // where the node stands among those of the patch, from 0
     Column<ElementGradient> gradient;  // at rest
 
-    /// The only list of columns: resize, erase, copy and hash walk it. Derived: slot by build_patches.
+    /// The only list of columns: resize, erase, hash and save walk it. Derived: slot by build_patches.
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::link);
         visit("gradient", gradient, ColumnRole::state);

@@ -31,14 +31,14 @@ struct NodeBlockTable {
     Column<Real> displacement_squared;  // m^2, in the body's frame, by advance_positions
     Column<NodeBlockSums> sums;         // by damp_velocity
 
-    /// Derived: displacement_squared by ContactCache::forget_distances.
+    /// The only list of columns.
     void for_each_column(auto&& visit) {
         visit("begin", begin, ColumnRole::link);
         visit("end", end, ColumnRole::link);
         visit("body", body, ColumnRole::link);
         visit("max_speed_squared", max_speed_squared, ColumnRole::scratch);
         visit("frame_speed_squared", frame_speed_squared, ColumnRole::scratch);
-        visit("displacement_squared", displacement_squared, ColumnRole::derived);
+        visit("displacement_squared", displacement_squared, ColumnRole::memory);
         visit("sums", sums, ColumnRole::scratch);
     }
 };

@@ -24,8 +24,8 @@ struct NodeTable {
     Column<Index> body;                // row of BodyTable
     Column<LevelMask> levels;          // levels, within their body, of the elements around the node
 
-    /// The only list of columns: resize, erase, copy and hash walk it. Derived: velocity_next (zero at rest), push_out
-    /// and levels by Model::rebuild_derived, displacement_origin by ContactCache::forget_distances.
+    /// The only list of columns: resize, erase, hash and save walk it. Derived: velocity_next (zero at rest), push_out
+    /// and levels by Model::rebuild_derived.
     void for_each_column(auto&& visit) {
         visit("position", position, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);
@@ -37,7 +37,7 @@ struct NodeTable {
         visit("velocity_next", velocity_next, ColumnRole::derived);
         visit("push_out", push_out, ColumnRole::derived);
         visit("force", force, ColumnRole::scratch);
-        visit("displacement_origin", displacement_origin, ColumnRole::derived);
+        visit("displacement_origin", displacement_origin, ColumnRole::memory);
         visit("levels", levels, ColumnRole::derived);
     }
 };

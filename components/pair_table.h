@@ -62,17 +62,17 @@ struct PairTable {
     // m: no features that were looked at in this block are nearer to each other
     Column<Real> block_nearest;
 
-    /// Of the columns with one row per pair. State is which pairs overlap: a search finds again what is apart. Derived:
-    /// valid_until, with the lists, and what is known of frames by ContactCache::forget_distances.
+    /// Of the columns with one row per pair. State is which pairs overlap: a search finds again what is apart. The
+    /// lists are memory, too.
     void for_each_row_column(auto&& visit) {
         visit("key", key, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
         visit("first", first, ColumnRole::link);
         visit("second", second, ColumnRole::link);
         visit("state", state, ColumnRole::state);
-        visit("valid_until", valid_until, ColumnRole::derived);
-        visit("frame_apart", frame_apart, ColumnRole::derived);
-        visit("frame_path", frame_path, ColumnRole::derived);
+        visit("valid_until", valid_until, ColumnRole::memory);
+        visit("frame_apart", frame_apart, ColumnRole::memory);
+        visit("frame_path", frame_path, ColumnRole::memory);
         visit("idle", idle, ColumnRole::scratch);
         visit("travel", travel, ColumnRole::scratch);
         visit("travel_bound", travel_bound, ColumnRole::scratch);

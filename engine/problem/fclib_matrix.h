@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/problem/hdf5_file.h"
+#include "engine/hdf5/hdf5_file.h"
 
 namespace skerry {
 

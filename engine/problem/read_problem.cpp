@@ -106,7 +106,7 @@ void expect_finite(const Hdf5File& file, const std::string& root, const ContactP
 }  // namespace
 
 ContactProblem read_problem(const std::filesystem::path& path) {
-    const Hdf5File file(path);
+    const Hdf5File file(path, "an FCLIB problem (HDF5)");
     ContactProblem problem;
     problem.name = path.stem().string();
     if (!file.has("/fclib_local") && file.has("/fclib_global")) {

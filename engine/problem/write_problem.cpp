@@ -5,7 +5,7 @@
 
 #include "engine/output/write_file.h"
 #include "engine/problem/check_arrays.h"
-#include "engine/problem/hdf5_image.h"
+#include "engine/hdf5/hdf5_image.h"
 #include "skerry/problem.h"
 
 namespace skerry {

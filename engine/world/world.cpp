@@ -109,6 +109,28 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
+World World::clone() const {
+    WorldState& from = *state_;
+    from.require_between_steps("clone");
+    from.settle();
+    World copy(from.model.settings);
+    WorldState& to = *copy.state_;
+    to.model = from.model;
+    to.clock = from.clock;
+    to.cache = from.cache;
+    to.scratch.parameters = from.scratch.parameters;
+    to.scratch.findings = from.scratch.findings;
+    to.scratch.contacts = from.scratch.contacts;
+    to.record.counters = from.record.counters;
+    to.record.limits = from.record.limits;
+    to.record.balance = from.record.balance;
+    to.record.start_overlaps = from.record.start_overlaps;
+    to.record.start_moves = from.record.start_moves;
+    to.record.contact_view = from.record.contact_view;
+    to.record.contact_view_is_current = from.record.contact_view_is_current;
+    return copy;
+}
+
 MaterialHandle World::add_material(const MaterialSettings& material) {
     state_->require_between_steps("add_material");
     validate(material, state_->model.settings);

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "engine/problem/check_arrays.h"
-#include "engine/problem/hdf5_image.h"
+#include "engine/hdf5/hdf5_image.h"
 #include "readers.h"
 #include "skerry/problem.h"
 #include "tests/support/temporary_folder.h"

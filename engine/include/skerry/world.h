@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +20,12 @@ namespace skerry {
 
 struct StepProblem;  // problem.h
 
+/// How a loaded world is run. What is not given is as it was when the world was saved; results do not depend on it.
+struct LoadSettings {
+    std::optional<Backend> backend{};  // one that this build does not have becomes `automatic`
+    std::optional<int> threads{};
+};
+
 /// A simulation. Not safe for use from several threads at once, not even to look at; different worlds are independent.
 /// Functions that take a handle throw SceneError when it is stale or of another world, functions that take settings
 /// when a value is out of range, and all of them after the world was moved from.
@@ -27,6 +35,17 @@ public:
     ~World();
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
+
+    // Copies and files, between calls of advance (docs/save_restore.md). They go on as this world does, bit by bit, on
+    // any number of threads; every handle to what this world has names the same in them, and report() tells the whole
+    // run. Functions that watch contact problems, recorded traces and seconds of stages stay behind.
+    World clone() const;
+    /// Writes beside `file` and renames: what was there is replaced as a whole or not at all. Throws SceneError that
+    /// says what stood in the way, with the world as it was.
+    void save(const std::filesystem::path& file) const;
+    /// Throws SceneError that names file, data set, what was found and what was expected, unless all of the file is as
+    /// save wrote it.
+    static World load(const std::filesystem::path& file, const LoadSettings& settings = {});
 
     // Building. Allowed between calls of advance, and refused with SceneError in what these call; handles to everything
     // else stay valid. What is derived of all bodies is made anew when it is next asked for: adding many costs no more

@@ -15,10 +15,6 @@ struct ContactCache {
 
     /// Forgets what the search believes of distances.
     void search_afresh(Model& model);
-    /// Forgets candidates and how far anything has come since they were found: everything is searched in the next step,
-    /// from where things are now. What is known of a pair's sides stays. A world that is copied or saved does so, and
-    /// its copy: then both search in the same steps.
-    void forget_distances(Model& model);
     /// Rows have moved: pairs are found again. Impulses stay, since their keys name bodies by slot.
     void drop_pairs(Model& model);
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "skerry/report.h"
@@ -17,6 +18,9 @@ public:
     void count_try(StepLimit limit, BodyHandle body, const std::string& name);
     /// Most steps first.
     std::vector<StepLimitReport> report() const;
+    /// In the order in which they were first seen.
+    const std::vector<StepLimitReport>& entries() const { return entries_; }
+    void restore(std::vector<StepLimitReport> entries) { entries_ = std::move(entries); }
 
 private:
     StepLimitReport& entry(StepLimit limit, BodyHandle body, const std::string& name);

@@ -1,20 +1,16 @@
-#include "engine/problem/hdf5_file.h"
+#include "engine/hdf5/hdf5_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace skerry {
 namespace {
 
-hid_t open_file(const std::filesystem::path& path) {
+hid_t open_file(const std::filesystem::path& path, const std::string& expected) {
     const auto refuse = [&](const std::string& found) {
-        Complaint{.file = path.string(),
-                  .object = {},
-                  .field = {},
-                  .found = found,
-                  .expected = "an FCLIB problem (HDF5)",
-                  .hint = {}}
+        Complaint{.file = path.string(), .object = {}, .field = {}, .found = found, .expected = expected, .hint = {}}
             .raise();
     };
     std::error_code ignored;
@@ -28,7 +24,8 @@ hid_t open_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()), file_(open_file(path), H5Fclose) {}
+Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expected)
+    : name_(path.string()), file_(open_file(path, expected), H5Fclose) {}
 
 bool Hdf5File::can_hold(hsize_t bytes) const {
     constexpr hsize_t largest_ratio = 1032;  // of deflate, the strongest filter that files of this kind come with
@@ -104,6 +101,34 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
         complain(path, "values that cannot be read", expected);
     return values;
+}
+
+void Hdf5File::read_rows(const std::string& path, hid_t memory_type, std::size_t width,
+                         FunctionRef<void*(std::size_t)> place) const {
+    const std::size_t bytes = H5Tget_size(memory_type);
+    const std::string expected = (width == 1 ? "a column of " : "rows of " + std::to_string(width) + " ") +
+                                 (H5Tget_class(memory_type) == H5T_FLOAT ? "reals" : "integers") + " of " +
+                                 std::to_string(bytes) + " bytes";
+    if (!has(path)) complain(path, "nothing", expected);
+    const Hdf5Handle data(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!data.ok()) complain(path, "something that is not a data set", expected);
+    const Hdf5Handle type(H5Dget_type(data.id()), H5Tclose);
+    const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
+    if (!type.ok() || !space.ok()) complain(path, "a data set that cannot be read", expected);
+    if (H5Tequal(type.id(), memory_type) <= 0) complain(path, "values of another type", expected);
+    const int rank = width == 1 ? 1 : 2;
+    std::array<hsize_t, 2> size{0, 1};
+    if (H5Sget_simple_extent_ndims(space.id()) != rank ||
+        H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) != rank || size[1] != width)
+        complain(path, "another shape", expected);
+    if (size[0] > static_cast<hsize_t>(std::numeric_limits<Index>::max()))
+        complain(path, std::to_string(size[0]) + " rows", "at most 2147483647");
+    const hsize_t count = size[0] * width;
+    if (!can_hold(count * bytes) || !all_stored(data, type, static_cast<hssize_t>(count)))
+        complain(path, "fewer bytes than " + std::to_string(size[0]) + " rows take", expected);
+    void* const values = place(static_cast<std::size_t>(size[0]));
+    if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+        complain(path, "values that cannot be read", expected);
 }
 
 Index Hdf5File::integer(const std::string& path) const {

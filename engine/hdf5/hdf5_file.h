@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "components/types.h"
+#include "jobs/function_ref.h"
 #include "skerry/error.h"
 
 namespace skerry {
@@ -51,13 +52,18 @@ private:
 /// kind.
 class Hdf5File {
 public:
-    explicit Hdf5File(const std::filesystem::path& path);
+    /// `expected`: what a complaint about the file as a whole says that it ought to be.
+    Hdf5File(const std::filesystem::path& path, const std::string& expected);
 
     bool has(const std::string& path) const;
     void expect_group(const std::string& path, const std::string& hint = {}) const;
     Index integer(const std::string& path) const;
     std::vector<Index> integers(const std::string& path) const;
     std::vector<Real> reals(const std::string& path) const;  // all finite
+    /// A column of numbers of exactly this type, so that they keep their bits, in rows of `width`: two dimensions if
+    /// that is more than one. `place` makes room for so many rows and says where.
+    void read_rows(const std::string& path, hid_t memory_type, std::size_t width,
+                   FunctionRef<void*(std::size_t)> place) const;
     /// Text that a file may have: empty when it has none.
     std::string text_or_nothing(const std::string& path) const;
 

@@ -1,5 +1,5 @@
-// An HDF5 file made in memory, with the kinds of data that FCLIB's own writer makes: numbers in one dimension, texts of
-// fixed length.
+// An HDF5 file made in memory, with the kinds of data that FCLIB's own writer makes, numbers in one dimension and texts
+// of fixed length, and with rows of numbers.
 #pragma once
 
 #include <hdf5.h>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "components/types.h"
-#include "engine/problem/hdf5_file.h"
+#include "engine/hdf5/hdf5_file.h"
 
 namespace skerry {
 
@@ -22,6 +22,8 @@ public:
     void put(const std::string& path, Index value) { put(path, std::span<const Index>(&value, 1)); }
     void put(const std::string& path, std::span<const Index> values);
     void put(const std::string& path, std::span<const Real> values);
+    /// `width` numbers a row; in two dimensions if that is more than one.
+    void put_rows(const std::string& path, hid_t type, std::size_t rows, std::size_t width, const void* values);
     void put_text(const std::string& path, const std::string& text);
     /// The whole file.
     std::vector<char> bytes() const;

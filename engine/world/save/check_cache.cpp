@@ -1,0 +1,118 @@
+#include <functional>
+#include <limits>
+
+#include "engine/world/save/checks.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/narrow/collider_distance.h"
+
+namespace skerry {
+
+namespace {
+
+void expect_ascending(const Hdf5File& file, const std::string& path, const auto& keys) {
+    if (std::ranges::adjacent_find(keys, std::greater_equal<>()) != keys.end())
+        file.complain(path, "keys in disorder", "ascending keys");
+}
+
+}  // namespace
+
+void check_clock(const Hdf5File& file, const Clock& clock) {
+    constexpr Real long_time = std::numeric_limits<Real>::max();
+    expect_between(file, "/clock/time", std::array{clock.time}, 0.0, long_time);
+    constexpr int most_levels = step_level_count - 1;
+    expect_between(file, "/clock/cycle/levels", std::array{clock.cycle.levels}, 0, most_levels);
+    expect_between(file, "/clock/cycle/index", std::array{clock.cycle.index}, 0, (1 << clock.cycle.levels) - 1);
+    expect_between(file, "/clock/cycle/h", std::array{clock.cycle.h}, 0.0, long_time);
+}
+
+void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) {
+    const std::size_t bodies = model.bodies.slot.size(), colliders = model.colliders.slot.size();
+    WarmStartTable& warm = cache.warm_start;
+    expect_size(file, "/warm_start/impulse", warm.impulse.size(), warm.key.size());
+    expect_size(file, "/warm_start/normal", warm.normal.size(), warm.key.size());
+    if (warm.step.size() > 1)
+        file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one, or none");
+    if (!warm.key.empty() && warm.step.empty())
+        file.complain("/warm_start/step", "nothing", "the step of the impulses");
+    for (const Real step : warm.step)
+        if (!(step > 0)) file.complain("/warm_start/step", std::to_string(step), "a time > 0 (s)");
+    expect_ascending(file, "/warm_start/key", warm.key);
+
+    PairTable& pairs = cache.pairs;
+    const std::size_t count = pairs.size();
+    pairs.for_each_row_column([&](const char* name, auto& column, ColumnRole role) {
+        if (is_saved(role))
+            expect_size(file, std::string("/pairs/") + name, column.size(), count);
+        else
+            column.resize(count);
+    });
+    expect_ascending(file, "/pairs/key", pairs.key);
+    expect_rows_of(file, "/pairs/first", pairs.first, bodies);
+    for (std::size_t p = 0; p < count; ++p) {
+        if (model.bodies.kind[pairs.first[p]] != BodyKind::deformable)
+            file.complain("/pairs/first", std::to_string(pairs.first[p]) + " at row " + std::to_string(p),
+                          "a body that deforms");
+        const bool of_collider = pairs.kind[p] == PairKind::collider;
+        const Index second = pairs.second[p];
+        expect_rows_of(file, "/pairs/second", {&second, 1}, of_collider ? colliders : bodies);
+        if (of_collider && model.colliders.geometry[second].shape == ColliderShape::mesh)
+            file.complain("/pairs/second", std::to_string(second) + " at row " + std::to_string(p),
+                          "a collider that is no mesh");
+        if (pairs.kind[p] == PairKind::self && second != pairs.first[p])
+            file.complain("/pairs/second", std::to_string(second) + " at row " + std::to_string(p), "the same body");
+    }
+
+    // either none, which starts a search, or one for each
+    const SearchState& search = cache.search;
+    const auto expect_all_or_none = [&](const char* path, std::size_t found, std::size_t expected) {
+        if (found != 0) expect_size(file, path, found, expected);
+    };
+    expect_all_or_none("/search/body_valid_until", search.body_valid_until.size(), bodies);
+    expect_all_or_none("/search/collider_valid_until", search.collider_valid_until.size(), colliders);
+    expect_all_or_none("/search/collider_extent", search.memory.collider_extent.size(), colliders);
+    expect_all_or_none("/search/rebase", search.memory.rebase.size(), bodies);
+    if (search.collider_valid_until.size() == colliders && search.body_valid_until.size() == bodies)
+        expect_size(file, "/search/collider_extent", search.memory.collider_extent.size(), colliders);
+}
+
+void check_candidates(const Hdf5File& file, const Model& model, const PairTable& pairs) {
+    const BodyTable& bodies = model.bodies;
+    const auto inside = [](Index row, Range range) { return row >= range.begin && row < range.end; };
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const Index a = pairs.first[p], b = pairs.second[p];
+        for (const Candidate& candidate : pairs.candidates[p]) {
+            bool good = false;
+            if (pairs.kind[p] == PairKind::collider) {
+                good = inside(candidate.first, bodies.vertices[a]) && candidate.second == b &&
+                       second_local(candidate.feature) < collider_part_count(model.colliders.geometry[b].shape);
+            } else if (is_edge_edge(candidate.feature)) {
+                good = inside(candidate.first, bodies.edges[a]) && inside(candidate.second, bodies.edges[b]);
+            } else if (is_point_of_second(candidate.feature)) {
+                good = inside(candidate.first, bodies.vertices[b]) && inside(candidate.second, bodies.triangles[a]);
+            } else {
+                good = inside(candidate.first, bodies.vertices[a]) && inside(candidate.second, bodies.triangles[b]);
+            }
+            if (!good)
+                file.complain("/pairs/candidates/first",
+                              std::to_string(candidate.first) + " and " + std::to_string(candidate.second) +
+                                  " of pair " + std::to_string(p),
+                              "features of its two surfaces");
+        }
+    }
+}
+
+void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts) {
+    const std::size_t count = contacts.size();
+    const std::string group = "/last_step/contacts/";
+    contacts.for_each_column(
+        [&](const char* name, auto& column, ColumnRole) { expect_size(file, group + name, column.size(), count); });
+    expect_rows_of(file, group + "first_body", contacts.first_body, model.bodies.slot.size());
+    expect_rows_of(file, group + "second_body", contacts.second_body, model.bodies.slot.size(), true);
+    expect_rows_of(file, group + "collider", contacts.collider, model.colliders.slot.size(), true);
+    for (const Stencil& stencil : contacts.stencil)
+        expect_rows_of(file, group + "stencil/node", stencil.node, model.nodes.position.size());
+    for (const Index region : contacts.region)
+        if (region < no_index) file.complain(group + "region", std::to_string(region), "a region, or -1");
+}
+
+}  // namespace skerry

@@ -1,0 +1,254 @@
+#include <limits>
+#include <vector>
+
+#include "engine/world/save/checks.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real unbounded = std::numeric_limits<Real>::infinity();
+
+/// All saved columns of a table have as many rows; those that are not saved get them.
+void expect_one_size(const Hdf5File& file, const std::string& table, std::size_t rows, auto&& visit_columns) {
+    visit_columns([&](const char* name, auto& column, ColumnRole role) {
+        if (is_saved(role))
+            expect_size(file, "/" + table + "/" + name, column.size(), rows);
+        else
+            column.resize(rows);
+    });
+}
+
+void check_sizes(const Hdf5File& file, Model& model) {
+    const std::size_t nodes = model.nodes.position.size();
+    model.nodes.rest_position.resize(nodes);
+    const auto all = [&](const char* table, auto& columns, std::size_t rows) {
+        expect_one_size(file, table, rows, [&](auto&& visit) { columns.for_each_column(visit); });
+    };
+    all("nodes", model.nodes, nodes);
+    all("node_blocks", model.node_blocks, model.node_blocks.begin.size());
+    all("tetrahedra", model.tetrahedra, model.tetrahedra.node.size());
+    all("elements", model.elements, model.elements.first.size());
+    all("element_nodes", model.element_nodes, model.element_nodes.node.size());
+    all("bodies", model.bodies, model.bodies.slot.size());
+    all("materials", model.materials, model.materials.slot.size());
+    expect_one_size(file, "colliders", model.colliders.slot.size(),
+                    [&](auto&& visit) { model.colliders.for_each_row_column(visit); });
+    expect_one_size(file, "attachments", model.attachments.slot.size(),
+                    [&](auto&& visit) { model.attachments.for_each_row_column(visit); });
+    expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
+}
+
+/// A handle of each row, and a row of each handle that lives.
+template <class Handle>
+void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Handle>& map,
+                   const std::vector<std::uint32_t>& slot_of_row) {
+    const std::string path = "/handles/" + name;
+    std::span<const Index> row;
+    std::size_t generations = 0;
+    map.for_each_column([&](const char*, auto& values) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(values[0])>, Index>)
+            row = values.span();
+        else
+            generations = values.size();
+    });
+    expect_size(file, path + "/generation", generations, row.size());
+    expect_rows_of(file, path + "/row", row, slot_of_row.size(), true);
+    std::size_t named = 0;
+    for (std::size_t slot = 0; slot < row.size(); ++slot) {
+        if (row[slot] == no_index) continue;
+        ++named;
+        if (slot_of_row[static_cast<std::size_t>(row[slot])] != slot)
+            file.complain(path + "/row", "row " + std::to_string(row[slot]) + " in slot " + std::to_string(slot),
+                          "the row that has this slot");
+    }
+    std::size_t with_slot = 0;
+    for (const std::uint32_t slot : slot_of_row) with_slot += slot != no_slot;
+    if (named != with_slot)
+        file.complain(path + "/row", std::to_string(named) + " rows with a handle", std::to_string(with_slot));
+}
+
+void check_handles(const Hdf5File& file, Model& model) {
+    const auto slots = [](const Column<std::uint32_t>& slot) { return std::vector(slot.begin(), slot.end()); };
+    std::vector<std::uint32_t> of_bodies = slots(model.bodies.slot);
+    for (std::size_t b = 0; b < of_bodies.size(); ++b)
+        if (model.bodies.kind[b] == BodyKind::kinematic) of_bodies[b] = no_slot;
+    check_handles(file, "materials", model.material_map, slots(model.materials.slot));
+    check_handles(file, "bodies", model.body_map, of_bodies);
+    check_handles(file, "colliders", model.collider_map, slots(model.colliders.slot));
+    check_handles(file, "attachments", model.attachment_map, slots(model.attachments.slot));
+}
+
+void check_bodies(const Hdf5File& file, const Model& model) {
+    const BodyTable& bodies = model.bodies;
+    expect_rows_of(file, "/bodies/material", bodies.material, model.materials.slot.size(), true);
+    expect_rows_of(file, "/bodies/collider", bodies.collider, model.colliders.slot.size(), true);
+    expect_partition(file, "/bodies/nodes", bodies.nodes, model.nodes.position.size());
+    expect_partition(file, "/bodies/node_blocks", bodies.node_blocks, model.node_blocks.begin.size());
+    expect_partition(file, "/bodies/blocks", bodies.blocks, model.elements.first.size());
+    expect_partition(file, "/bodies/element_nodes", bodies.element_nodes, model.element_nodes.node.size());
+    expect_partition(file, "/bodies/tetrahedron_blocks", bodies.tetrahedron_blocks, model.tetrahedra.node.size());
+    expect_between(file, "/bodies/level", bodies.level, 0, step_level_count - element_level_count);
+    expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
+    expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
+    expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, unbounded);
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
+        const auto complain = [&](const char* field, const std::string& found, const std::string& expected) {
+            file.complain(std::string("/bodies/") + field, found + " at row " + std::to_string(b), expected);
+        };
+        const bool deforms = bodies.kind[b] == BodyKind::deformable;
+        if (deforms != (bodies.material[b] != no_index))
+            complain("material", std::to_string(bodies.material[b]), "a material of what deforms, and -1 of colliders");
+        if (deforms != (bodies.collider[b] == no_index))
+            complain("collider", std::to_string(bodies.collider[b]), "a collider of what it moves, else -1");
+        if (!deforms && (model.colliders.body[bodies.collider[b]] != static_cast<Index>(b) ||
+                         model.colliders.slot[bodies.collider[b]] != bodies.slot[b]))
+            complain("collider", std::to_string(bodies.collider[b]), "the collider that has this body");
+        if (const Index count = bodies.tetrahedron_count[b];
+            count < 0 || (count + element_lanes - 1) / element_lanes != bodies.tetrahedron_blocks[b].size())
+            complain("tetrahedron_count", std::to_string(count), "as many as the blocks hold");
+        if (bodies.nodes[b].size() == 0) complain("nodes", "none", "at least one");
+    }
+}
+
+/// Rows of the tables that a body has ranges of.
+void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
+    const NodeBlockTable& blocks = model.node_blocks;
+    const ElementBlockTable& elements = model.elements;
+    const auto expect_body = [&](const char* path, Index found, std::size_t body, Index row) {
+        if (found != static_cast<Index>(body))
+            file.complain(path, std::to_string(found) + " at row " + std::to_string(row),
+                          "body " + std::to_string(body) + ", whose range it is in");
+    };
+    const auto expect_nodes = [&](const char* path, const NodeLane& lanes, Range nodes, Index row) {
+        for (const Index n : lanes.lane)
+            if (n < nodes.begin || n >= nodes.end)
+                file.complain(
+                    path, "node " + std::to_string(n) + " at row " + std::to_string(row),
+                    "a node of its body, " + std::to_string(nodes.begin) + " to " + std::to_string(nodes.end - 1));
+    };
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        const Range nodes = model.bodies.nodes[b], rows = model.bodies.element_nodes[b];
+        for (Index n = nodes.begin; n < nodes.end; ++n) expect_body("/nodes/body", model.nodes.body[n], b, n);
+        Index next = nodes.begin;
+        for (Index k = model.bodies.node_blocks[b].begin; k < model.bodies.node_blocks[b].end; ++k) {
+            expect_body("/node_blocks/body", blocks.body[k], b, k);
+            if (blocks.begin[k] != next || blocks.end[k] <= next || blocks.end[k] - next > nodes_per_block ||
+                blocks.end[k] > nodes.end)
+                file.complain("/node_blocks/end", std::to_string(blocks.end[k]) + " at row " + std::to_string(k),
+                              "blocks of at most 256 nodes that follow each other");
+            next = blocks.end[k];
+        }
+        if (next != nodes.end) file.complain("/node_blocks/end", std::to_string(next), "all nodes of a body");
+        for (Index t = model.bodies.tetrahedron_blocks[b].begin; t < model.bodies.tetrahedron_blocks[b].end; ++t)
+            for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("/tetrahedra/node", corner, nodes, t);
+        for (Index k = rows.begin; k < rows.end; ++k)
+            expect_nodes("/element_nodes/node", model.element_nodes.node[k], nodes, k);
+        Index first = rows.begin;
+        const Range of_body = model.bodies.blocks[b];
+        for (Index e = of_body.begin; e < of_body.end; ++e) {
+            expect_body("/elements/body", elements.body[e], b, e);
+            constexpr Index fewest_nodes = 4;
+            if (elements.first[e] != first || elements.count[e] < fewest_nodes ||
+                elements.count[e] > rows.end - elements.first[e])
+                file.complain("/elements/count", std::to_string(elements.count[e]) + " at row " + std::to_string(e),
+                              "rows of /element_nodes that follow each other, four or more");
+            first += elements.count[e];
+            const bool same_level = e > of_body.begin && elements.level[e] == elements.level[e - 1];
+            if (!elements.opens_patch[e] && !same_level)
+                file.complain("/elements/opens_patch", "0 at row " + std::to_string(e),
+                              "1 where a body or a level begins");
+        }
+        if (first != rows.end) file.complain("/elements/count", std::to_string(first), "all rows of a body");
+    }
+    expect_rows_of(file, "/elements/material", elements.material, model.materials.slot.size());
+    expect_between(file, "/elements/level", elements.level, 0, element_level_count - 1);
+}
+
+void check_scripts(const Hdf5File& file, const std::string& table, const auto& rows) {
+    for (std::size_t i = 0; i < rows.script.size(); ++i) {
+        const MotionScript& script = rows.script[i];
+        if (script.key_begin < 0 || script.key_end < script.key_begin ||
+            script.key_end > static_cast<Index>(rows.keyframe.size()))
+            file.complain("/" + table + "/script/key_end",
+                          std::to_string(script.key_begin) + " to " + std::to_string(script.key_end) + " at row " +
+                              std::to_string(i),
+                          "a range of /" + table + "/keyframe, which has " + std::to_string(rows.keyframe.size()));
+        for (Index k = script.key_begin + 1; k < script.key_end; ++k)
+            if (!(rows.keyframe[k].time > rows.keyframe[k - 1].time))
+                file.complain("/" + table + "/keyframe",
+                              "a time that is not later than the one before, at row " + std::to_string(k),
+                              "ascending times");
+    }
+}
+
+void check_moved(const Hdf5File& file, const Model& model) {
+    expect_rows_of(file, "/colliders/body", model.colliders.body, model.bodies.slot.size(), true);
+    for (std::size_t c = 0; c < model.colliders.slot.size(); ++c) {
+        const Index body = model.colliders.body[c];
+        if (body != no_index && model.bodies.collider[body] != static_cast<Index>(c))
+            file.complain("/colliders/body", std::to_string(body) + " at row " + std::to_string(c),
+                          "the body that has this collider");
+    }
+    check_scripts(file, "colliders", model.colliders);
+    const AttachmentTable& attachments = model.attachments;
+    check_scripts(file, "attachments", attachments);
+    expect_rows_of(file, "/attachments/body", attachments.body, model.bodies.slot.size());
+    expect_partition(file, "/attachments/nodes", attachments.nodes, attachments.node.size());
+    for (std::size_t a = 0; a < attachments.slot.size(); ++a)
+        for (const Index n : part(attachments.node, attachments.nodes[a])) {
+            const Range nodes = model.bodies.nodes[attachments.body[a]];
+            if (n < nodes.begin || n >= nodes.end)
+                file.complain("/attachments/node", std::to_string(n) + " of attachment " + std::to_string(a),
+                              "a node of its body");
+        }
+}
+
+/// What follows from the lists of nodes is put beside them.
+void check_clusters(const Hdf5File& file, Model& model) {
+    NodeClusters& clusters = model.clusters;
+    const std::size_t count = clusters.body.size();
+    expect_size(file, "/clusters/nodes/offset", clusters.nodes.offset.size(), count > 0 ? count + 1 : 0);
+    expect_rows_of(file, "/clusters/body", clusters.body, model.bodies.slot.size());
+    if (count == 0) return;
+    const Column<Index>& offset = clusters.nodes.offset;
+    if (offset[0] != 0 || !std::ranges::is_sorted(offset) ||
+        offset.back() != static_cast<Index>(clusters.nodes.item.size()))
+        file.complain("/clusters/nodes/offset", "offsets that do not ascend from 0 to the number of items",
+                      "where each cluster begins, and the end");
+    clusters.cluster_of.assign(model.nodes.position.size(), no_index);
+    clusters.place.assign(model.nodes.position.size(), no_index);
+    std::size_t entries = 0;
+    for (std::size_t c = 0; c < count; ++c) {
+        const Range nodes = model.bodies.nodes[clusters.body[c]];
+        const std::span<const Index> of_cluster = clusters.nodes[c];
+        clusters.first_entry.push_back(entries);
+        entries += of_cluster.size() * of_cluster.size();
+        for (std::size_t i = 0; i < of_cluster.size(); ++i) {
+            const Index n = of_cluster[i];
+            if (n < nodes.begin || n >= nodes.end || (i > 0 && n <= of_cluster[i - 1]) ||
+                clusters.cluster_of[n] != no_index)
+                file.complain("/clusters/nodes/item", "node " + std::to_string(n) + " of cluster " + std::to_string(c),
+                              "nodes of its body, ascending, each in one cluster");
+            clusters.cluster_of[n] = static_cast<Index>(c);
+            clusters.place[n] = static_cast<Index>(i);
+        }
+        if (of_cluster.empty()) file.complain("/clusters/nodes/offset", "an empty cluster", "at least one node");
+    }
+    expect_size(file, "/clusters/inverse", clusters.inverse.size(), entries);
+}
+
+}  // namespace
+
+void check_model(const Hdf5File& file, Model& model) {
+    check_sizes(file, model);
+    expect_between(file, "/nodes/mass", model.nodes.mass, 0.0, unbounded);
+    expect_between(file, "/nodes/inverse_mass", model.nodes.inverse_mass, 0.0, unbounded);
+    check_bodies(file, model);
+    check_rows_of_bodies(file, model);
+    check_moved(file, model);
+    check_handles(file, model);
+    check_clusters(file, model);
+}
+
+}  // namespace skerry

@@ -1,0 +1,387 @@
+#include "engine/world/save/saved_rows.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "components/hash.h"
+#include "engine/world/save/checks.h"
+#include "engine/world/validate.h"
+
+namespace skerry {
+
+namespace {
+
+template <class T>
+void append(std::span<const T> row, Ragged<T>& rows) {
+    if (rows.offset.empty()) rows.offset.push_back(0);
+    for (const T& item : row) rows.item.push_back(item);
+    rows.offset.push_back(static_cast<Index>(rows.item.size()));
+}
+
+void append_text(const std::string& text, Ragged<std::uint8_t>& rows) {
+    append(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), rows);
+}
+
+std::string text_of(std::span<const std::uint8_t> row) {
+    return {row.begin(), row.end()};
+}
+
+/// What makes two meshes one.
+struct MeshParts {
+    std::span<const Vec3> nodes;
+    std::span<const std::array<Index, 4>> tetrahedra;
+    std::span<const std::array<Index, 3>> surface;
+    std::span<const Index> covered_offset, covered_item;
+
+    std::uint64_t hash() const {
+        Hash hash;
+        hash.add(nodes);
+        hash.add(tetrahedra);
+        hash.add(surface);
+        hash.add(covered_offset);
+        hash.add(covered_item);
+        return hash.value();
+    }
+    bool operator==(const MeshParts& other) const {
+        return std::ranges::equal(nodes, other.nodes) && std::ranges::equal(tetrahedra, other.tetrahedra) &&
+               std::ranges::equal(surface, other.surface) && std::ranges::equal(covered_offset, other.covered_offset) &&
+               std::ranges::equal(covered_item, other.covered_item);
+    }
+};
+
+MeshParts parts_of(const SavedMeshes& meshes, std::size_t mesh) {
+    return {meshes.nodes[mesh], meshes.tetrahedra[mesh], meshes.surface[mesh], meshes.covered_offset[mesh],
+            meshes.covered_item[mesh]};
+}
+
+SavedMeshes meshes_of(const Model& model) {
+    SavedMeshes meshes;
+    std::multimap<std::uint64_t, Index> known;
+    for (std::size_t b = 0; b < model.body_records.size(); ++b) {
+        const BodyRecord& record = model.body_records[b];
+        const Range nodes = model.bodies.nodes[b];
+        const MeshParts parts{model.nodes.rest_position.span().subspan(static_cast<std::size_t>(nodes.begin),
+                                                                       static_cast<std::size_t>(nodes.size())),
+                              record.tetrahedra, record.surface, record.element_tetrahedra.offset.span(),
+                              record.element_tetrahedra.item.span()};
+        const std::uint64_t hash = parts.hash();
+        const auto [begin, end] = known.equal_range(hash);
+        const auto same = std::find_if(begin, end, [&](const auto& entry) {
+            return parts_of(meshes, static_cast<std::size_t>(entry.second)) == parts;
+        });
+        if (same != end) {
+            meshes.of_body.push_back(same->second);
+            continue;
+        }
+        const auto mesh = static_cast<Index>(meshes.nodes.size());
+        append(parts.nodes, meshes.nodes);
+        append(parts.tetrahedra, meshes.tetrahedra);
+        append(parts.surface, meshes.surface);
+        append(parts.covered_offset, meshes.covered_offset);
+        append(parts.covered_item, meshes.covered_item);
+        known.emplace(hash, mesh);
+        meshes.of_body.push_back(mesh);
+    }
+    return meshes;
+}
+
+struct SizeOf {
+    using Size = std::array<Real, 6>;
+    Size operator()(const Plane& p) const {
+        return {p.normal.x(), p.normal.y(), p.normal.z(), p.point.x(), p.point.y(), p.point.z()};
+    }
+    Size operator()(const Sphere& s) const { return {s.radius}; }
+    Size operator()(const Box& b) const { return {b.size.x(), b.size.y(), b.size.z()}; }
+    Size operator()(const Capsule& c) const { return {c.radius, c.length}; }
+    Size operator()(const Cylinder& c) const { return {c.radius, c.height}; }
+    Size operator()(const Bucket& b) const { return {b.radius, b.height, b.thickness}; }
+    Size operator()(const SurfaceMesh&) const { return {}; }
+};
+
+static_assert(std::variant_size_v<Shape> == static_cast<std::size_t>(ColliderShape::mesh) + 1);
+
+/// `mesh`: of a mesh collider.
+Shape shape_of(ColliderShape kind, const std::array<Real, 6>& s, const SurfaceMesh& mesh) {
+    switch (kind) {
+        case ColliderShape::plane:
+            return Plane{{s[0], s[1], s[2]}, {s[3], s[4], s[5]}};
+        case ColliderShape::sphere:
+            return Sphere{s[0]};
+        case ColliderShape::box:
+            return Box{{s[0], s[1], s[2]}};
+        case ColliderShape::capsule:
+            return Capsule{s[0], s[1]};
+        case ColliderShape::cylinder:
+            return Cylinder{s[0], s[1]};
+        case ColliderShape::bucket:
+            return Bucket{s[0], s[1], s[2]};
+        case ColliderShape::mesh:
+            break;
+    }
+    return mesh;
+}
+
+void expect_rows(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
+                 const char* of) {
+    if (found != expected)
+        file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", as many as there are " + of);
+}
+
+template <class T>
+void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T>& rows, std::size_t count,
+                   const char* of) {
+    expect_rows(file, path, rows.size(), count, of);
+    const Column<Index>& offset = rows.offset;
+    if (offset.empty() ? !rows.item.empty()
+                       : offset[0] != 0 || !std::ranges::is_sorted(offset) ||
+                             offset.back() != static_cast<Index>(rows.item.size()))
+        file.complain(path + "/offset", "offsets that do not ascend from 0 to the number of items",
+                      "where each row begins, and the end");
+}
+
+/// A mesh that could be added to a world.
+void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) {
+    const std::string path = "/meshes/nodes";
+    const MeshParts parts = parts_of(meshes, m);
+    const auto count = static_cast<Index>(parts.nodes.size());
+    const auto expect_corners = [&](const char* field, const auto& items) {
+        for (const auto& item : items)
+            for (const Index n : item)
+                if (n < 0 || n >= count)
+                    file.complain(std::string("/meshes/") + field,
+                                  "node " + std::to_string(n) + " of mesh " + std::to_string(m),
+                                  "a node of its " + std::to_string(count));
+    };
+    expect_corners("tetrahedra", parts.tetrahedra);
+    expect_corners("surface", parts.surface);
+    try {
+        if (!parts.tetrahedra.empty())
+            validate({.nodes = {parts.nodes.begin(), parts.nodes.end()},
+                      .tetrahedra = {parts.tetrahedra.begin(), parts.tetrahedra.end()}},
+                     BodySettings{});
+        else
+            validate(
+                SurfaceMesh{{parts.nodes.begin(), parts.nodes.end()}, {parts.surface.begin(), parts.surface.end()}},
+                ColliderSettings{});
+    } catch (const SceneError& error) {
+        file.complain(path, "mesh " + std::to_string(m) + " (" + error.what() + ")", "a mesh that a world takes");
+    }
+}
+
+/// Which tetrahedra the elements at all places of a body cover.
+void check_cover(const MeshParts& parts, std::size_t places, const std::string& body, const Hdf5File& file) {
+    const std::span<const Index> offset = parts.covered_offset;
+    if (offset.size() != places + 1 || offset.front() != 0 || !std::ranges::is_sorted(offset) ||
+        offset.back() != static_cast<Index>(parts.covered_item.size()))
+        file.complain("/meshes/covered_offset", "offsets that do not fit to the elements of " + body,
+                      std::to_string(places + 1) + " that ascend from 0 to the number of items");
+    for (const Index t : parts.covered_item)
+        if (t < 0 || t >= static_cast<Index>(parts.tetrahedra.size()))
+            file.complain("/meshes/covered_item", "tetrahedron " + std::to_string(t) + " of " + body,
+                          "one of its " + std::to_string(parts.tetrahedra.size()));
+}
+
+/// A handle to nothing is of no world.
+template <class HandleType>
+HandleType handle_of(std::uint32_t slot, std::uint32_t generation, std::uint32_t world) {
+    return slot == HandleType{}.slot ? HandleType{} : HandleType{slot, generation, world};
+}
+
+SavedStart start_of(const RunRecord& record) {
+    SavedStart saved;
+    for (const StartOverlap& found : record.start_overlaps) {
+        saved.overlap.push_back({found.first.slot, found.first.generation, found.second.slot, found.second.generation,
+                                 found.collider.slot, found.collider.generation});
+        saved.kind.push_back(found.kind);
+        const Vec3 &d = found.direction, &x = found.place;
+        saved.measure.push_back({found.depth, d.x(), d.y(), d.z(), x.x(), x.y(), x.z()});
+        saved.resolved.push_back(found.resolved);
+        append_text(found.first_name, saved.first_name);
+        append_text(found.second_name, saved.second_name);
+    }
+    for (const StartMove& move : record.start_moves) {
+        saved.moved.push_back({move.body.slot, move.body.generation});
+        append_text(move.name, saved.moved_name);
+        saved.translation.push_back(move.translation);
+    }
+    return saved;
+}
+
+}  // namespace
+
+SavedRows rows_to_save(const WorldState& world) {
+    const Model& model = world.model;
+    SavedRows saved;
+    saved.step_size = model.settings.step_size.value_or(0);
+    saved.world = model.body_map.world();
+    saved.start = start_of(world.record);
+    saved.meshes = meshes_of(model);
+    for (const BodyRecord& record : model.body_records) {
+        saved.body_element.push_back(record.element);
+        saved.body_settled.push_back(record.settled);
+        append_text(record.name, saved.body_name);
+    }
+    for (const ColliderRecord& record : model.collider_records) {
+        saved.shape_kind.push_back(static_cast<ColliderShape>(record.shape.index()));
+        saved.shape_size.push_back(std::visit(SizeOf{}, record.shape));
+        append_text(record.name, saved.collider_name);
+        saved.collider_settled.push_back(record.settled);
+    }
+    const PairTable& pairs = world.cache.pairs;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        append(pairs.candidates[p].span(), saved.candidates);
+        for (const Real until : pairs.asleep_until[p]) saved.asleep_until.push_back(until);
+    }
+    for (const StepLimitReport& entry : world.record.limits.entries()) {
+        saved.limit.push_back(entry.limit);
+        saved.limit_slot.push_back(entry.body.slot);
+        saved.limit_generation.push_back(entry.body.generation);
+        append_text(entry.body_name, saved.limit_name);
+        saved.limit_steps.push_back(entry.steps);
+        saved.limit_tries.push_back(entry.tries);
+        saved.limit_seconds.push_back(entry.seconds);
+    }
+    // of a step that was refused: numbers that may not be finite, and that nobody is shown
+    if (world.scratch.findings.verdict.fault == StepFault::none) saved.contacts = world.scratch.contacts;
+    return saved;
+}
+
+void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
+    const std::size_t bodies = model.bodies.slot.size(), colliders = model.colliders.slot.size();
+    const SavedMeshes& meshes = saved.meshes;
+    const std::size_t count = meshes.nodes.size();
+    expect_rows(file, "/meshes/of_body", meshes.of_body.size(), bodies, "bodies");
+    expect_ragged(file, "/meshes/nodes", meshes.nodes, count, "meshes");
+    expect_ragged(file, "/meshes/tetrahedra", meshes.tetrahedra, count, "meshes");
+    expect_ragged(file, "/meshes/surface", meshes.surface, count, "meshes");
+    expect_ragged(file, "/meshes/covered_offset", meshes.covered_offset, count, "meshes");
+    expect_ragged(file, "/meshes/covered_item", meshes.covered_item, count, "meshes");
+    expect_rows(file, "/records/body_element", saved.body_element.size(), bodies, "bodies");
+    expect_rows(file, "/records/body_settled", saved.body_settled.size(), bodies, "bodies");
+    expect_ragged(file, "/records/body_name", saved.body_name, bodies, "bodies");
+    if (saved.world == 0) file.complain("/handles/world", "0", "the number of a world");
+    model.set_world(saved.world);
+    for (std::size_t m = 0; m < count; ++m) check_mesh(meshes, m, file);
+
+    model.nodes.rest_position.resize(model.nodes.position.size());
+    for (std::size_t b = 0; b < bodies; ++b) {
+        const std::string body = "body " + std::to_string(b);
+        const Index m = meshes.of_body[b];
+        if (m < 0 || m >= static_cast<Index>(count))
+            file.complain("/meshes/of_body", std::to_string(m) + " of " + body,
+                          "a row of " + std::to_string(count) + " meshes");
+        const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(m));
+        const Range nodes = model.bodies.nodes[b];
+        const bool deforms = model.bodies.kind[b] == BodyKind::deformable;
+        if (parts.nodes.size() != static_cast<std::size_t>(nodes.size()) || deforms == parts.tetrahedra.empty() ||
+            static_cast<Index>(parts.tetrahedra.size()) != model.bodies.tetrahedron_count[b])
+            file.complain("/meshes/of_body", "a mesh of another size for " + body, "one that fits to /bodies");
+        check_cover(parts, static_cast<std::size_t>(model.bodies.blocks[b].size()) * element_lanes, body, file);
+        std::ranges::copy(parts.nodes, model.nodes.rest_position.begin() + nodes.begin);
+        BodyRecord& record = model.body_records.emplace_back();
+        record.name = text_of(saved.body_name[b]);
+        record.element = saved.body_element[b];
+        record.settled = saved.body_settled[b] != 0;
+        record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
+        record.surface.assign(parts.surface.begin(), parts.surface.end());
+        for (const Index at : parts.covered_offset) record.element_tetrahedra.offset.push_back(at);
+        for (const Index t : parts.covered_item) record.element_tetrahedra.item.push_back(t);
+    }
+
+    expect_rows(file, "/records/shape_kind", saved.shape_kind.size(), colliders, "colliders");
+    expect_rows(file, "/records/shape_size", saved.shape_size.size(), colliders, "colliders");
+    expect_ragged(file, "/records/collider_name", saved.collider_name, colliders, "colliders");
+    expect_rows(file, "/records/collider_settled", saved.collider_settled.size(), colliders, "colliders");
+    for (std::size_t c = 0; c < colliders; ++c) {
+        SurfaceMesh mesh;
+        const Index body = model.colliders.body[c];
+        if ((body == no_index) == (saved.shape_kind[c] == ColliderShape::mesh) ||
+            model.colliders.geometry[c].shape != saved.shape_kind[c])
+            file.complain("/records/shape_kind", "another shape of collider " + std::to_string(c),
+                          "that of /colliders/geometry/shape");
+        if (body != no_index) {
+            const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(meshes.of_body[body]));
+            mesh = {{parts.nodes.begin(), parts.nodes.end()}, {parts.surface.begin(), parts.surface.end()}};
+        }
+        Shape shape = shape_of(saved.shape_kind[c], saved.shape_size[c], mesh);
+        try {
+            validate(shape, ColliderSettings{});
+        } catch (const SceneError& error) {
+            file.complain("/records/shape_size", "a shape of collider " + std::to_string(c) + " (" + error.what() + ")",
+                          "one that a world takes");
+        }
+        model.collider_records.push_back(
+            {text_of(saved.collider_name[c]), std::move(shape), saved.collider_settled[c] != 0});
+    }
+}
+
+void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs) {
+    expect_ragged(file, "/pairs/candidates", saved.candidates, pairs.size(), "pairs");
+    expect_rows(file, "/pairs/candidates/asleep_until", saved.asleep_until.size(), saved.candidates.item.size(),
+                "candidates");
+    pairs.candidates.resize(pairs.size());
+    pairs.asleep_until.resize(pairs.size());
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const Index begin = saved.candidates.offset[p];
+        for (const Candidate& candidate : saved.candidates[p]) {
+            const auto row = pairs.asleep_until[p].size();
+            pairs.candidates[p].push_back(candidate);
+            pairs.asleep_until[p].push_back(saved.asleep_until[static_cast<std::size_t>(begin) + row]);
+        }
+    }
+    check_candidates(file, model, pairs);
+}
+
+void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits) {
+    const std::size_t count = saved.limit.size();
+    constexpr const char* of = "limits";
+    expect_rows(file, "/run/limits/slot", saved.limit_slot.size(), count, of);
+    expect_rows(file, "/run/limits/generation", saved.limit_generation.size(), count, of);
+    expect_ragged(file, "/run/limits/name", saved.limit_name, count, of);
+    expect_rows(file, "/run/limits/steps", saved.limit_steps.size(), count, of);
+    expect_rows(file, "/run/limits/tries", saved.limit_tries.size(), count, of);
+    expect_rows(file, "/run/limits/seconds", saved.limit_seconds.size(), count, of);
+    std::vector<StepLimitReport> entries(count);
+    for (std::size_t i = 0; i < count; ++i)
+        entries[i] = {.limit = saved.limit[i],
+                      .body = handle_of<BodyHandle>(saved.limit_slot[i], saved.limit_generation[i], saved.world),
+                      .body_name = text_of(saved.limit_name[i]),
+                      .steps = saved.limit_steps[i],
+                      .tries = saved.limit_tries[i],
+                      .seconds = saved.limit_seconds[i]};
+    limits.restore(std::move(entries));
+}
+
+void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record) {
+    const SavedStart& start = saved.start;
+    const std::size_t overlaps = start.overlap.size(), moves = start.moved.size();
+    expect_rows(file, "/run/start/kind", start.kind.size(), overlaps, "overlaps");
+    expect_rows(file, "/run/start/measure", start.measure.size(), overlaps, "overlaps");
+    expect_rows(file, "/run/start/resolved", start.resolved.size(), overlaps, "overlaps");
+    expect_ragged(file, "/run/start/first_name", start.first_name, overlaps, "overlaps");
+    expect_ragged(file, "/run/start/second_name", start.second_name, overlaps, "overlaps");
+    expect_ragged(file, "/run/start/moved_name", start.moved_name, moves, "moves");
+    expect_rows(file, "/run/start/translation", start.translation.size(), moves, "moves");
+    for (std::size_t i = 0; i < overlaps; ++i) {
+        const auto& of = start.overlap[i];
+        const auto& m = start.measure[i];
+        record.start_overlaps.push_back({.first = handle_of<BodyHandle>(of[0], of[1], saved.world),
+                                         .second = handle_of<BodyHandle>(of[2], of[3], saved.world),
+                                         .collider = handle_of<ColliderHandle>(of[4], of[5], saved.world),
+                                         .first_name = text_of(start.first_name[i]),
+                                         .second_name = text_of(start.second_name[i]),
+                                         .kind = start.kind[i],
+                                         .depth = m[0],
+                                         .direction = {m[1], m[2], m[3]},
+                                         .place = {m[4], m[5], m[6]},
+                                         .resolved = start.resolved[i] != 0});
+    }
+    for (std::size_t i = 0; i < moves; ++i)
+        record.start_moves.push_back({.body = handle_of<BodyHandle>(start.moved[i][0], start.moved[i][1], saved.world),
+                                      .name = text_of(start.moved_name[i]),
+                                      .translation = start.translation[i]});
+}
+
+}  // namespace skerry

@@ -1,0 +1,185 @@
+// Saved worlds that are damaged, or something else: a message that names the file, never a crash, never another world.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "components/split_mix.h"
+#include "engine/world/save/world_file.h"
+#include "skerry/problem.h"
+#include "tests/support/lively_scene.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/world_file_damage.h"
+
+using namespace skerry;
+using namespace skerry::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A world with something in every table.
+World full_world() {
+    World world = lively_scene({});
+    REQUIRE(world.advance(0.21).ok());
+    REQUIRE(world.contacts().size() > 0);
+    return world;
+}
+
+struct SavedFile {
+    TemporaryFolder folder;
+    std::string path;
+    std::vector<char> bytes;
+
+    explicit SavedFile(const World& world) : path((folder.path() / "world.h5").string()) {
+        world.save(path);
+        std::ifstream in(path, std::ios::binary);
+        bytes.assign(std::istreambuf_iterator<char>(in), {});
+    }
+    void write(std::span<const char> content) const {
+        std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
+    }
+    /// What World::load says against the content.
+    std::string refusal(std::span<const char> content) const {
+        write(content);
+        try {
+            World::load(path);
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return {};
+    }
+};
+
+std::span<const char> text(const std::string& content) {
+    return content;
+}
+
+}  // namespace
+
+TEST_CASE("a saved world that was cut off anywhere is refused by its size", "[unit]") {
+    const SavedFile saved(full_world());
+    SplitMix random(1);
+    for (int i = 0; i < 200; ++i) {
+        const std::size_t size = random.next() % saved.bytes.size();
+        const std::string refusal = saved.refusal(std::span(saved.bytes).first(size));
+        INFO(refusal);
+        CHECK(refusal.starts_with(saved.path + ": found "));
+        if (size >= head_bytes) {
+            CHECK_THAT(refusal, Contains(std::to_string(size) + " bytes"));
+            CHECK_THAT(refusal, Contains(std::to_string(saved.bytes.size())));
+        }
+    }
+    std::vector<char> longer = saved.bytes;
+    longer.push_back(0);
+    CHECK_THAT(saved.refusal(longer), Contains("something follows"));
+    CHECK(saved.refusal(saved.bytes).empty());
+}
+
+TEST_CASE("a saved world of which any bit was turned over is refused", "[unit]") {
+    const SavedFile saved(full_world());
+    SplitMix random(2);
+    std::vector<char> bytes = saved.bytes;
+    const auto turn_over = [&](std::size_t at, int bit) {
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << bit));
+        const std::string refusal = saved.refusal(bytes);
+        CAPTURE(at, bit);
+        CHECK(refusal.starts_with(saved.path + ": found "));
+        bytes[at] = saved.bytes[at];
+    };
+    for (std::size_t at = 0; at < head_bytes; at += 3) turn_over(at, static_cast<int>(at % 8));
+    for (int i = 0; i < 300; ++i) turn_over(random.next() % bytes.size(), static_cast<int>(random.next() % 8));
+    CHECK(saved.refusal(bytes).empty());
+}
+
+TEST_CASE("a file of another kind, or of another version, is refused by what it is", "[unit]") {
+    const SavedFile saved(full_world());
+    CHECK_THAT(saved.refusal(text("")), Contains("found a file of another kind, expected a world that Skerry saved"));
+    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("a file of another kind"));
+    CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(head_bytes)), Contains("a file of another kind"));
+    std::vector<char> later = saved.bytes;
+    const std::string name = "version 1";
+    *(std::search(later.begin(), later.end(), name.begin(), name.end()) + 8) = '2';
+    CHECK_THAT(saved.refusal(later), Contains("found version 2, expected version 1"));
+    CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("something that is no file"));
+    CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
+    // HDF5, with the right head, but not what is expected there
+    ContactProblem problem;
+    problem.q = {Vec3(0, 0, -1)};
+    problem.mu = {0.5};
+    problem.row_offset = {0, 1};
+    problem.column = {0};
+    problem.block = {Mat3::Identity()};
+    const auto file = saved.folder.path() / "problem.hdf5";
+    write_problem(problem, file);
+    std::ifstream in(file, std::ios::binary);
+    std::vector<char> foreign(head_bytes, 0);
+    foreign.insert(foreign.end(), std::istreambuf_iterator<char>(in), {});
+    renew_head(foreign);
+    CHECK_THAT(saved.refusal(foreign), Contains("/settings: gravity: found nothing, expected rows of 3 reals"));
+}
+
+TEST_CASE(
+    "wrong values in a saved world whose checksum is right are refused, or change nothing that the next step sees",
+    "[unit][slow]") {
+    const World world = full_world();
+    const SavedFile saved(world);
+    const std::vector<ValuesInFile> sets = values_in(saved.path);
+    REQUIRE(sets.size() > 150);
+    int refused = 0, named = 0, taken = 0;
+    SplitMix random(3);
+    for (const ValuesInFile& values : sets)
+        for (int i = 0; i < 4; ++i) {
+            std::vector<char> bytes = saved.bytes;
+            change_value(values, random.next(), static_cast<unsigned>(random.next() % 10), bytes);
+            renew_head(bytes);
+            CAPTURE(values.path);
+            const std::string refusal = saved.refusal(bytes);
+            const std::size_t slash = values.path.rfind('/');
+            refused += !refusal.empty();
+            named += refusal.find(values.path.substr(slash + 1)) != std::string::npos;
+            if (!refusal.empty()) {
+                CHECK(refusal.starts_with(saved.path + ": "));
+                continue;
+            }
+            ++taken;
+            CHECK(World::load(saved.path).state_hash() == world.state_hash());
+        }
+    CHECK(refused > taken);
+    CHECK(named > 100);
+}
+
+TEST_CASE("a saved world in which values do not fit together is refused by name", "[unit]") {
+    const SavedFile saved(full_world());
+    const std::vector<ValuesInFile> sets = values_in(saved.path);
+    const auto refusal = [&](const std::string& path, std::size_t place, unsigned choice) {
+        const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
+        REQUIRE(set != sets.end());
+        std::vector<char> bytes = saved.bytes;
+        change_value(*set, place, choice, bytes);
+        renew_head(bytes);
+        return saved.refusal(bytes);
+    };
+    constexpr unsigned huge = 7, none = 7, infinite = 8, minus_one = 8;
+    CHECK_THAT(refusal("/nodes/position", 4, none), Contains("/nodes: position: found nan at row 1, expected finite"));
+    CHECK_THAT(refusal("/nodes/velocity", 0, infinite), Contains("/nodes: velocity: found inf at row 0"));
+    CHECK_THAT(refusal("/elements/material", 3, huge), Contains("/elements: material: found 2147483647 at row 3"));
+    CHECK_THAT(refusal("/element_nodes/node", 9, minus_one), Contains("/element_nodes: node: found node -1 at row 1"));
+    CHECK_THAT(refusal("/bodies/nodes", 1, huge), Contains("at row 1, expected a range that begins at 2147483647"));
+    CHECK_THAT(refusal("/bodies/kind", 0, 3), Contains("/bodies: kind: found 3 at row 0, expected 0 to 1"));
+    CHECK_THAT(refusal("/handles/bodies/row", 0, huge), Contains("/handles/bodies: row: found 2147483647"));
+    CHECK_THAT(refusal("/meshes/tetrahedra/item", 0, huge), Contains("/meshes: tetrahedra: found node 2147483647"));
+    CHECK_THAT(refusal("/pairs/candidates/first", 0, huge), Contains("/pairs/candidates: first: found"));
+    CHECK_THAT(refusal("/last_step/contacts/stencil/node", 0, huge),
+               Contains("/last_step/contacts/stencil: node: found"));
+    CHECK_THAT(refusal("/settings/method", 0, 5), Contains("/settings: method: found 255"));
+    CHECK_THAT(refusal("/settings/tolerance", 0, 1), Contains("tolerance: found -1"));
+    CHECK_THAT(refusal("/materials/young_modulus", 0, 2), Contains("state_hash"));
+}
+
+TEST_CASE("a world that cannot be written stays, and so does the file before it", "[unit]") {
+    const World world = full_world();
+    const SavedFile saved(world);
+    std::filesystem::create_directory(saved.path + ".part");  // where the new file would be written
+    CHECK_THROWS_WITH(world.save(saved.path), Contains(saved.path));
+    CHECK(World::load(saved.path).state_hash() == world.state_hash());
+    CHECK_THROWS_WITH(world.save(saved.folder.path()), Contains("a folder"));
+}
