@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "engine/problem/check_arrays.h"
 #include "engine/hdf5/hdf5_image.h"
+#include "engine/problem/check_arrays.h"
 #include "readers.h"
 #include "skerry/problem.h"
 #include "tests/support/temporary_folder.h"

@@ -5,7 +5,7 @@
 namespace skerry::test {
 
 std::span<const FileReaderCase> all_readers() {
-    static constexpr std::array<FileReaderCase, 10> readers{{{"gmsh", read_gmsh_bytes},
+    static constexpr std::array<FileReaderCase, 12> readers{{{"gmsh", read_gmsh_bytes},
                                                              {"vtk", read_vtk_bytes},
                                                              {"obj", read_obj_bytes},
                                                              {"stl", read_stl_bytes},
@@ -14,7 +14,9 @@ std::span<const FileReaderCase> all_readers() {
                                                              {"collider", read_collider_bytes},
                                                              {"scene", read_scene_bytes},
                                                              {"problem", read_problem_bytes},
-                                                             {"problem_values", read_problem_values_bytes}}};
+                                                             {"problem_values", read_problem_values_bytes},
+                                                             {"saved", read_saved_bytes},
+                                                             {"saved_values", read_saved_values_bytes}}};
     return readers;
 }
 

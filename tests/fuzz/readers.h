@@ -24,7 +24,7 @@ struct FileReaderCase {
 };
 /// gmsh, vtk, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj), scene,
 /// problem (FCLIB as bytes of HDF5), problem_values (FCLIB in whole HDF5 files, so that what stands in them is
-/// reached).
+/// reached), saved (World::load), saved_values (saved worlds that are whole, with any values in them, moved by a step).
 std::span<const FileReaderCase> all_readers();
 
 /// Ends the program when something that was read is not valid.
@@ -48,6 +48,11 @@ void read_problem_bytes(FileBytes bytes);
 /// A sample problem, changed as the bytes say, four for each change.
 void read_problem_values_bytes(FileBytes bytes);
 
+void read_saved_bytes(FileBytes bytes);
+/// A saved world, changed as the bytes say, five for each change.
+void read_saved_values_bytes(FileBytes bytes);
+
+std::string sample_saved_world();
 /// A local and a global problem in HDF5 files, as read_problem_values starts from.
 std::vector<std::string> sample_problems();
 

@@ -5,8 +5,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "components/split_mix.h"
 #include "readers.h"
 
+using skerry::SplitMix;
 using namespace skerry::test;
 
 namespace {
@@ -32,6 +34,16 @@ TEST_CASE("every file that a fuzzer has found is read or refused", "[unit]") {
             const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
             REQUIRE_NOTHROW(reader.read({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
         }
+}
+
+TEST_CASE("saved worlds with any values in them are refused, or moved by a step", "[unit][slow]") {
+    SplitMix random(5);
+    for (int i = 0; i < 1500; ++i) {
+        std::vector<std::uint8_t> bytes(1 + 5 * (1 + random.next() % 3));
+        for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.next());
+        CAPTURE(i);
+        REQUIRE_NOTHROW(read_saved_values_bytes(bytes));
+    }
 }
 
 TEST_CASE("found cases lie in folders named after readers", "[unit]") {

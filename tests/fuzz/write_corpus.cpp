@@ -61,5 +61,8 @@ int main(int argc, char** argv) {
     for (const std::string& problem : sample_problems()) put(folder / "problem" / std::to_string(number++), problem);
     put(folder / "problem_values" / "local", std::string(1, '\0'));
     put(folder / "problem_values" / "global", std::string(1, '\1'));
+    put(folder / "saved" / "world", sample_saved_world());
+    put(folder / "saved_values" / "even", std::string(1, '\0'));
+    put(folder / "saved_values" / "multirate", std::string(1, '\1'));
     return 0;
 }

@@ -22,7 +22,7 @@ int level_of_body(const Model& model, std::size_t b, Real h) {
     if (model.bodies.tetrahedron_count[b] == 0) return 0;
     const Real ratio = model.bodies.stable_step[b] * model.settings.step_safety / h;
     constexpr Real rounding = 1e-9;
-    return ratio > 1 ? std::min(most, static_cast<int>(std::log2(ratio * (1 + rounding)))) : 0;
+    return ratio > 1 ? static_cast<int>(std::min<Real>(most, std::log2(ratio * (1 + rounding)))) : 0;
 }
 
 /// Gives bodies their levels for a cycle of steps of length h, of which `steps` are left.

@@ -1,0 +1,110 @@
+// Saved worlds: as bytes, and whole files with wrong values in them, which are then moved by a step.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "engine/world/save/world_file.h"
+#include "readers.h"
+#include "skerry/world.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/world_file_damage.h"
+
+namespace skerry::test {
+
+namespace {
+
+const TemporaryFolder& folder() {
+    static const TemporaryFolder made;
+    return made;
+}
+
+/// Something in every table that can be small: two kinds of elements, contacts, a held node, a mesh collider, a script.
+World small_world(bool multirate) {
+    World world({.multirate = multirate, .backend = Backend::serial, .threads = 1, .sleep_speed = 0.01});
+    const auto soft = world.add_material({.young_modulus = 2e4});
+    const auto stiff = world.add_material({.young_modulus = 2e5, .model = MaterialModel::corotational});
+    Mesh box = mesh::box({0.1, 0.1, 0.1}, {1, 1, 2});
+    for (std::size_t t = 0; t < box.tetrahedra.size(); ++t) box.label.push_back(t < 3 ? 1 : 0);
+    world.add_collider(Plane{});
+    SurfaceMesh lid;
+    lid.nodes = {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+    lid.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    world.add_collider(lid, {.position = {0.15, 0, 0.01}, .motion = {.velocity = {-0.05, 0, 0}}});
+    world.add_collider(Capsule{0.02, 0.1},
+                       {.position = {-0.08, 0, 0.05},
+                        .motion = {.keys = {{0, {-0.08, 0, 0.05}, {0, 0, 0}}, {1, {-0.07, 0, 0.05}, {0, 0.5, 0}}}}});
+    const auto lower = world.add_body(box, {.material = soft, .materials = {{1, stiff}}, .position = {0, 0, 0.051}});
+    world.add_body(box,
+                   {.material = soft, .materials = {{1, stiff}}, .position = {0.01, 0, 0.153}, .self_contact = true});
+    world.attach(lower, std::vector<Index>{0});
+    world.advance(0.02);
+    return world;
+}
+
+struct Sample {
+    std::vector<char> bytes;
+    std::vector<ValuesInFile> sets;
+
+    explicit Sample(bool multirate) {
+        const auto file = folder().path() / "sample.skerry";
+        small_world(multirate).save(file);
+        std::ifstream in(file, std::ios::binary);
+        bytes.assign(std::istreambuf_iterator<char>(in), {});
+        sets = values_in(file.string());
+    }
+};
+
+const Sample& sample(bool multirate) {
+    static const std::array<Sample, 2> samples{Sample(false), Sample(true)};
+    return samples[multirate ? 1 : 0];
+}
+
+std::string write(std::span<const char> bytes) {
+    return folder().write("world.skerry", {bytes.data(), bytes.size()}).string();
+}
+
+/// One step, or a refusal of it.
+void move(World& world) {
+    const Settings& settings = world.settings();
+    constexpr int few_sweeps = 1000;
+    if (settings.max_iterations > few_sweeps || !(world.stable_step() > 0)) return;
+    const Real step = std::min({world.stable_step() * settings.step_safety, settings.step_size.value_or(1), 1.0});
+    if (!world.advance(step).ok()) return;
+    for (const BodyHandle body : world.bodies())
+        for (const Vec3& x : world.positions(body)) expect_valid(x.allFinite(), "a position that is not finite");
+}
+
+}  // namespace
+
+void read_saved_bytes(FileBytes bytes) {
+    const std::string file = write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    try {
+        World::load(file);
+    } catch (const SceneError&) {
+    }
+}
+
+void read_saved_values_bytes(FileBytes bytes) {
+    if (bytes.empty()) return;
+    const Sample& start = sample(bytes[0] % 2 != 0);
+    std::vector<char> file = start.bytes;
+    constexpr std::size_t code_bytes = 5;
+    for (FileBytes rest = bytes.subspan(1); rest.size() >= code_bytes; rest = rest.subspan(code_bytes)) {
+        const std::size_t set = rest[0] + 256u * rest[1], place = rest[2] + 256u * rest[3];
+        change_value(start.sets[set % start.sets.size()], place, rest[4], file);
+    }
+    renew_head(file);
+    try {
+        World world = load_world(write(file), {}, false).world;
+        move(world);
+        world.save(folder().path() / "again.skerry");
+    } catch (const SceneError&) {
+    }
+}
+
+std::string sample_saved_world() {
+    return {sample(false).bytes.begin(), sample(false).bytes.end()};
+}
+
+}  // namespace skerry::test
