@@ -1,6 +1,7 @@
 // A world that was copied, or saved and loaded, goes on as the one that was not: the same bits in all that is state,
 // and the same report, whoever runs it.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -107,6 +108,7 @@ void check_restarts(const Course& course, int moments, int on, std::uint64_t see
         const Backend backend = backends[static_cast<std::size_t>(restart) % backends.size()];
         World loaded = World::load(file(call), {.backend = backend, .threads = 1 + restart % 4});
         ++restart;
+        if (call > 0) check_same_report(loaded.report(), report[static_cast<std::size_t>(call) - 1]);
         const int end = restart == 1 ? course.calls : std::min(course.calls, call + on);
         for (int k = call; k < end; ++k) {
             REQUIRE(loaded.advance(course.call).ok());
