@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/hdf5/hdf5_image.h"
 #include "engine/output/write_file.h"
 #include "engine/problem/check_arrays.h"
-#include "engine/hdf5/hdf5_image.h"
 #include "skerry/problem.h"
 
 namespace skerry {
