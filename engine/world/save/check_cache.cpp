@@ -34,8 +34,9 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
         file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one, or none");
     if (!warm.key.empty() && warm.step.empty())
         file.complain("/warm_start/step", "nothing", "the step of the impulses");
-    for (const Real step : warm.step)
-        if (!(step > 0)) file.complain("/warm_start/step", std::to_string(step), "a time > 0 (s)");
+    for (const Real step : warm.step)  // in a step smaller numbers count as zero
+        if (!(step >= std::numeric_limits<Real>::min()))
+            file.complain("/warm_start/step", std::to_string(step), "a time > 0 (s)");
     expect_ascending(file, "/warm_start/key", warm.key);
 
     PairTable& pairs = cache.pairs;
