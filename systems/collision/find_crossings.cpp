@@ -184,7 +184,8 @@ Index extend_lists(const CollisionInputs& inputs, Real h, PairTable& pairs, Inde
             pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
         const PairReach reach = reach_of(inputs, pairs, p, h);
         if (reach.travel_bound < pairs.valid_until[p] + drifted) continue;
-        if (!(reach.motion > -pairs.longer_motion[p]) || !std::isfinite(reach.motion)) {
+        const bool made_for_it = pairs.fresh[p] && reach.motion <= -pairs.longer_motion[p];
+        if (made_for_it || !std::isfinite(reach.motion)) {
             ++hopeless;
             continue;
         }
