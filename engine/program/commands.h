@@ -32,7 +32,7 @@ struct EnumNames<ProblemsOf> {
 };
 
 struct RunOptions {
-    std::filesystem::path scene;
+    std::filesystem::path scene;  // may be empty with `restart`, which names it
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
@@ -40,6 +40,9 @@ struct RunOptions {
     ProblemsOf problems_of = ProblemsOf::step;
     std::optional<int> problems_every;  // steps
     bool quiet = false;
+    std::filesystem::path checkpoint;  // empty: not written
+    std::optional<Real> every;         // s, simulated, between two checkpoints
+    std::filesystem::path restart;     // a checkpoint to go on from; empty: from the scene's beginning
 };
 int run(const RunOptions& options);
 

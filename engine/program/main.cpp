@@ -29,7 +29,14 @@ const char* const run_examples = R"(Examples:
   skerry run scenes/bucket.json --contact-regions global --stats global.json     one region instead of many, to compare
   skerry run scenes/table.json --page table.html --frames-per-second 30
   skerry run scenes/bucket.json --export-problems problems --export-every 100    then: skerry solve problems/FILE
-  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      figures alone)";
+  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      figures alone
+  skerry run scenes/bucket.json --checkpoint bucket.skerry --every 0.5           then, should it be killed:
+  skerry run --restart bucket.skerry --checkpoint bucket.skerry --every 0.5
+
+--restart takes scene, settings, length and frames from the checkpoint; SCENE is needed only where its file was moved.
+--seconds may ask for more, --threads may differ. --stats covers the whole run, but for seconds
+of stages; probes go on; --out goes on with the numbers of frames, and lists those of the first part if it is the same
+folder; --page and --trace begin at the checkpoint.)";
 
 const char* const inspect_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality, faults, and which tetrahedra bound the step
@@ -88,7 +95,8 @@ CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Re
 void add_run(CLI::App& app, RunOptions& options) {
     CLI::App& command = *app.add_subcommand("run", "Simulate a scene");
     command.footer(run_examples);
-    command.add_option("SCENE", options.scene, "a scene in JSON; `skerry schema` prints what it may hold")->required();
+    CLI::Option* scene =
+        command.add_option("SCENE", options.scene, "a scene in JSON; `skerry schema` prints what it may hold");
     add_number(command, "--seconds", options.seconds, "simulated time [s]; by default what the scene says");
     command
         .add_option_function<int>(
@@ -130,6 +138,21 @@ void add_run(CLI::App& app, RunOptions& options) {
                                "how contacts are grouped");
     command.add_flag("--quiet", options.quiet,
                      "no progress, no summary; what speaks against relying on the run goes to standard error");
+    CLI::Option* checkpoint = command.add_option(
+        "--checkpoint", options.checkpoint,
+        "file that --restart goes on from, replaced as a whole while the run goes on, and at its end");
+    add_number(command, "--every", options.every,
+               "simulated time between checkpoints [s], by default a tenth of the run; each is written at the end of a "
+               "frame, or of a sample of the probes")
+        ->needs(checkpoint);
+    CLI::Option* restart = command.add_option(
+        "--restart", options.restart, "a checkpoint: go on from it, with the bits of the run that was not stopped");
+    for (const char* fixed : {"--frames-per-second", "--step", "--method", "--friction", "--tolerance", "--relaxation",
+                              "--element", "--contact-regions"})
+        restart->excludes(command.get_option(fixed));
+    command.callback([scene, restart] {
+        if (scene->count() == 0 && restart->count() == 0) throw CLI::RequiredError("SCENE");
+    });
 }
 
 void add_solve(CLI::App& app, SolveOptions& options) {

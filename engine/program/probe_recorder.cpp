@@ -1,6 +1,8 @@
 #include "engine/program/probe_recorder.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 
 #include "systems/dynamics/elements/element_energy.h"
 
@@ -78,6 +80,44 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
     if (std::count(states.begin(), states.end(), State::slide) == 1)
         records_[static_cast<std::size_t>(std::find(states.begin(), states.end(), State::slide) - states.begin())]
             .slide_alone_time += seconds;
+}
+
+Json ProbeRecorder::saved() const {
+    Json all = Json::array();
+    for (std::size_t p = 0; p < records_.size(); ++p) {
+        Json probe = to_json(records_[p]);
+        probe["name"] = records_[p].name;
+        probe["last_closed"] = static_cast<int>(tracked_[p].last_closed);
+        all.push_back(std::move(probe));
+    }
+    return all;
+}
+
+void ProbeRecorder::go_on(const Json& saved) {
+    if (saved.size() != records_.size()) throw std::out_of_range("another number of probes");
+    for (std::size_t p = 0; p < records_.size(); ++p) {
+        const Json& probe = saved.at(p);
+        if (probe.at("name").get<std::string>() != records_[p].name) throw std::out_of_range("other probes");
+        from_json(probe, records_[p]);
+        tracked_[p].last_closed = static_cast<State>(probe.at("last_closed").get<int>());
+    }
+}
+
+void from_json(const Json& json, ProbeRecord& record) {
+    json.at("stick_time").get_to(record.stick_time);
+    json.at("slide_time").get_to(record.slide_time);
+    json.at("open_time").get_to(record.open_time);
+    json.at("slide_alone_time").get_to(record.slide_alone_time);
+    json.at("changes").get_to(record.changes);
+    json.at("max_slip").get_to(record.max_slip);
+    json.at("slip_distance").get_to(record.slip_distance);
+    json.at("max_von_mises").get_to(record.max_von_mises);
+    const Json& series = json.at("series");
+    series.at("time").get_to(record.time);
+    series.at("sticking").get_to(record.sticking);
+    series.at("sliding").get_to(record.sliding);
+    series.at("slip").get_to(record.slip);
+    series.at("von_mises").get_to(record.von_mises);
 }
 
 Json to_json(const ProbeRecord& record) {

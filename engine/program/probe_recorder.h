@@ -30,6 +30,10 @@ public:
     /// stress.
     void sample(const World& world, Real seconds);
     const std::vector<ProbeRecord>& records() const { return records_; }
+    /// All that a recorder of the same probes needs to go on, and going on from it. Throws nlohmann's exceptions, and
+    /// std::out_of_range for other probes.
+    Json saved() const;
+    void go_on(const Json& saved);
 
 private:
     enum class State { open, stick, slide };
@@ -44,5 +48,7 @@ private:
 };
 
 Json to_json(const ProbeRecord& record);
+/// All but the name.
+void from_json(const Json& json, ProbeRecord& record);
 
 }  // namespace skerry

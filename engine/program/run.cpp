@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <csignal>
 #include <iostream>
+#include <optional>
 #include <ostream>
+#include <utility>
 
 #include "engine/mesh/manifold_fault.h"
+#include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
 #include "engine/program/course.h"
 #include "engine/program/number_text.h"
@@ -19,7 +22,8 @@ namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
 
-/// Ctrl-C and polite kills end the run between two steps; a second one ends it at once.
+/// Ctrl-C and polite kills end the run between two steps; a second one ends it at once. A file that would get too large
+/// is an error like any other.
 class SignalGuard {
 public:
     SignalGuard() {
@@ -28,59 +32,119 @@ public:
         action.sa_flags = static_cast<int>(SA_RESETHAND);
         sigaction(SIGINT, &action, &old_interrupt_);
         sigaction(SIGTERM, &action, &old_terminate_);
+        action.sa_handler = SIG_IGN;
+        sigaction(SIGXFSZ, &action, &old_too_large_);
     }
     ~SignalGuard() {
         sigaction(SIGINT, &old_interrupt_, nullptr);
         sigaction(SIGTERM, &old_terminate_, nullptr);
+        sigaction(SIGXFSZ, &old_too_large_, nullptr);
     }
     SignalGuard(const SignalGuard&) = delete;
     SignalGuard& operator=(const SignalGuard&) = delete;
 
 private:
-    struct sigaction old_interrupt_, old_terminate_;
+    struct sigaction old_interrupt_, old_terminate_, old_too_large_;
 };
 
 const char* const advice =
     "on the command line: a smaller --step; `skerry inspect` shows the stable step of every body and what overlaps";
 
-/// Runs frame after frame. What went wrong is in result.status.
-void run_frames(Scene& scene, const Course& course, RunOutputs& outputs, Progress& progress, RunResult& result) {
-    const SignalGuard guard;
-    ProbeRecorder probes(scene);
-    World& world = scene.world;
-    std::uint64_t steps = 0;
-    const auto go_on = [&](const StepReport& so_far) {
-        progress.show(world.time(), steps + static_cast<std::uint64_t>(so_far.steps));
-        return caught_signal == 0;
-    };
-    const auto add_frame = [&] {
-        outputs.add_frame(world);
-        result.peak_kinetic_energy = std::max(result.peak_kinetic_energy, world.energy().kinetic);
-        if (result.status == "ok" && outputs.all_failed())
-            result.status = "stopped at " + short_number(world.time(), 6) + " s: no output is left that can be written";
-    };
-    add_frame();
-    for (long frame = 0; frame < course.frames() && result.status == "ok"; ++frame) {
-        const Real begin = world.time();
-        const double duration = course.length_of(frame) / course.samples;
-        for (int sample = 0; sample < course.samples && result.status == "ok"; ++sample) {
-            const Stopwatch watch;
-            const Real start = world.time();
-            const StepReport step = world.advance(duration, go_on);
-            result.seconds_wall += watch.seconds();
-            steps += static_cast<std::uint64_t>(step.steps);
-            if (step.status == StepStatus::stopped)
-                result.status = "stopped by a signal at " + short_number(world.time(), 6) + " s";
-            else if (!step.ok())
-                result.status = step.message() + " (" + advice + ")";
-            const Real sampled = step.ok() ? duration : world.time() - start;
-            if (sampled > 0) probes.sample(world, sampled);
+/// Runs frame after frame, from where `memory` is. What went wrong is in result.status. A run that is stopped within a
+/// frame leaves the checkpoint before: calls of advance are cut into equal steps, and the rest of one is another call.
+class FrameLoop {
+public:
+    FrameLoop(Scene& scene, const Course& course, RunMemory memory, RunOutputs& outputs, CheckpointWriter& checkpoints,
+              Progress& progress, RunResult& result)
+        : world_(scene.world),
+          course_(course),
+          memory_(std::move(memory)),
+          outputs_(outputs),
+          checkpoints_(checkpoints),
+          progress_(progress),
+          result_(result),
+          probes_(scene) {}
+
+    void run() {
+        const SignalGuard guard;
+        begin();
+        const long first = memory_.frame;
+        const double planned = std::exchange(memory_.seconds, course_.seconds);
+        int sample = memory_.sample;
+        for (long frame = first; frame < course_.frames() && result_.status == "ok"; ++frame, sample = 0) {
+            const double length = course_.length_of(frame);
+            double duration = length / course_.samples;
+            if (frame == first && cut_short(course_, frame, planned))
+                duration = (static_cast<double>(frame) * course_.frame_step + length - world_.time()) /
+                           (course_.samples - sample);
+            const Real begin = world_.time();
+            for (; sample < course_.samples && result_.status == "ok"; ++sample) {
+                if (sample > 0 && checkpoints_.due(world_.time())) write_checkpoint(frame, sample);
+                advance(duration);
+            }
+            if (result_.status != "ok" && !(world_.time() > begin)) break;  // the frame before shows all there is
+            add_frame();
+            const bool whole = length >= (1 - Course::slack) * course_.frame_step;
+            const bool due = frame + 1 == course_.frames() || checkpoints_.due(world_.time());
+            if (result_.status == "ok" && due) write_checkpoint(whole ? frame + 1 : frame, 0);
         }
-        if (result.status != "ok" && !(world.time() > begin)) break;  // the frame before shows all there is
-        add_frame();
+        result_.checkpoints = checkpoints_.written();
+        result_.checkpoints_failed = checkpoints_.failed();
+        result_.probes = probes_.records();
     }
-    result.probes = probes.records();
-}
+
+private:
+    void begin() {
+        result_.peak_kinetic_energy = memory_.peak_kinetic_energy;
+        if (!result_.restarted_at) return add_frame();
+        probes_.go_on(memory_.probes);
+        outputs_.go_on(world_, memory_);
+    }
+    void add_frame() {
+        outputs_.add_frame(world_);
+        result_.peak_kinetic_energy = std::max(result_.peak_kinetic_energy, world_.energy().kinetic);
+        if (result_.status == "ok" && outputs_.all_failed())
+            result_.status =
+                "stopped at " + short_number(world_.time(), 6) + " s: no output is left that can be written";
+    }
+    void advance(double duration) {
+        const auto go_on = [&](const StepReport& so_far) {
+            progress_.show(world_.time(), steps_ + static_cast<std::uint64_t>(so_far.steps));
+            return caught_signal == 0;
+        };
+        const Stopwatch watch;
+        const Real start = world_.time();
+        const StepReport step = world_.advance(duration, go_on);
+        result_.seconds_wall += watch.seconds();
+        steps_ += static_cast<std::uint64_t>(step.steps);
+        if (step.status == StepStatus::stopped)
+            result_.status = "stopped by a signal at " + short_number(world_.time(), 6) + " s";
+        else if (!step.ok())
+            result_.status = step.message() + " (" + advice + ")";
+        const Real sampled = step.ok() ? duration : world_.time() - start;
+        if (sampled > 0) probes_.sample(world_, sampled);
+    }
+    void write_checkpoint(long frame, int sample) {
+        memory_.frame = frame;
+        memory_.sample = sample;
+        memory_.seconds_wall = result_.seconds_wall;
+        memory_.peak_kinetic_energy = result_.peak_kinetic_energy;
+        memory_.probes = probes_.saved();
+        const Stopwatch watch;
+        checkpoints_.write(world_, memory_);
+        result_.seconds_output += watch.seconds();
+    }
+
+    World& world_;
+    const Course& course_;
+    RunMemory memory_;
+    RunOutputs& outputs_;
+    CheckpointWriter& checkpoints_;
+    Progress& progress_;
+    RunResult& result_;
+    ProbeRecorder probes_;
+    std::uint64_t steps_ = 0;  // in this part of the run
+};
 
 /// One of each mesh. Contacts find the way out of a body by its surface: where that has no two sides they may not.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan) {
@@ -98,12 +162,26 @@ std::vector<std::string> bad_boundaries(const ScenePlan& plan) {
 
 }  // namespace
 
-int run(const RunOptions& options) {
+int run(const RunOptions& asked) {
     const Stopwatch loading;
+    RunOptions options = asked;
+    std::optional<Restart> restart;
+    if (!options.restart.empty()) {
+        restart = read_restart(options.restart, {options.overrides.backend, options.overrides.threads});
+        if (options.scene.empty()) options.scene = restart->memory.scene;
+    }
     const ScenePlan plan = plan_scene(options.scene, options.overrides);
     Scene scene = build_scene(plan);
     World& world = scene.world;
+    RunMemory memory;
     RunResult result;
+    if (restart) {
+        put_in_place(options.restart, std::move(restart->world), scene);
+        memory = std::move(restart->memory);
+        result.restarted_at = world.time();
+        result.seconds_wall = memory.seconds_wall;
+    }
+    memory.scene = std::filesystem::absolute(options.scene);
     result.bad_boundaries = bad_boundaries(plan);
     result.seconds_load = loading.seconds();
     result.scene = scene.name;
@@ -113,14 +191,17 @@ int run(const RunOptions& options) {
     const std::vector<BodyHandle> bodies = world.bodies();
     for (const BodyHandle body : bodies) result.mean_edge += world.mean_edge(body) / static_cast<Real>(bodies.size());
 
-    const Course course = course_of(scene, options);
+    const Course course = restart ? course_of(options, memory, world.time()) : course_of(scene, options);
+    memory.frame_step = course.frame_step;
+    memory.samples = course.samples;
     RunOutputs outputs(options, scene);
+    CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(course.seconds / 10), world.time());
     if (!options.trace.empty()) world.set_tracing(true);
     outputs.watch(world, course.steps(world));
 
     {
         Progress progress(!options.quiet, course.seconds, course.steps(world), course.longest_step(world));
-        run_frames(scene, course, outputs, progress, result);
+        FrameLoop(scene, course, std::move(memory), outputs, checkpoints, progress, result).run();
     }
 
     result.report = world.report();
@@ -131,7 +212,7 @@ int run(const RunOptions& options) {
     if (options.quiet)
         for (const std::string& doubt : doubts_of(result)) std::cerr << "skerry: DOUBT: " << doubt << "\n";
     else
-        std::cout << summary_of(result) << outputs.summary() << std::flush;
+        std::cout << summary_of(result) << outputs.summary() << checkpoints.summary() << std::flush;
     if (result.status != "ok") std::cerr << "skerry: " << result.status << "\n";
     if (caught_signal != 0) return exit_signal + caught_signal;
     if (!result.outputs_failed.empty()) return exit_output;

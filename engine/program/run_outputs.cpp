@@ -39,9 +39,14 @@ void require_no_frame(const NamedFile& file, const RunOptions& options, const st
 void check_places(const RunOptions& options, const std::string& scene) {
     for (const auto* folder : {&options.out, &options.problems})
         if (!folder->empty()) require_writable_folder(*folder);
-    for (const auto* file : {&options.stats, &options.page, &options.trace})
+    for (const auto* file : {&options.stats, &options.page, &options.trace, &options.checkpoint})
         if (!file->empty()) require_writable_file(*file);
-    const std::array<NamedFile, 4> files{{{"the scene", options.scene},
+    // a checkpoint may take the place of the one that the run goes on from
+    std::error_code error;
+    const bool goes_on = std::filesystem::equivalent(options.restart, options.checkpoint, error);
+    const std::array<NamedFile, 6> files{{{"the scene", options.scene},
+                                          {"--restart", goes_on ? std::filesystem::path() : options.restart},
+                                          {"--checkpoint", options.checkpoint},
                                           {"--page", options.page},
                                           {"--stats", options.stats},
                                           {"--trace", options.trace}}};
@@ -98,12 +103,18 @@ void RunOutputs::add_frame(const World& world) {
     seconds_ += watch.seconds();
 }
 
+void RunOutputs::go_on(const World& world, const RunMemory& memory) {
+    frames_ = static_cast<int>(memory.frame) + 1;
+    attempt(out_, [&] { vtk_->go_on(world, static_cast<std::size_t>(frames_), memory.frame_step); });
+    attempt(page_file_, [&] { page_->add_frame(world); });
+}
+
 void RunOutputs::finish(const World& world, RunResult& result) {
     const Stopwatch watch;
     attempt(out_, [&] { vtk_->close(); });
     attempt(page_file_, [&] { page_->close(world); });
     attempt(trace_, [&] { write_file(trace_.place, [&](std::ostream& out) { world.write_trace(out); }); });
-    result.seconds_output = seconds_ + watch.seconds() + problems_.seconds();
+    result.seconds_output += seconds_ + watch.seconds() + problems_.seconds();
     result.frames = frames_;
     const auto note_failures = [&] {
         result.outputs_failed.clear();

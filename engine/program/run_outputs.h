@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
 #include "engine/program/problem_export.h"
 #include "engine/program/run_result.h"
@@ -21,6 +22,8 @@ public:
     /// Writes exported problems from now on, while the world advances.
     void watch(World& world, double steps_to_come);
     void add_frame(const World& world);
+    /// Of a run that is taken up: frames for ParaView go on, those of the first part being there; a page begins.
+    void go_on(const World& world, const RunMemory& memory);
     /// Writes what takes the whole run, the figures last: they tell what could not be written.
     void finish(const World& world, RunResult& result);
 

@@ -1,6 +1,7 @@
 // What a run was and what came of it, and its two tellings: for scripts and for people.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,8 +22,10 @@ struct RunResult {
     double seconds_load = 0;    // reading and building
     double seconds_output = 0;  // writing frames
     int frames = 0;
-    Real peak_kinetic_energy = 0;  // J, of all frames
-    Real mean_edge = 0;            // m, mean over the bodies' surfaces
+    std::optional<double> restarted_at;           // s, where a checkpoint was taken up
+    int checkpoints = 0, checkpoints_failed = 0;  // written, and not, in this part of the run
+    Real peak_kinetic_energy = 0;                 // J, of all frames
+    Real mean_edge = 0;                           // m, mean over the bodies' surfaces
     WorldReport report;
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;

@@ -82,6 +82,8 @@ Json statistics_of(const RunResult& result) {
         {"real_time_factor", wall > 0 ? simulated / wall : 0},
         {"frames", result.frames},
         {"outputs_failed", failed},
+        {"restarted_at", result.restarted_at ? Json(*result.restarted_at) : Json()},
+        {"checkpoints", {{"written", result.checkpoints}, {"failed", result.checkpoints_failed}}},
         {"threads", result.threads},
         {"backend", name_of(result.settings.backend)},
         {"start",

@@ -136,6 +136,7 @@ std::string summary_of(const RunResult& result) {
     if (wall > 0) text += ", " + short_number(result.seconds_simulated / wall) + " times real time";
     text += "\n";
     text += line("status", result.status);
+    if (result.restarted_at) text += line("restarted", "at " + with_unit(*result.restarted_at, "s"));
     text +=
         line("threads", std::to_string(result.threads) + " (" + std::string(name_of(result.settings.backend)) + ")");
     text += line("bodies", grouped(r.bodies) + ", " + grouped(r.nodes) + " nodes, " + grouped(r.elements) +

@@ -17,6 +17,9 @@ class VtkWriter {
 public:
     VtkWriter(const std::filesystem::path& folder, const std::string& name);
     ~VtkWriter();
+    /// Goes on with a series that has `frames` frames by now, `frame_step` seconds apart: those of them that are in the
+    /// folder are in the .pvd, and the next one has the next number. Before the first frame.
+    void go_on(const World& world, std::size_t frames, Real frame_step);
     void write_frame(const World& world);
     /// Writes the .pvd; frames written so far open without it, too.
     void close();

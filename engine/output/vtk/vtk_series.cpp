@@ -129,6 +129,27 @@ void VtkSeries::remove_earlier() {
     earlier_.clear();
 }
 
+void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
+    number(now);
+    const auto list = [&](int part, const std::string& file) {
+        std::error_code ignored;
+        const bool there = std::filesystem::exists(folder_ / file, ignored);
+        std::erase(earlier_, folder_ / file);  // of this run
+        if (there) entries_.push_back({static_cast<Real>(frame_count_) * frame_step, part, file});
+        return there;
+    };
+    for (; frame_count_ < frames; ++frame_count_) {
+        const std::string colliders = frame_file("colliders", ".vtp");
+        list(0, frame_file("bodies", ".vtu"));
+        list(1, frame_file("contacts", ".vtp"));
+        if (list(2, colliders))
+            colliders_file_ = colliders;
+        else if (!colliders_file_.empty())
+            list(2, colliders_file_);
+    }
+    if (!colliders_file_.empty()) colliders_changed(now);  // from here on
+}
+
 void VtkSeries::write_frame(const Frame& frame) {
     remove_earlier();
     try {

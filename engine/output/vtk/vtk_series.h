@@ -22,6 +22,9 @@ bool is_series_file(std::string_view file_name, std::string_view name);
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
+    /// As if `frames` frames had been written, `frame_step` seconds apart, `now` being the last: those that are there
+    /// are listed.
+    void go_on(const Frame& now, std::size_t frames, Real frame_step);
     void write_frame(const Frame& frame);
     void write_index() const;
 

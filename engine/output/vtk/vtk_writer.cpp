@@ -14,6 +14,11 @@ VtkWriter::VtkWriter(const std::filesystem::path& folder, const std::string& nam
 
 VtkWriter::~VtkWriter() = default;
 
+void VtkWriter::go_on(const World& world, std::size_t frames, Real frame_step) {
+    // forces of the next frame are impulses over the mean step since this one
+    impl_->series.go_on(impl_->collector.collect(world), frames, frame_step);
+}
+
 void VtkWriter::write_frame(const World& world) {
     impl_->series.write_frame(impl_->collector.collect(world));
 }

@@ -14,6 +14,7 @@ import sys
 import time
 import unittest
 
+sys.dont_write_bytecode = True
 from program_case import PROGRAM, ROOT, SCENE, ProgramCase
 
 STATS_KEYS = {

@@ -1,0 +1,136 @@
+#include "engine/program/checkpoint.h"
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include "engine/world/save/world_file.h"
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected,
+                         const std::string& hint = {}) {
+    Complaint{
+        .file = file.string(), .object = "--restart", .field = {}, .found = found, .expected = expected, .hint = hint}
+        .raise();
+}
+
+Json to_json(const RunMemory& memory) {
+    return {{"scene", memory.scene.string()},
+            {"seconds", memory.seconds},
+            {"frame_step", memory.frame_step},
+            {"samples", memory.samples},
+            {"frame", memory.frame},
+            {"sample", memory.sample},
+            {"seconds_wall", memory.seconds_wall},
+            {"peak_kinetic_energy", memory.peak_kinetic_energy},
+            {"probes", memory.probes}};
+}
+
+RunMemory memory_of(const std::filesystem::path& file, const std::string& text) {
+    if (text.empty()) refuse(file, "a world without a run", "a file that `skerry run --checkpoint` wrote");
+    RunMemory memory;
+    try {
+        const Json json = Json::parse(text);
+        memory.scene = json.at("scene").get<std::string>();
+        json.at("seconds").get_to(memory.seconds);
+        json.at("frame_step").get_to(memory.frame_step);
+        json.at("samples").get_to(memory.samples);
+        json.at("frame").get_to(memory.frame);
+        json.at("sample").get_to(memory.sample);
+        json.at("seconds_wall").get_to(memory.seconds_wall);
+        json.at("peak_kinetic_energy").get_to(memory.peak_kinetic_energy);
+        memory.probes = json.at("probes");
+    } catch (const std::exception& error) {
+        refuse(file, std::string("a run that cannot be read (") + error.what() + ")",
+               "a file that `skerry run --checkpoint` wrote");
+    }
+    const bool good = memory.frame_step > 0 && std::isfinite(memory.frame_step) && memory.samples > 0 &&
+                      memory.frame >= 0 && memory.sample >= 0 && memory.sample < memory.samples;
+    if (!good) refuse(file, "a run that is nowhere", "a frame and a sample in it");
+    return memory;
+}
+
+constexpr double slack = 1e-9;  // of the time between two: times are sums of frames
+
+double multiple_after(double time, double every) {
+    return (std::floor(time / every + slack) + 1) * every;
+}
+
+template <class HandleType>
+bool same_slots(const std::vector<HandleType>& a, const std::vector<HandleType>& b) {
+    return std::ranges::equal(a, b, [](const HandleType& x, const HandleType& y) {
+        return x.slot == y.slot && x.generation == y.generation;
+    });
+}
+
+std::string counted(std::size_t count, const char* what) {
+    return std::to_string(count) + " " + what;
+}
+
+}  // namespace
+
+Restart read_restart(const std::filesystem::path& file, const LoadSettings& settings) {
+    LoadedWorld loaded = load_world(file, settings);
+    RunMemory memory = memory_of(file, loaded.note.text);
+    return {std::move(loaded.world), std::move(memory)};
+}
+
+void put_in_place(const std::filesystem::path& file, World world, Scene& scene) {
+    const char* const hint = "the scene has changed since the checkpoint was written, or is another one";
+    const auto bodies = world.bodies(), of_scene = scene.world.bodies();
+    if (!same_slots(bodies, of_scene))
+        refuse(file, counted(bodies.size(), "bodies"), "the " + counted(of_scene.size(), "bodies of the scene"), hint);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const std::string &name = world.name(bodies[b]), &name_in_scene = scene.world.name(of_scene[b]);
+        const std::size_t found = world.positions(bodies[b]).size(),
+                          expected = scene.world.positions(of_scene[b]).size();
+        if (name != name_in_scene || found != expected)
+            refuse(file, "body \"" + name + "\" of " + counted(found, "nodes"),
+                   "\"" + name_in_scene + "\" of " + std::to_string(expected), hint);
+    }
+    const auto colliders = world.colliders(), colliders_of_scene = scene.world.colliders();
+    if (!same_slots(colliders, colliders_of_scene))
+        refuse(file, counted(colliders.size(), "colliders"),
+               "the " + counted(colliders_of_scene.size(), "colliders of the scene"), hint);
+    for (std::size_t c = 0; c < colliders.size(); ++c)
+        if (world.name(colliders[c]) != scene.world.name(colliders_of_scene[c]))
+            refuse(file, "collider \"" + world.name(colliders[c]) + "\"",
+                   "\"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
+    for (Probe& probe : scene.probes)  // handles know their world
+        probe.body = bodies[static_cast<std::size_t>(std::ranges::find(of_scene, probe.body) - of_scene.begin())];
+    scene.world = std::move(world);
+}
+
+CheckpointWriter::CheckpointWriter(std::filesystem::path file, double every, double time)
+    : file_(std::move(file)), every_(every), next_(std::numeric_limits<double>::infinity()) {
+    if (!file_.empty()) next_ = multiple_after(time, every_);
+}
+
+std::string CheckpointWriter::summary() const {
+    if (written_ == 0) return {};
+    return "  wrote         " + file_.string() + " (checkpoint, " + std::to_string(written_) + " times)\n";
+}
+
+bool CheckpointWriter::due(double time) const {
+    return time >= next_ - slack * every_;
+}
+
+void CheckpointWriter::write(World& world, const RunMemory& memory) {
+    if (file_.empty()) return;
+    try {
+        save_world(WorldAccess::state_of(world), {to_json(memory).dump()}, file_);
+        ++written_;
+    } catch (const std::exception& error) {
+        ++failed_;
+        std::fprintf(stderr, "skerry: no checkpoint at %g s: %s; the run goes on\n", world.time(), error.what());
+    }
+    next_ = multiple_after(world.time(), every_);
+}
+
+}  // namespace skerry

@@ -1,0 +1,131 @@
+"""Runs that are killed, stopped, or find no room, and go on from their checkpoints: the program from outside.
+
+Called as: checkpoint_test.py PROGRAM SOURCE_FOLDER
+"""
+import json
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+from program_case import PROGRAM, SCENE, ProgramCase
+
+
+class CheckpointTest(ProgramCase):
+    def run_stats(self, *arguments, code=0):
+        stats = self.folder / "stats.json"
+        self.skerry("run", *arguments, "--quiet", "--stats", stats, code=code)
+        return json.loads(stats.read_text())
+
+    def same_run(self, found, expected):
+        """All that does not tell of clocks, of threads, or of how the run was cut into parts."""
+        own = {"seconds_wall", "seconds_load", "seconds_output", "real_time_factor", "stages", "restarted_at", "threads",
+               "backend", "checkpoints"}
+        for key in expected.keys() - own:
+            self.assertEqual(found[key], expected[key], key)
+
+    def test_a_run_that_is_killed_at_any_moment_goes_on_from_its_checkpoint_with_the_same_bits(self):
+        scene = self.write("long.json", dict(SCENE, seconds=3, bodies=[
+            dict(SCENE["bodies"][0], mesh={"ball": {"radius": 0.1, "resolution": 8}}, position=[0, 0, 0.2]),
+            dict(SCENE["bodies"][0], name="second", velocity=[0, 0, -1], position=[0.05, 0, 0.5])],
+            probes=[dict(SCENE["probes"][0], box={"lower": [-1, -1, -1], "upper": [1, 1, 1]})]))
+        expected = self.run_stats(scene)
+        checkpoint = self.folder / "run.skerry"
+        numbers = random.Random(7)
+        arguments = [scene]
+        killed = 0
+        for _ in range(8):  # with a checkpoint after every sample most are killed while one is written
+            process = subprocess.Popen([PROGRAM, "run", *map(str, arguments), "--quiet", "--checkpoint", checkpoint,
+                                        "--every", "0.005", "--threads", str(numbers.randint(1, 3))])
+            try:
+                process.wait(timeout=numbers.uniform(0.1, 0.3))
+                break
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                killed += 1
+            if checkpoint.exists():
+                arguments = ["--restart", checkpoint]
+        self.assertGreater(killed, 2)
+        found = self.run_stats("--restart", checkpoint, "--threads", 2)
+        self.assertGreater(found["restarted_at"], 0)
+        self.same_run(found, expected)
+        self.assertEqual([p.name for p in self.folder.glob("*.skerry*") if p.suffix != ".part"], ["run.skerry"])
+
+    def test_checkpoints_change_nothing_and_a_run_may_be_made_longer(self):
+        expected = self.run_stats(self.scene, "--seconds", 0.31)
+        checkpoint = self.folder / "run.skerry"
+        short = self.run_stats(self.scene, "--seconds", 0.2, "--checkpoint", checkpoint, "--every", 0.05)
+        self.assertEqual(short["checkpoints"], {"written": 4, "failed": 0})
+        self.assertEqual(short["state_hash"], self.run_stats(self.scene, "--seconds", 0.2)["state_hash"])
+        self.same_run(self.run_stats("--restart", checkpoint, "--seconds", 0.31), expected)
+        # a run that ended within a frame ends where it is asked to
+        self.run_stats(self.scene, "--seconds", 0.21, "--checkpoint", checkpoint)
+        longer = self.run_stats("--restart", checkpoint, "--seconds", 0.31)
+        self.assertAlmostEqual(longer["seconds_simulated"], 0.31, places=12)
+        self.assertEqual(longer["frames"], expected["frames"])
+
+    def test_a_stopped_run_goes_on_from_its_last_checkpoint_and_so_do_its_frames(self):
+        checkpoint, out, whole = self.folder / "run.skerry", self.folder / "frames", self.folder / "whole"
+        with subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "1e6", "--quiet", "--out", out, "--checkpoint",
+                               checkpoint, "--every", "0.02"], stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(0.3)
+            process.send_signal(signal.SIGTERM)
+            stderr = process.communicate(timeout=120)[1]
+        self.assertEqual(process.returncode, 143, stderr)
+        stopped = float(re.search("stopped by a signal at ([0-9.]+) s", stderr).group(1))
+        seconds = (round(60 * stopped) + 6) / 60
+        expected = self.run_stats(self.scene, "--seconds", seconds, "--out", whole)
+        found = self.run_stats("--restart", checkpoint, "--seconds", seconds, "--out", out)
+        self.same_run(found, expected)
+        self.assertEqual(sorted(p.name for p in out.iterdir()), sorted(p.name for p in whole.iterdir()))
+        for file in out.glob("*.vt*"):
+            self.assertEqual(file.read_bytes(), (whole / file.name).read_bytes(), file.name)
+
+        def listed(folder):
+            return re.findall(r'part="\d" name="\w+" file="[^"]+"', (folder / "drop.pvd").read_text())
+        self.assertEqual(listed(out), listed(whole))
+
+    def test_a_checkpoint_that_finds_no_room_is_said_and_the_run_goes_on(self):
+        expected = self.run_stats(self.scene)
+        checkpoint, stats = self.folder / "run.skerry", self.folder / "stats.json"
+        self.run_stats(self.scene, "--seconds", 0.1, "--checkpoint", checkpoint)
+        before = checkpoint.read_bytes()
+        done = subprocess.run([PROGRAM, "run", self.scene, "--quiet", "--stats", stats, "--checkpoint", checkpoint,
+                               "--every", "0.05"], capture_output=True, text=True, timeout=300, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(re.findall("no checkpoint at 0.[0-9]* s: .*run.skerry.*room for the whole file; the run goes "
+                                        "on", done.stderr)), 4, done.stderr)
+        found = json.loads(stats.read_text())
+        self.assertEqual(found["checkpoints"], {"written": 0, "failed": 4})
+        self.same_run(found, expected)
+        self.assertEqual(checkpoint.read_bytes(), before)
+        self.assertFalse((self.folder / "run.skerry.part").exists())
+
+    def test_a_restart_from_something_else_is_refused(self):
+        checkpoint = self.folder / "run.skerry"
+        self.run_stats(self.scene, "--checkpoint", checkpoint)
+        self.assert_refused("run", "--restart", checkpoint, said=["has come to 0.2 s", "--seconds asks for more"])
+        self.assert_refused("run", "--restart", self.scene, said=["drop.json", "a file of another kind"])
+        self.assert_refused("run", "--restart", self.folder / "none", said=["no such file"])
+        self.assert_refused("run", "--restart", checkpoint, "--step", 1e-5, said=["--step"])
+        self.assert_refused("run", "--every", 1, self.scene, said=["--checkpoint"])
+        self.assert_refused("run", said=["SCENE"])
+        self.assert_refused("run", self.scene, "--checkpoint", self.scene, said=["the same file as the scene"])
+        damaged = bytearray(checkpoint.read_bytes())
+        damaged[len(damaged) // 2] ^= 16
+        broken = self.folder / "broken.skerry"
+        broken.write_bytes(damaged)
+        self.assert_refused("run", "--restart", broken, said=["broken.skerry", "checksum", "damaged"])
+        other = self.write("other.json", dict(SCENE, bodies=[dict(SCENE["bodies"][0], name="brick")], probes=[]))
+        self.assert_refused("run", other, "--restart", checkpoint, said=['body "block"', '"brick"', "has changed"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
