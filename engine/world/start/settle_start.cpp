@@ -172,6 +172,8 @@ void World::settle_start() {
     WorldState& world = *state_;
     Model& model = world.model;
     if (model.settled) return;
+    world.require_between_steps("settle_start");
+    world.settle();
     const ArithmeticScope arithmetic;
     StartSearch search(model, world.clock.time);
     const std::vector<PairOverlap> overlaps = search.find_all();

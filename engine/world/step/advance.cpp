@@ -152,11 +152,11 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
                   .hint = {}}
             .raise();
     const ArithmeticScope arithmetic;  // what is done between the stages depends on the host no more than they do
+    settle_start();
     const AdvanceScope scope(world.advancing);
     Model& model = world.model;
     Clock& clock = world.clock;
     SearchMemory& search = world.cache.search.memory;
-    settle_start();
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
     world.settle();
     settle_clusters(model, world.scratch.stiffness_sum);
