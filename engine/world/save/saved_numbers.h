@@ -275,7 +275,7 @@ struct MembersOf<Settings> {
                           Member{"freeze_contacts", &S::freeze_contacts},
                           Member{"small_regions_in_lanes", &S::small_regions_in_lanes}};
     }
-    static_assert(sizeof(Settings) == 152, "a setting is not saved");
+    static_assert(sizeof(Settings) == 160, "a setting is not saved");
 };
 
 /// The type of HDF5 that numbers have in memory and in files.
