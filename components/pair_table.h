@@ -107,6 +107,7 @@ struct CrossingTable {
     Column<ContactRow> row;                 // in key order; empty once a step is taken
     std::vector<Column<ContactRow>> found;  // of the last try, by block of find_contacts
     Column<ContactRow> merged;              // working memory
+    bool extends_lists = true;              // off: a pair that moves further than its list stands against the step
     bool beyond_lists = false;              // of the last try: some pair moved further than its list is good for
     bool last_try = false;                  // what crosses now is let through, and its pair counts as overlapping
     std::uint64_t tested = 0;               // features, since the world was made

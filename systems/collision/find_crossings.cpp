@@ -173,8 +173,8 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const StepMotion& mot
 }
 
 /// Has the lists of pairs made anew that move further than they are good for. Returns how many; those whose list was
-/// made for such a motion already are added to `hopeless`.
-Index extend_lists(const CollisionInputs& inputs, Real h, PairTable& pairs, Index& hopeless) {
+/// made for such a motion already, or all where none is `allowed`, are added to `hopeless`.
+Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
         if (pairs.kind[p] == PairKind::collider || pairs.state[p] != PairState::apart) continue;
@@ -185,7 +185,7 @@ Index extend_lists(const CollisionInputs& inputs, Real h, PairTable& pairs, Inde
         const PairReach reach = reach_of(inputs, pairs, p, h);
         if (reach.travel_bound < pairs.valid_until[p] + drifted) continue;
         const bool made_for_it = pairs.fresh[p] && reach.motion <= -pairs.longer_motion[p];
-        if (made_for_it || !std::isfinite(reach.motion)) {
+        if (made_for_it || !allowed || !std::isfinite(reach.motion)) {
             ++hopeless;
             continue;
         }
@@ -213,7 +213,7 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     crossings.beyond_lists = false;
     if (!settings.continuous) return 0;
     Index hopeless = 0;
-    const Index extended = extend_lists(inputs, h, pairs, hopeless);
+    const Index extended = extend_lists(inputs, h, crossings.extends_lists, pairs, hopeless);
     if (extended > 0) {
         crossings.beyond_lists = true;
         return extended;

@@ -135,7 +135,10 @@ void note_try(const Model& model, const StepScratch& scratch, Tries& tries, Step
 /// The table of StepOutcome.
 StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, Tries& tries) {
     const StepFindings& found = scratch.findings;
-    if (beyond_lists) return StepOutcome::again_with_longer_lists;
+    if (beyond_lists) {
+        ++tries.with_longer_lists;
+        return StepOutcome::again_with_longer_lists;
+    }
     const bool crosses = found.crossings > 0;
     if (scratch.taken()) return StepOutcome::committed;
     if (crosses && ++tries.with_crossings < tries_at_one_length) return StepOutcome::again_with_crossings;
@@ -157,6 +160,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
     world.cache.crossings.last_try = tries.letting_through;
     world.cache.crossings.beyond_lists = false;
+    // One would do, but for what forces do in the next try, and for numbers that a list cannot be made for.
+    constexpr int most_longer_lists = 8;
+    world.cache.crossings.extends_lists = tries.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
     const StepOutcome outcome = judge(scratch, world.cache.crossings.beyond_lists, plan, tries);
     switch (outcome) {

@@ -35,6 +35,7 @@ enum class StepOutcome {
 /// What is left of the tries of the present step, and of those before it, for the next one.
 struct Tries {
     Real longest = std::numeric_limits<Real>::infinity();  // s; grows again step by step
+    int with_longer_lists = 0;                             // of this step, that could not be judged
     int with_crossings = 0;                                // tries of this step at its present length
     bool letting_through = false;                          // the next is the last
     // why `longest` is what it is: of the last try that was given up for a shorter one
