@@ -24,8 +24,8 @@ class CheckpointTest(ProgramCase):
 
     def same_run(self, found, expected):
         """All that does not tell of clocks, of threads, or of how the run was cut into parts."""
-        own = {"seconds_wall", "seconds_load", "seconds_output", "real_time_factor", "stages", "restarted_at", "threads",
-               "backend", "checkpoints"}
+        own = {"seconds_wall", "seconds_load", "seconds_output", "real_time_factor", "stages", "restarted_at",
+               "threads", "backend", "checkpoints"}
         for key in expected.keys() - own:
             self.assertEqual(found[key], expected[key], key)
 
@@ -100,8 +100,8 @@ class CheckpointTest(ProgramCase):
                                "--every", "0.05"], capture_output=True, text=True, timeout=300, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)))
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(len(re.findall("no checkpoint at 0.[0-9]* s: .*run.skerry.*room for the whole file; the run goes "
-                                        "on", done.stderr)), 4, done.stderr)
+        said = "no checkpoint at 0.[0-9]* s: .*run.skerry.*room for the whole file; the run goes on"
+        self.assertEqual(len(re.findall(said, done.stderr)), 4, done.stderr)
         found = json.loads(stats.read_text())
         self.assertEqual(found["checkpoints"], {"written": 0, "failed": 4})
         self.same_run(found, expected)
