@@ -15,7 +15,7 @@ namespace skerry {
 
 enum ExitCode : int {
     exit_ok = 0,
-    exit_failed = 1,     // a step could not be committed, a problem did not converge
+    exit_failed = 1,     // a step could not be committed, a problem did not converge, a strict run is doubted
     exit_bad_input = 2,  // a file or the command line
     exit_output = 3,     // all is well but an output, which could not be written
 };
@@ -40,6 +40,7 @@ struct RunOptions {
     ProblemsOf problems_of = ProblemsOf::step;
     std::optional<int> problems_every;  // steps
     bool quiet = false;
+    bool strict = false;               // what speaks against relying on the run is a failure
     std::filesystem::path checkpoint;  // empty: not written
     std::optional<Real> every;         // s, simulated, between two checkpoints
     std::filesystem::path restart;     // a checkpoint to go on from; empty: from the scene's beginning

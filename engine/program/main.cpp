@@ -20,8 +20,8 @@ const char* const general_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality and faults of a mesh
   skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
 
-Exit codes: 0 ok, 1 the simulation failed or a problem did not converge, 2 bad input, 3 an output of a run could not be
-written, 128 + n stopped by signal n.
+Exit codes: 0 ok, 1 the simulation failed, a problem did not converge, or a --strict run is doubted, 2 bad input, 3 an
+output of a run could not be written, 128 + n stopped by signal n.
 `skerry COMMAND --help` says more.)";
 
 const char* const run_examples = R"(Examples:
@@ -138,6 +138,7 @@ void add_run(CLI::App& app, RunOptions& options) {
                                "how contacts are grouped");
     command.add_flag("--quiet", options.quiet,
                      "no progress, no summary; what speaks against relying on the run goes to standard error");
+    command.add_flag("--strict", options.strict, "end with 1 where something speaks against relying on the run");
     CLI::Option* checkpoint = command.add_option(
         "--checkpoint", options.checkpoint,
         "file that --restart goes on from, replaced as a whole while the run goes on, and at its end");

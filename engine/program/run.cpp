@@ -209,14 +209,15 @@ int run(const RunOptions& asked) {
     result.seconds_simulated = world.time();
     result.seconds_wall -= outputs.seconds_in_steps();
     outputs.finish(world, result);
+    const std::vector<std::string> doubts = doubts_of(result);
     if (options.quiet)
-        for (const std::string& doubt : doubts_of(result)) std::cerr << "skerry: DOUBT: " << doubt << "\n";
+        for (const std::string& doubt : doubts) std::cerr << "skerry: DOUBT: " << doubt << "\n";
     else
         std::cout << summary_of(result) << outputs.summary() << checkpoints.summary() << std::flush;
     if (result.status != "ok") std::cerr << "skerry: " << result.status << "\n";
     if (caught_signal != 0) return exit_signal + caught_signal;
     if (!result.outputs_failed.empty()) return exit_output;
-    return result.status == "ok" ? exit_ok : exit_failed;
+    return result.status == "ok" && (doubts.empty() || !options.strict) ? exit_ok : exit_failed;
 }
 
 }  // namespace skerry

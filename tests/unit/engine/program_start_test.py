@@ -34,6 +34,14 @@ class ProgramStartTest(ProgramCase):
         self.assertTrue(start["overlaps"][0]["resolved"])
         self.assertEqual(json.loads(stats.read_text())["max_penetration"], 0)
 
+    def test_a_strict_run_that_is_doubted_fails_and_writes_its_outputs(self):
+        stats = self.folder / "stats.json"
+        done = self.skerry("run", self.overlapping(0, start_overlaps="ignore"), "--strict", "--quiet", "--stats", stats,
+                           code=1)
+        self.assertIn("DOUBT", done.stderr)
+        self.assertTrue(json.loads(stats.read_text())["trust"]["doubts"])
+        self.skerry("run", self.overlapping(0.2), "--strict")
+
     def test_what_begins_overlapping_is_doubted_with_both_names_quiet_or_not(self):
         doubt = "DOUBT"
         done = self.skerry("run", self.overlapping(0, start_overlaps="ignore"))
