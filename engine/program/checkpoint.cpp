@@ -22,6 +22,7 @@ namespace {
 
 Json to_json(const RunMemory& memory) {
     return {{"scene", memory.scene.string()},
+            {"assignments", memory.assignments},
             {"seconds", memory.seconds},
             {"frame_step", memory.frame_step},
             {"samples", memory.samples},
@@ -38,6 +39,7 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
     try {
         const Json json = Json::parse(text);
         memory.scene = json.at("scene").get<std::string>();
+        json.at("assignments").get_to(memory.assignments);
         json.at("seconds").get_to(memory.seconds);
         json.at("frame_step").get_to(memory.frame_step);
         json.at("samples").get_to(memory.samples);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "engine/scene/place.h"
 #include "skerry/scene.h"
@@ -11,12 +12,13 @@ namespace skerry {
 
 /// What a run remembers beside its world.
 struct RunMemory {
-    std::filesystem::path scene;  // absolute
-    double seconds = 0;           // s, after which it was to end
-    double frame_step = 0;        // s
-    int samples = 1;              // calls of advance in a frame
-    long frame = 0;               // that is being simulated
-    int sample = 0;               // the next call in it
+    std::filesystem::path scene;           // absolute
+    std::vector<std::string> assignments;  // SceneOverrides::assignments
+    double seconds = 0;                    // s, after which it was to end
+    double frame_step = 0;                 // s
+    int samples = 1;                       // calls of advance in a frame
+    long frame = 0;                        // that is being simulated
+    int sample = 0;                        // the next call in it
     double seconds_wall = 0;
     Real peak_kinetic_energy = 0;  // J
     Json probes = Json::array();

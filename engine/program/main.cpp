@@ -103,6 +103,12 @@ void add_run(CLI::App& app, RunOptions& options) {
             "--threads", [&options](const int& count) { options.overrides.threads = count; },
             "worker threads; 0: as many as there are")
         ->check(CLI::Range(0, 1024));
+    command
+        .add_option(
+            "--set", options.overrides.assignments,
+            "change a value of the scene: bodies[0].position=[0,0,1], materials.rubber.E=2e5; may be given again")
+        ->type_name("PLACE=VALUE")
+        ->allow_extra_args(false);
     command.add_option("--out", options.out,
                        "folder for ParaView frames (SCENE.pvd), in place of those of an earlier run");
     command.add_option("--page", options.page, "HTML file that plays the run in a browser, offline");
@@ -148,8 +154,8 @@ void add_run(CLI::App& app, RunOptions& options) {
         ->needs(checkpoint);
     CLI::Option* restart = command.add_option(
         "--restart", options.restart, "a checkpoint: go on from it, with the bits of the run that was not stopped");
-    for (const char* fixed : {"--frames-per-second", "--step", "--method", "--friction", "--tolerance", "--relaxation",
-                              "--element", "--contact-regions"})
+    for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
+                              "--relaxation", "--element", "--contact-regions"})
         restart->excludes(command.get_option(fixed));
     command.callback([scene, restart] {
         if (scene->count() == 0 && restart->count() == 0) throw CLI::RequiredError("SCENE");

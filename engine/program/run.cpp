@@ -169,6 +169,7 @@ int run(const RunOptions& asked) {
     if (!options.restart.empty()) {
         restart = read_restart(options.restart, {options.overrides.backend, options.overrides.threads});
         if (options.scene.empty()) options.scene = restart->memory.scene;
+        options.overrides.assignments = restart->memory.assignments;
     }
     const ScenePlan plan = plan_scene(options.scene, options.overrides);
     Scene scene = build_scene(plan);
@@ -182,6 +183,7 @@ int run(const RunOptions& asked) {
         result.seconds_wall = memory.seconds_wall;
     }
     memory.scene = std::filesystem::absolute(options.scene);
+    memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan);
     result.seconds_load = loading.seconds();
     result.scene = scene.name;

@@ -203,7 +203,7 @@ void apply(const SceneOverrides& overrides, Settings& settings) {
 }  // namespace
 
 ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {
-    const SceneFile scene = read_scene_file(file);
+    const SceneFile scene = read_scene_file(file, overrides.assignments);
     ScenePlan plan;
     plan.file = file;
     plan.name = scene.name;

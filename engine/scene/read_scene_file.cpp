@@ -1,3 +1,4 @@
+#include "engine/scene/assign.h"
 #include "engine/scene/parse_json.h"
 #include "engine/scene/scene_rules.h"
 
@@ -6,8 +7,10 @@ namespace skerry {
 namespace {
 
 /// `open` lists the files that are being read, outermost first.
-void read_into(SceneFile& scene, const std::filesystem::path& file, std::vector<std::filesystem::path>& open) {
-    const Json json = read_json(file);
+void read_into(SceneFile& scene, const std::filesystem::path& file, std::span<const std::string> assignments,
+               std::vector<std::filesystem::path>& open) {
+    Json json = read_json(file);
+    for (const std::string& assignment : assignments) assign(assignment, file, json);
     const Place place(file);
 
     // A first reading for what it includes; a second one on top of that.
@@ -19,7 +22,7 @@ void read_into(SceneFile& scene, const std::filesystem::path& file, std::vector<
         if (std::find(open.begin(), open.end(), next) != open.end())
             place.key("include").refuse(in_quotes(included.path.string()) + ", which includes this file",
                                         "scenes that do not include each other in a circle");
-        read_into(scene, included.path, open);
+        read_into(scene, included.path, {}, open);
     }
     open.pop_back();
     if (own.include.items.empty() && open.empty()) {
@@ -31,10 +34,10 @@ void read_into(SceneFile& scene, const std::filesystem::path& file, std::vector<
 
 }  // namespace
 
-SceneFile read_scene_file(const std::filesystem::path& file) {
+SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments) {
     SceneFile scene;
     std::vector<std::filesystem::path> open;
-    read_into(scene, file, open);
+    read_into(scene, file, assignments, open);
     if (scene.name.empty()) scene.name = file.stem().string();
     if (scene.bodies.empty()) Place(file).key("bodies").refuse("no body", "at least one");
     return scene;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -132,7 +133,7 @@ struct SceneFile {
     std::optional<Real> probe_step;
 };
 
-/// Reads a scene file, with all that it includes. Throws SceneError.
-SceneFile read_scene_file(const std::filesystem::path& file);
+/// Reads a scene file, with all that it includes, after `assignments` (assign.h) to it. Throws SceneError.
+SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments = {});
 
 }  // namespace skerry

@@ -23,6 +23,9 @@ struct SceneOverrides {
     std::optional<Real> relaxation{};
     std::optional<Real> step_size{};
     std::optional<ElementKind> element{};  // of all bodies
+    // PLACE=VALUE, such as bodies[0].position=[0,0,1], in their order and before all above: of the file itself, not of
+    // what it includes. PLACE as messages write it, VALUE in JSON or a text.
+    std::vector<std::string> assignments{};
 };
 
 /// A part of a body whose contacts a run reports, such as the feet of a table.

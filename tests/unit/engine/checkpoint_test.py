@@ -70,6 +70,13 @@ class CheckpointTest(ProgramCase):
         self.assertAlmostEqual(longer["seconds_simulated"], 0.31, places=12)
         self.assertEqual(longer["frames"], expected["frames"])
 
+    def test_a_run_of_a_changed_scene_goes_on_with_it(self):
+        checkpoint = self.folder / "run.skerry"
+        change = ["--set", "bodies[0].name=brick", "--set", "probes[0].body=brick"]
+        expected = self.run_stats(self.scene, *change, "--seconds", 0.1)
+        self.run_stats(self.scene, *change, "--seconds", 0.05, "--checkpoint", checkpoint)
+        self.same_run(self.run_stats("--restart", checkpoint, "--seconds", 0.1), expected)
+
     def test_a_stopped_run_goes_on_from_its_last_checkpoint_and_so_do_its_frames(self):
         checkpoint, out, whole = self.folder / "run.skerry", self.folder / "frames", self.folder / "whole"
         with subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "1e6", "--quiet", "--out", out, "--checkpoint",

@@ -164,5 +164,16 @@ class ProgramRunTest(ProgramCase):
         return stats.read_text()
 
 
+class SetTest(ProgramCase):
+    def test_values_of_a_scene_are_changed_and_mistakes_refused(self):
+        stats = self.folder / "stats.json"
+        change = ["--set", "bodies[0].name=brick", "--set", "probes[0].body=brick"]
+        self.skerry("run", "--set", "seconds=0.05", self.scene, *change, "--quiet", "--stats", stats)
+        self.assertAlmostEqual(json.loads(stats.read_text())["seconds_simulated"], 0.05)
+        self.assertEqual(json.loads(stats.read_text())["stable_dt_body"], "brick")
+        self.assert_refused("run", self.scene, "--set", "bodies[7].name=brick", said=["item 7 of ", "drop.json"])
+        self.assert_refused("run", self.scene, "--set", "settings.gravitee=1", said=["gravitee", "gravity"])
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -294,6 +294,48 @@ TEST_CASE("mistakes of included scenes name the included file, circles are refus
         Catch::Contains("twice.json: materials.rubber: found the name \"rubber\" again"));
 }
 
+TEST_CASE("assignments change a scene on its way in", "[unit]") {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.json", scene_with(R"("seconds": 5)"));
+    const std::vector<std::string> assignments{"bodies[0].position=[1, 2, 3]", "materials.rubber.E=3e4",
+                                               "settings.threads=3",           "name=one=two",
+                                               "bodies[0].name=\"round\"",     "materials[\"rubber\"].nu=0.2"};
+    const SceneFile scene = read_scene_file(file, assignments);
+    REQUIRE(scene.bodies.size() == 1);
+    CHECK(scene.bodies[0].position == Vec3(1, 2, 3));
+    CHECK(scene.bodies[0].name == "round");
+    CHECK(scene.materials.items.at(0).second.young_modulus == 3e4);
+    CHECK(scene.materials.items.at(0).second.poisson_ratio == 0.2);
+    CHECK(scene.settings.threads == 3);
+    CHECK(scene.name == "one=two");
+    CHECK(scene.seconds == 5);
+}
+
+TEST_CASE("assignments that cannot be carried out are refused by what is wrong with them", "[unit]") {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.json", scene_with(R"("seconds": 5)"));
+    const std::vector<std::pair<std::string, std::string>> mistakes{
+        {"seconds", "no \"=\""},
+        {"=3", "nothing before"},
+        {"bodies[1].position=[0,0,0]", "item 1 of 1"},
+        {"bodies[x].position=[0,0,0]", "the item \"x\""},
+        {"bodies[].position=[0,0,0]", "expected a number from 0"},
+        {"bodies[0=1", "not closed"},
+        {"bodies..x=1", "without a name"},
+        {"bodies.position=1", "an object"},
+        {"seconds[0]=1", "a list"},
+        {"probes[0].name=x", "nothing"},
+        {"seconds.value=1", "an object"},
+        {"second=3", "unknown key"},
+        {"seconds=long", "seconds: found the text \"long\""},
+    };
+    for (const auto& [assignment, said] : mistakes) {
+        INFO(assignment);
+        const std::vector<std::string> one{assignment};
+        CHECK_THROWS_WITH(read_scene_file(file, one), Catch::Contains("a.json") && Catch::Contains(said));
+    }
+}
+
 TEST_CASE("the published schema is the one that this reader has", "[unit][contract]") {
     std::ifstream file(std::filesystem::path(SKERRY_SOURCE_DIR) / "docs/scene.schema.json");
     std::ostringstream text;

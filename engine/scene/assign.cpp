@@ -1,0 +1,111 @@
+#include "engine/scene/assign.h"
+
+#include <cctype>
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+namespace skerry {
+
+namespace {
+
+/// One step of a place: a key of an object, or an item of a list.
+struct Step {
+    std::string key;
+    std::size_t item = 0;
+    bool is_item = false;
+};
+
+class Assignment {
+public:
+    Assignment(const std::string& text, const std::filesystem::path& file) : text_(text), file_(file) {
+        const std::size_t end = end_of_place();
+        place_ = std::string_view(text_).substr(0, end);
+        value_ = text_.substr(end + 1);
+    }
+
+    void carry_out(Json& scene) {
+        if (place_.empty()) refuse("nothing before \"=\"", "a place");
+        Json* at = &scene;
+        while (!place_.empty()) at = &inner(*at, next_step());
+        Json value = Json::parse(value_, nullptr, false);
+        *at = value.is_discarded() ? Json(value_) : std::move(value);
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
+        Complaint{.file = file_.string(),
+                  .object = in_quotes(text_),
+                  .field = {},
+                  .found = found,
+                  .expected = expected,
+                  .hint = "an assignment is PLACE=VALUE, such as bodies[0].position=[0,0,1]"}
+            .raise();
+    }
+
+    /// The first "=" that is not within quotes.
+    std::size_t end_of_place() const {
+        bool quoted = false;
+        for (std::size_t i = 0; i < text_.size(); ++i) {
+            quoted ^= text_[i] == '"';
+            if (text_[i] == '=' && !quoted) return i;
+        }
+        refuse("no \"=\"", "a place, \"=\" and a value");
+    }
+
+    /// Takes a step off the place that is left.
+    Step next_step() {
+        if (place_.front() == '.') place_.remove_prefix(1);
+        if (!place_.empty() && place_.front() == '[') return next_in_brackets();
+        const std::size_t end = std::min(place_.find_first_of(".["), place_.size());
+        if (end == 0) refuse("a place without a name at \"" + std::string(place_) + "\"", "a key");
+        Step step{std::string(place_.substr(0, end))};
+        place_.remove_prefix(end);
+        return step;
+    }
+    Step next_in_brackets() {
+        Step step;
+        place_.remove_prefix(1);
+        const bool quoted = !place_.empty() && place_.front() == '"';
+        const std::size_t end = place_.find(quoted ? "\"]" : "]", quoted ? 1 : 0);
+        if (end == std::string_view::npos) refuse("a \"[\" that is not closed", "[NUMBER] or [\"NAME\"]");
+        if (quoted) {
+            step.key = std::string(place_.substr(1, end - 1));
+        } else {
+            step.is_item = true;
+            const char* const last = place_.data() + end;
+            const auto [read, error] = std::from_chars(place_.data(), last, step.item);
+            if (error != std::errc() || read != last || end == 0)
+                refuse("the item " + in_quotes(place_.substr(0, end)), "a number from 0");
+        }
+        place_.remove_prefix(end + (quoted ? 2 : 1));
+        return step;
+    }
+
+    Json& inner(Json& of, const Step& step) const {
+        if (!step.is_item) {
+            if (of.is_null()) of = Json::object();
+            if (!of.is_object())
+                refuse(described(of) + " where " + in_quotes(step.key) + " is looked for", "an object");
+            return of[step.key];
+        }
+        if (!of.is_array()) refuse(of.is_null() ? "nothing" : described(of), "a list, of which to take an item");
+        if (step.item >= of.size())
+            refuse("item " + std::to_string(step.item) + " of " + std::to_string(of.size()),
+                   "one that is there, from 0");
+        return of[step.item];
+    }
+
+    const std::string& text_;
+    const std::filesystem::path& file_;
+    std::string_view place_;  // what is left of it
+    std::string value_;
+};
+
+}  // namespace
+
+void assign(const std::string& assignment, const std::filesystem::path& file, Json& scene) {
+    Assignment(assignment, file).carry_out(scene);
+}
+
+}  // namespace skerry
