@@ -22,7 +22,7 @@ enum class BodyKind : std::uint8_t {
 struct MovingFrame {
     Vec3 velocity = Vec3::Zero();  // m/s, the mean of the nodes' when the displacement was last zero
     Vec3 offset = Vec3::Zero();    // m, how far it has come since then
-    Vec3 position = Vec3::Zero();  // m, how far since distances were forgotten
+    Vec3 position = Vec3::Zero();  // m, how far since the body was added
     Real path = 0;                 // m, the length of that way
 };
 

@@ -58,7 +58,8 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     if (pairs.kind[p] == PairKind::collider) {
         pairs.travel[p] = inputs.body.travel[a] + inputs.body.frame[a].path + inputs.collider.travel[b];
         pairs.travel_bound[p] = memory.body_travel_bound[a] + memory.collider_travel_bound[b];
-        pairs.closing[p] = pairs.travel_bound[p] - pairs.travel[p];
+        // Not the difference: a shape that turns may have travelled without bounds.
+        pairs.closing[p] = memory.body_reach[a] + collider_reach(inputs, b, memory.collider_extent[b], h);
         return;
     }
     const Vec3 apart = inputs.body.frame[a].position - inputs.body.frame[b].position;
@@ -106,21 +107,17 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
     });
 }
 
-/// What both partners may close in this step, m.
-Real closing(const CollisionInputs& inputs, const SearchMemory& memory, const PairTable& pairs, Index p, Real h) {
-    if (pairs.kind[p] != PairKind::collider) return pairs.travel_bound[p] - pairs.travel[p];
-    // Not the difference here: a shape that turns may have travelled without bounds.
-    const Index body = pairs.first[p], collider = pairs.second[p];
-    return memory.body_reach[body] + collider_reach(inputs, collider, memory.collider_extent[collider], h);
+/// What both partners may close in this step, m: of two bodies what frames tell, which is less than by their speeds.
+Real closing(const PairTable& pairs, Index p) {
+    return pairs.kind[p] == PairKind::collider ? pairs.closing[p] : pairs.travel_bound[p] - pairs.travel[p];
 }
 
-void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, const BvhBoxes& boxes,
-                  Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
+void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, const BvhBoxes& boxes, Index p,
+                  const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
     pair.travel_base = pair_travel_base(inputs, pairs, p);
-    pair.margin =
-        settings.pair_skin * pair.scale.edge + std::max(closing(inputs, memory, pairs, p, h), pairs.longer_motion[p]);
+    pair.margin = settings.pair_skin * pair.scale.edge + std::max(closing(pairs, p), pairs.longer_motion[p]);
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
     if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
@@ -177,7 +174,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     if (memory.found.size() < memory.expired.size()) memory.found.resize(memory.expired.size());
     parallel_for(executor, memory.expired.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            search_again(inputs, settings, h, boxes, memory.expired[i], memory, pairs, memory.found[i]);
+            search_again(inputs, settings, boxes, memory.expired[i], memory, pairs, memory.found[i]);
     });
     ask_for_rebase(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();

@@ -11,7 +11,7 @@ namespace skerry {
 /// push_out). Only pairs that could move by more than half of their least distance are looked at, and of these only
 /// features that do: a slow scene pays one comparison a pair. Each hit is added to crossings.row as a contact with the
 /// weights and the normal at the time of the hit, which find_contacts takes over when the step is tried again. Pairs
-/// without a contact distance are left out: they touch without having crossed. BodyTable::max_speed must be that of
+/// without a contact distance are left out: they touch without having crossed. BodyTable::frame_speed must be that of
 /// this motion. Returns how many crossings stand against the step: not zero means that it must not be taken. Where a
 /// pair moves further than its list of candidates is good for nothing is looked at: beyond_lists is set, and the same
 /// try has to be made again with the lists that find_candidates then makes. On the last try the pairs are marked as
