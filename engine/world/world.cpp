@@ -126,6 +126,7 @@ World World::clone() const {
     to.record.balance = from.record.balance;
     to.record.start_overlaps = from.record.start_overlaps;
     to.record.start_moves = from.record.start_moves;
+    to.record.forces = from.record.forces;
     to.record.contact_view = from.record.contact_view;
     to.record.contact_view_is_current = from.record.contact_view_is_current;
     return copy;
@@ -224,6 +225,10 @@ void World::remove(BodyHandle body) {
     const Index row = state_->model.row(body, "remove");
     state_->begin_edit("remove");
     forget_contacts_of(body, state_->record);
+    ForceLedger& forces = state_->record.forces;
+    forces.forget_body(body.slot);
+    for (std::size_t a = 0; a < state_->model.attachments.slot.size(); ++a)
+        if (state_->model.attachments.body[a] == row) forces.forget_attachment(state_->model.attachments.slot[a]);
     erase_body(state_->model, row);
     state_->model.body_map.erase(body);
     state_->end_edit(EditedRows::bodies);
@@ -233,6 +238,7 @@ void World::remove(ColliderHandle collider) {
     const Index row = state_->model.row(collider, "remove");
     state_->begin_edit("remove");
     forget_contacts_of(collider, state_->record);
+    state_->record.forces.forget_collider(collider.slot);
     const EditedRows rows = rows_of(state_->model.collider_records[static_cast<std::size_t>(row)].shape);
     erase_collider(state_->model, row);
     state_->model.collider_map.erase(collider);
@@ -242,6 +248,7 @@ void World::remove(ColliderHandle collider) {
 void World::remove(AttachmentHandle attachment) {
     const Index row = state_->model.row(attachment, "remove");
     state_->begin_edit("remove");
+    state_->record.forces.forget_attachment(attachment.slot);
     erase_attachment(state_->model, row);
     state_->model.attachment_map.erase(attachment);
     state_->end_edit(EditedRows::bodies);

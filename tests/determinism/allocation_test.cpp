@@ -102,6 +102,29 @@ TEST_CASE("multirate and leapfrog allocate nothing, either", "[determinism]") {
     CHECK(allocations_of_a_fifth_second(world) == 0);
 }
 
+TEST_CASE("measuring forces allocates nothing, either, and nor do bodies that it follows into their rest",
+          "[determinism]") {
+    Settings settings;
+    settings.integrator = Integrator::leapfrog;
+    for (const Real sleep_speed : {0.0, 0.01}) {
+        settings.sleep_speed = sleep_speed;
+        World world = resting_balls(Backend::serial, 1, settings);
+        const auto held =
+            world.add_body(mesh::ball(0.05, 4), {.material = world.add_material({}), .position = {1, 0, 1}});
+        world.attach(held, std::vector<Index>{0, 1, 2});
+        world.measure_forces(true);
+        do REQUIRE(world.advance(1.5).ok());
+        while (sleep_speed > 0 && world.report().asleep == 0 && world.time() < 20);
+        allocations = 0;
+        counting = true;
+        REQUIRE(world.advance(0.2).ok());
+        counting = false;
+        CHECK(allocations == 0);
+        CHECK(world.forces().pairs().size() >= 6);
+        CHECK((world.report().asleep > 0) == (sleep_speed > 0));
+    }
+}
+
 TEST_CASE("the memory that bodies take while they are added grows with their number, not with its square",
           "[determinism]") {
     const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});

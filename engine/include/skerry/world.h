@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "skerry/error.h"
+#include "skerry/forces.h"
 #include "skerry/mesh.h"
 #include "skerry/report.h"
 #include "skerry/settings.h"
@@ -123,6 +124,12 @@ public:
     std::span<const Contact> contacts() const;
     WorldReport report() const;
     Energy energy() const;
+    /// From now on each call of advance sums up what contacts and attachments give, moments about `moment_point` (m,
+    /// fixed in the world); or no longer. Changes no step. A clone goes on with it, a world that is loaded does not.
+    void measure_forces(bool on, const Vec3& moment_point = Vec3::Zero());
+    bool measures_forces() const;
+    /// Of the last call of advance. Throws SceneError where they are not measured.
+    Forces forces() const;
     /// Hash of everything that the next step depends on; equal on any number of threads and on every backend.
     std::uint64_t state_hash() const;
     /// From now on hands the contact problem of every step whose number is a multiple of `every`, and which has

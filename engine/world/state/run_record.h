@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/world/forces/force_ledger.h"
 #include "engine/world/state/step_limits.h"
 #include "engine/world/step/balance.h"
 #include "jobs/trace.h"
@@ -30,6 +31,7 @@ struct RunRecord {
     Trace trace;
     bool tracing = false;
     ProblemWatch problem_watch;
+    ForceLedger forces;
     std::vector<Contact> contact_view;  // what contacts() shows
     bool contact_view_is_current = false;
 };

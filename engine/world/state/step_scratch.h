@@ -9,8 +9,10 @@
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/contact/measure_contacts.h"
 #include "systems/contact/separate_regions.h"
+#include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/checks/find_inversions.h"
+#include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/solver/solve_regions.h"
@@ -29,8 +31,10 @@ struct StepParameters {
     SolverSettings solver;
     Real max_strain_step = 0;
     SleepSettings sleep;
-    bool let_invert = false;      // the last of the tries to avoid it
-    bool problem_wanted = false;  // somebody wants to see the contact problem of this step
+    bool let_invert = false;           // the last of the tries to avoid it
+    bool problem_wanted = false;       // somebody wants to see the contact problem of this step
+    bool forces_wanted = false;        // somebody wants to know what contacts and attachments give
+    Vec3 moment_point = Vec3::Zero();  // m, that their moments are about
 };
 
 /// What the stages find.
@@ -60,6 +64,15 @@ struct KeptVelocities {
     Column<Vec3> velocity_next;  // m/s, predicted
 };
 
+/// What contacts and attachments give in one step.
+struct ForceScratch {
+    Column<PairSums> pairs;              // of sum_contact_impulses
+    Column<Vec3> held_impulse;           // N s, by node, the same
+    Column<Vec3> node_impulse;           // of measure_reactions
+    Column<ImpulseAndMoment> reactions;  // by attachment, the same
+    Column<Vec3> held_velocity;          // m/s, by node: of held nodes, after the step before
+};
+
 /// What the settings ask of the contact solver, whose defaults are theirs.
 SolverSettings solver_settings(const Settings& settings);
 
@@ -78,6 +91,7 @@ struct StepScratch {
     SolverMemory solver_memory;
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
+    ForceScratch forces;
     Column<Real> stiffness_sum;             // of stable_step, by node
     Column<Vec3> cluster_kick;              // of kick_clusters
     Column<std::uint8_t> pressed;           // by body at rest, in this step

@@ -170,6 +170,13 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         check_balance(model, lag_between_steps(world), world.record.balance);
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     world.transaction.begin_call(model, clock);
+    ForceLedger& forces = world.record.forces;
+    if (forces.on()) forces.begin_call(model, world.scratch);
+    const auto drift = [&](Real offset) {
+        const Real seconds = offset - clock.offset;
+        drift_to(*world.executor, offset, model, clock, search);
+        if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
+    };
     while (left > 0) {
         if (go_on && !go_on(report)) {
             report.status = StepStatus::stopped;
@@ -183,7 +190,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             break;
         }
         const StepPlan plan = plan_step(model, clock.cycle, left, tries.longest);
-        if (leapfrog) drift_to(*world.executor, plan.h / 2, model, clock, search);
+        if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, tries);
@@ -215,8 +222,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
         if (leapfrog) measure_displacement_again(*world.executor, model, search);
+        if (forces.on()) forces.begin_call(model, world.scratch);
     } else {
-        drift_to(*world.executor, 0, model, clock, search);
+        drift(0);
     }
     if (left == 0) clock.time = end;
     if (look_at_end) check_balance(model, lag_between_steps(world), world.record.balance);

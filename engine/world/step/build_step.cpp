@@ -6,6 +6,8 @@
 #include "systems/collision/find_contacts.h"
 #include "systems/collision/find_crossings.h"
 #include "systems/contact/match_warm_start.h"
+#include "systems/contact/sum_contact_impulses.h"
+#include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/clusters/kick_clusters.h"
 #include "systems/dynamics/motion/advance_positions.h"
@@ -92,6 +94,21 @@ void list_solve(WorldState& w, TaskGraph& g) {
                         value(p.solver.friction));
 }
 
+/// For who asks what contacts and attachments give.
+void list_forces(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    ForceScratch& f = w.scratch.forces;
+    const StepParameters& p = w.scratch.parameters;
+    const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.forces_wanted));
+    g.stage("contact/sum_contact_impulses", sum_contact_impulses,
+            inputs<ContactSumInputs>(w.scratch.contacts, m.bodies, m.nodes, m.attachments), value(p.moment_point),
+            make(f.pairs), make(f.held_impulse), if_wanted);
+    g.stage("dynamics/measure_reactions", measure_reactions,
+            inputs<ReactionInputs>(m.attachments, m.nodes, m.bodies, m.materials, m.elements, m.element_nodes,
+                                   f.held_impulse, f.held_velocity),
+            value(p.h), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
+}
+
 /// Looks at the step.
 void list_checks(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
@@ -154,6 +171,7 @@ void build_step(WorldState& world) {
     list_force_branch(world, world.graph);
     list_contact_branch(world, world.graph);
     list_solve(world, world.graph);
+    list_forces(world, world.graph);
     list_checks(world, world.graph);
     list_commit(world, world.graph);
     world.graph.compile();

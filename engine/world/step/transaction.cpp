@@ -69,6 +69,7 @@ void commit(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     const StepParameters& parameters = scratch.parameters;
     world.cache.crossings.row.clear();
+    if (world.record.forces.on()) world.record.forces.add_step(world.model, world.transaction.asleep_before(), scratch);
     if (parameters.active.all() && !world.model.any_asleep) {
         elements.rotation.swap(elements.rotation_next);
         elements.viscous_strain.swap(elements.viscous_strain_next);
@@ -158,6 +159,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.let_invert =
         tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
+    scratch.parameters.forces_wanted = world.record.forces.on();
+    scratch.parameters.moment_point = world.record.forces.moment_point();
     world.cache.crossings.last_try = tries.letting_through;
     world.cache.crossings.beyond_lists = false;
     // One would do, but for what forces do in the next try, and for numbers that a list cannot be made for.

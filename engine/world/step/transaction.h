@@ -63,6 +63,8 @@ class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
+    /// By body, whether it was at rest when the try began; until `rested` is asked.
+    std::span<const std::uint8_t> asleep_before() const { return asleep_; }
     /// Which bodies took no part in the try, or not in its end: at rest when it began, or now.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 

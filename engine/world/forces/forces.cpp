@@ -1,0 +1,177 @@
+#include "skerry/forces.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "engine/world/world_state.h"
+
+namespace skerry {
+
+namespace {
+
+ForceReport report_of(const ForceLedger& ledger, const ForceLedger::Peak& peak) {
+    ForceReport report;
+    report.seconds = ledger.seconds();
+    report.moment_point = ledger.moment_point();
+    report.largest_force = peak.largest_force;
+    report.contacts = peak.contacts;
+    report.most_contacts = peak.most_contacts;
+    return report;
+}
+
+enum class Side { first, second };
+
+void add(const ContactSums& sums, Side side, ForceReport& report) {
+    const Real sign = side == Side::first ? 1 : -1;
+    report.impulse += sign * sums.impulse;
+    report.moment_impulse += side == Side::first ? sums.first_moment : sums.second_moment;
+    report.friction_impulse += sign * sums.friction;
+    report.pressing_impulse += sums.pressing;
+}
+
+ForceReport pair_report(const ForceLedger& ledger, const PairKey& key, Side side) {
+    for (const ForceLedger::PairRow& row : ledger.pairs())
+        if (row.key == key) {
+            ForceReport report = report_of(ledger, row.peak);
+            add(row.sums, side, report);
+            return report;
+        }
+    return report_of(ledger, {});
+}
+
+Real unknown(const ForceLedger& ledger, const PairKey& key) {
+    const Real of_first = ledger.body(key.first).unknown_seconds;
+    return key.bodies ? std::max(of_first, ledger.body(key.second).unknown_seconds) : of_first;
+}
+
+}  // namespace
+
+Vec3 ForceReport::moment_about(const Vec3& point) const {
+    return moment() - (point - moment_point).cross(force());
+}
+
+void World::measure_forces(bool on, const Vec3& moment_point) {
+    state_->require_between_steps("measure_forces");
+    if (!moment_point.allFinite())
+        Complaint{.file = {},
+                  .object = "measure_forces",
+                  .field = "moment_point",
+                  .found = "a value that is not finite",
+                  .expected = "three finite numbers (m)",
+                  .hint = {}}
+            .raise();
+    state_->settle();
+    if (on)
+        state_->record.forces.start(state_->model, moment_point);
+    else
+        state_->record.forces.stop();
+}
+
+bool World::measures_forces() const {
+    return state_->record.forces.on();
+}
+
+Forces World::forces() const {
+    if (!state_->record.forces.on())
+        Complaint{.file = {},
+                  .object = "forces",
+                  .field = {},
+                  .found = "a world that does not measure them",
+                  .expected = "measure_forces(true) before the call of advance that they are asked of",
+                  .hint = {}}
+            .raise();
+    return Forces(*state_);
+}
+
+ForceReport Forces::on(BodyHandle body) const {
+    (void)world_->model.row(body, "forces");
+    const ForceLedger& ledger = world_->record.forces;
+    const ForceLedger::BodyRow& row = ledger.body(body.slot);
+    ForceReport report = report_of(ledger, row.peak);
+    report.unknown_seconds = row.unknown_seconds;
+    for (const ForceLedger::PairRow& pair : ledger.pairs()) {
+        const bool is_first = pair.key.first == body.slot;
+        const bool is_second = pair.key.bodies && pair.key.second == body.slot;
+        if (is_first && is_second)
+            report.pressing_impulse += pair.sums.pressing;
+        else if (is_first || is_second)
+            add(pair.sums, is_first ? Side::first : Side::second, report);
+    }
+    return report;
+}
+
+ForceReport Forces::on(ColliderHandle collider) const {
+    (void)world_->model.row(collider, "forces");
+    const ForceLedger& ledger = world_->record.forces;
+    ForceReport report = report_of(ledger, ledger.collider(collider.slot));
+    for (const ForceLedger::PairRow& pair : ledger.pairs())
+        if (!pair.key.bodies && pair.key.second == collider.slot) {
+            add(pair.sums, Side::second, report);
+            report.unknown_seconds = std::max(report.unknown_seconds, unknown(ledger, pair.key));
+        }
+    return report;
+}
+
+ForceReport Forces::on(BodyHandle body, BodyHandle by) const {
+    (void)world_->model.row(body, "forces");
+    (void)world_->model.row(by, "forces");
+    const bool is_first = body.slot <= by.slot;
+    const PairKey key{true, is_first ? body.slot : by.slot, is_first ? by.slot : body.slot};
+    ForceReport report = pair_report(world_->record.forces, key, is_first ? Side::first : Side::second);
+    report.unknown_seconds = unknown(world_->record.forces, key);
+    if (body == by) {
+        report.impulse = report.moment_impulse = report.friction_impulse = Vec3::Zero();
+        report.largest_force = 0;
+    }
+    return report;
+}
+
+ForceReport Forces::on(BodyHandle body, ColliderHandle by) const {
+    (void)world_->model.row(body, "forces");
+    (void)world_->model.row(by, "forces");
+    const PairKey key{false, body.slot, by.slot};
+    ForceReport report = pair_report(world_->record.forces, key, Side::first);
+    report.unknown_seconds = unknown(world_->record.forces, key);
+    return report;
+}
+
+ForceReport Forces::on(ColliderHandle collider, BodyHandle by) const {
+    (void)world_->model.row(by, "forces");
+    (void)world_->model.row(collider, "forces");
+    const PairKey key{false, by.slot, collider.slot};
+    ForceReport report = pair_report(world_->record.forces, key, Side::second);
+    report.unknown_seconds = unknown(world_->record.forces, key);
+    return report;
+}
+
+ForceReport Forces::by(AttachmentHandle attachment) const {
+    const auto row = static_cast<std::size_t>(world_->model.row(attachment, "forces"));
+    const ForceLedger& ledger = world_->record.forces;
+    const ForceLedger::AttachmentRow& sums = ledger.attachment(attachment.slot);
+    ForceReport report = report_of(ledger, sums.peak);
+    report.impulse = sums.sums.impulse;
+    report.moment_impulse = sums.sums.moment;
+    const auto body = static_cast<std::size_t>(world_->model.attachments.body[row]);
+    report.unknown_seconds = ledger.body(world_->model.bodies.slot[body]).unknown_seconds;
+    return report;
+}
+
+std::vector<PairForces> Forces::pairs() const {
+    std::vector<PairForces> pairs;
+    for (const ForceLedger::PairRow& row : world_->record.forces.pairs()) {
+        if (row.sums.pressing == 0) continue;
+        PairForces pair;
+        pair.first = world_->model.body_map.handle_of_slot(row.key.first);
+        if (row.key.bodies) {
+            pair.second = world_->model.body_map.handle_of_slot(row.key.second);
+            pair.on_first = on(pair.first, pair.second);
+        } else {
+            pair.collider = world_->model.collider_map.handle_of_slot(row.key.second);
+            pair.on_first = on(pair.first, pair.collider);
+        }
+        pairs.push_back(pair);
+    }
+    return pairs;
+}
+
+}  // namespace skerry

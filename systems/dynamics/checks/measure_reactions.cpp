@@ -1,0 +1,93 @@
+#include "systems/dynamics/checks/measure_reactions.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "components/check.h"
+#include "systems/dynamics/clusters/implicit_elements.h"
+
+namespace skerry {
+
+namespace {
+
+bool counts(const ReactionInputs& inputs, Index body) {
+    const auto b = static_cast<std::size_t>(body);
+    return inputs.kind[b] == BodyKind::deformable && !inputs.asleep[b];
+}
+
+/// Part of its velocity that damping takes from a node of a body that is held.
+Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real h) {
+    const Index material = inputs.body_material[body];
+    return material == no_index ? 0 : -std::expm1(-inputs.material_damping[static_cast<std::size_t>(material)] * h);
+}
+
+/// Rows of held nodes in the added inertia of the implicit elements (docs/methods/clusters.md 1): what changes the
+/// velocities of moving nodes there pulls at the held ones, too. Damping does not act by that inertia.
+void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real h, Column<Vec3>& node_impulse) {
+    const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
+    const Real damped = damped_fraction(inputs, body, h);
+    for (auto b = static_cast<std::size_t>(inputs.blocks[body].begin);
+         b < static_cast<std::size_t>(inputs.blocks[body].end); ++b)
+        for (std::size_t lane = 0; lane < element_lanes; ++lane) {
+            if (!(inputs.implicit_modulus[b][lane] > 0)) continue;
+            const Real weight = beta * inputs.implicit_modulus[b][lane] * inputs.volume[b][lane];
+            const auto begin = static_cast<std::size_t>(inputs.first[b]),
+                       end = begin + static_cast<std::size_t>(inputs.count[b]);
+            Mat3 change = Mat3::Zero();  // of grad v
+            for (std::size_t k = begin; k < end; ++k) {
+                const auto n = static_cast<std::size_t>(inputs.element_node[k][lane]);
+                if (!(inputs.inverse_mass[n] > 0)) continue;
+                const Vec3 gained = inputs.velocity_next[n] - (1 - damped) * inputs.velocity[n];
+                for (std::size_t i = 0; i < 3; ++i)
+                    change.col(static_cast<Eigen::Index>(i)) += inputs.gradient[k][i][lane] * gained;
+            }
+            for (std::size_t k = begin; k < end; ++k) {
+                const auto n = static_cast<std::size_t>(inputs.element_node[k][lane]);
+                if (inputs.inverse_mass[n] > 0) continue;
+                const Vec3 gradient(inputs.gradient[k][0][lane], inputs.gradient[k][1][lane],
+                                    inputs.gradient[k][2][lane]);
+                node_impulse[n] += weight * (change * gradient);
+            }
+        }
+}
+
+}  // namespace
+
+void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_point, Column<Vec3>& node_impulse,
+                       Column<ImpulseAndMoment>& reactions) {
+    const std::size_t count = inputs.attached.size();
+    SKERRY_CHECK(inputs.velocity_before.size() == inputs.velocity.size());
+    reactions.assign(count, {});
+    node_impulse.resize(inputs.position.size());
+    // What each held node was given, once, whichever attachments hold it.
+    for (std::size_t a = 0; a < count; ++a) {
+        if (!counts(inputs, inputs.attached_body[a])) continue;
+        for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
+             i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
+            const auto n = static_cast<std::size_t>(inputs.held[i]);
+            node_impulse[n] = inputs.mass[n] * (inputs.velocity[n] - inputs.velocity_before[n]) - h * inputs.force[n] -
+                              inputs.held_impulse[n];
+        }
+    }
+    Index last = no_index;
+    for (std::size_t a = 0; a < count; ++a) {
+        const Index body = inputs.attached_body[a];
+        // attachments of one body need not stand together: a body is done at its first
+        bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
+        for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
+        if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), h, node_impulse);
+        last = body;
+    }
+    // From the last attachment back: the first that takes the impulse of a node has it.
+    for (std::size_t a = count; a-- > 0;) {
+        if (!counts(inputs, inputs.attached_body[a])) continue;
+        for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
+             i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
+            const auto n = static_cast<std::size_t>(inputs.held[i]);
+            reactions[a] += {node_impulse[n], (inputs.position[n] - moment_point).cross(node_impulse[n])};
+            node_impulse[n].setZero();
+        }
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,89 @@
+// What attachments gave to their bodies in this step.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/attachment_table.h"
+#include "components/body_table.h"
+#include "components/column.h"
+#include "components/element_table.h"
+#include "components/material_table.h"
+#include "components/node_table.h"
+#include "jobs/access.h"
+
+namespace skerry {
+
+struct ImpulseAndMoment {
+    Vec3 impulse = Vec3::Zero();  // N s
+    Vec3 moment = Vec3::Zero();   // N m s
+
+    ImpulseAndMoment& operator+=(const ImpulseAndMoment& more) {
+        impulse += more.impulse;
+        moment += more.moment;
+        return *this;
+    }
+};
+
+struct ReactionInputs {
+    std::span<const Range> attached;       // by attachment: range in `held`
+    std::span<const Index> attached_body;  // by attachment: row of BodyTable
+    std::span<const Index> held;           // nodes, of all attachments
+    std::span<const Vec3> held_impulse;    // N s, by node: what contacts gave to it
+    // m/s, by node: velocities of held nodes before the step
+    std::span<const Vec3> velocity_before;
+    // by node
+    std::span<const Vec3> position, velocity, velocity_next;
+    std::span<const Vec3> force;
+    std::span<const Real> mass, inverse_mass;
+    // by body
+    std::span<const std::uint8_t> asleep;
+    std::span<const BodyKind> kind;
+    std::span<const Range> blocks;
+    std::span<const Real> cluster_step;  // s; 0: no implicit element
+    std::span<const Index> body_material;
+    std::span<const Real> material_damping;  // 1/s
+    // by element block
+    std::span<const ElementLane> implicit_modulus, volume;
+    std::span<const Index> first, count;
+    std::span<const NodeLane> element_node;
+    std::span<const ElementGradient> gradient;
+
+    static ReactionInputs bind(const Binder& binder, const AttachmentTable& attachment, const NodeTable& node,
+                               const BodyTable& body, const MaterialTable& material, const ElementBlockTable& element,
+                               const ElementNodeTable& nodes, const Column<Vec3>& held_impulse,
+                               const Column<Vec3>& velocity_before) {
+        return {.attached = binder.read(attachment.nodes),
+                .attached_body = binder.read(attachment.body),
+                .held = binder.read(attachment.node),
+                .held_impulse = binder.read(held_impulse),
+                .velocity_before = binder.read(velocity_before),
+                .position = binder.read(node.position),
+                .velocity = binder.read(node.velocity),
+                .velocity_next = binder.read(node.velocity_next),
+                .force = binder.read(node.force),
+                .mass = binder.read(node.mass),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .asleep = binder.read(body.asleep),
+                .kind = binder.read(body.kind),
+                .blocks = binder.read(body.blocks),
+                .cluster_step = binder.read(body.cluster_step),
+                .body_material = binder.read(body.material),
+                .material_damping = binder.read(material.damping),
+                .implicit_modulus = binder.read(element.implicit_modulus),
+                .volume = binder.read(element.volume),
+                .first = binder.read(element.first),
+                .count = binder.read(element.count),
+                .element_node = binder.read(nodes.node),
+                .gradient = binder.read(nodes.gradient)};
+    }
+};
+
+/// One row an attachment: what takes its nodes to the velocities of this step against the forces of elements, weight
+/// and loads, the impulses of contacts and the inertia of implicit elements. Moments about `moment_point`. A node that
+/// several attachments hold counts for the last one, whose motion it follows. Of bodies at rest, and of colliders,
+/// nothing. `node_impulse` is memory, by node. Sequential.
+void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_point, Column<Vec3>& node_impulse,
+                       Column<ImpulseAndMoment>& reactions);
+
+}  // namespace skerry

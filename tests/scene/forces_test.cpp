@@ -1,0 +1,390 @@
+// What contacts and attachments give, told beside what it does.
+#include <catch2/catch.hpp>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "tests/support/sliver_box.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+/// Momentum and angular momentum about the origin, of all nodes of a body.
+struct Momenta {
+    Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+
+    Momenta(const World& world, BodyHandle body, const Mesh& mesh, Real density) {
+        const std::vector<Real> mass = node_masses(world, body, mesh, density);
+        const auto x = world.positions(body), v = world.velocities(body);
+        for (std::size_t n = 0; n < mass.size(); ++n) {
+            linear += mass[n] * v[n];
+            angular += mass[n] * x[n].cross(v[n]);
+        }
+    }
+};
+
+std::vector<Index> nodes_where(const World& world, BodyHandle body, auto&& wanted) {
+    std::vector<Index> found;
+    const auto nodes = world.positions(body);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (wanted(nodes[n])) found.push_back(static_cast<Index>(n));
+    return found;
+}
+
+/// Two blocks that meet on a moving plane, on a mesh collider, and a bar with a held and a turned end.
+struct BusyWorld {
+    World world;
+    Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), beam = mesh::box({0.4, 0.05, 0.05}, {8, 1, 1});
+    BodyHandle low, high, bar;
+    AttachmentHandle held, led;
+    ColliderHandle plane, slab;
+    Vec3 load = {0.01, 0.02, 0};  // N, on each node of `low`
+
+    explicit BusyWorld(const Settings& settings, bool loaded = true) : world(settings) {
+        const auto rubber = world.add_material({.young_modulus = 5e4, .friction = 0.4});
+        plane = world.add_collider(Plane{}, {.motion = {.velocity = {0.2, 0, 0.05}}});
+        slab = world.add_collider(mesh::boundary(mesh::box({0.3, 0.3, 0.02}, {1, 1, 1})),
+                                  {.position = {0.25, 0, 0.02}, .contact_distance = 0.002});
+        low = world.add_body(block, {.material = rubber, .position = {0, 0, 0.12}, .contact_distance = 0.002});
+        high = world.add_body(
+            block,
+            {.material = rubber, .position = {0.02, 0, 0.24}, .velocity = {0, 0.3, -1}, .contact_distance = 0.002});
+        bar = world.add_body(beam, {.material = rubber, .position = {0, 1, 0.4}});
+        held = world.attach(bar, nodes_where(world, bar, [](const Vec3& x) { return x.x() < -0.19; }));
+        led = world.attach(bar, nodes_where(world, bar, [](const Vec3& x) { return x.x() > 0.19; }),
+                           {.velocity = {0.1, 0, 0.2}, .angular_velocity = {1, 0, 0}});
+        if (!loaded) load.setZero();
+        if (loaded) world.set_loads(low, std::vector<Vec3>(block.nodes.size(), load));
+    }
+};
+
+Settings with(Integrator integrator, bool multirate = false) {
+    Settings settings;
+    settings.integrator = integrator;
+    settings.multirate = multirate;
+    return settings;
+}
+
+constexpr Real density = 1000;  // kg/m^3, the default
+
+}  // namespace
+
+TEST_CASE("impulses of contacts and attachments, weight and loads are the change of momentum of every body",
+          "[scene]") {
+    for (const Settings& settings :
+         {with(Integrator::symplectic_euler), with(Integrator::leapfrog), with(Integrator::forward_euler),
+          with(Integrator::symplectic_euler, true), with(Integrator::leapfrog, true)}) {
+        INFO(name_of(settings.integrator) << (settings.multirate ? ", multirate" : ""));
+        BusyWorld busy(settings);
+        World& world = busy.world;
+        world.measure_forces(true);
+        const std::vector<std::pair<BodyHandle, const Mesh*>> bodies{
+            {busy.low, &busy.block}, {busy.high, &busy.block}, {busy.bar, &busy.beam}};
+        Real met = 0;
+        for (int call = 0; call < 12; ++call) {
+            std::vector<Momenta> before;
+            for (const auto& [body, mesh] : bodies) before.emplace_back(world, body, *mesh, density);
+            const Real dt = call % 2 == 0 ? 1.0 / 60 : 0.011;
+            const StepReport step = world.advance(dt);
+            REQUIRE(step.ok());
+            REQUIRE(step.steps > 1);
+            const Forces forces = world.forces();
+            for (std::size_t b = 0; b < bodies.size(); ++b) {
+                const auto [body, mesh] = bodies[b];
+                const Momenta after(world, body, *mesh, density);
+                Vec3 impulse = forces.on(body).impulse + dt * world.mass(body) * world.settings().gravity;
+                if (body == busy.low) impulse += dt * static_cast<Real>(mesh->nodes.size()) * busy.load;
+                if (body == busy.bar) impulse += forces.by(busy.held).impulse + forces.by(busy.led).impulse;
+                const Real scale =
+                    after.linear.norm() + forces.on(body).pressing_impulse + dt * world.mass(body) * standard_gravity;
+                INFO("body " << b << ", call " << call);
+                CHECK((after.linear - before[b].linear - impulse).norm() < 1e-12 * scale);
+            }
+            CHECK(forces.on(busy.low).seconds == Approx(dt).epsilon(1e-12));
+            met += forces.on(busy.low, busy.high).pressing_impulse * forces.on(busy.low, busy.slab).pressing_impulse;
+        }
+        CHECK(met > 0);
+    }
+}
+
+TEST_CASE("moments of contacts and attachments are the change of angular momentum", "[scene]") {
+    for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
+        INFO(name_of(integrator));
+        Settings settings = with(integrator);
+        settings.gravity.setZero();  // the moment of weight is not told
+        // what overlaps is moved without momentum, which turns a little of it, and so is what a solve leaves
+        settings.recovery_speed = 1e-12;
+        settings.tolerance = 1e-12;
+        settings.max_iterations = 20000;
+        BusyWorld busy(settings, false);
+        World& world = busy.world;
+        const Vec3 far(0.3, -0.2, 5);
+        world.measure_forces(true, far);
+        const std::vector<std::pair<BodyHandle, const Mesh*>> bodies{
+            {busy.low, &busy.block}, {busy.high, &busy.block}, {busy.bar, &busy.beam}};
+        for (int call = 0; call < 12; ++call) {
+            std::vector<Momenta> before;
+            for (const auto& [body, mesh] : bodies) before.emplace_back(world, body, *mesh, density);
+            REQUIRE(world.advance(1.0 / 60).ok());
+            const Forces forces = world.forces();
+            for (std::size_t b = 0; b < bodies.size(); ++b) {
+                const auto [body, mesh] = bodies[b];
+                const Momenta after(world, body, *mesh, density);
+                Vec3 moment = forces.on(body).moment_about(Vec3::Zero());
+                if (body == busy.bar)
+                    moment += forces.by(busy.held).moment_about(Vec3::Zero()) +
+                              forces.by(busy.led).moment_about(Vec3::Zero());
+                const Real seconds = forces.on(body).seconds;
+                const Real scale = after.angular.norm() + 5 * (after.linear.norm() + before[b].linear.norm() + 1e-3 +
+                                                               forces.on(body).pressing_impulse);
+                INFO("body " << b << ", call " << call);
+                CHECK((after.angular - before[b].angular - seconds * moment).norm() < 1e-11 * scale);
+            }
+        }
+        CHECK(world.report().mean_contacts > 1);
+    }
+}
+
+TEST_CASE("partners of a contact get opposite impulses to the last bit, and sums are those of the pairs", "[scene]") {
+    BusyWorld busy(with(Integrator::leapfrog));
+    World& world = busy.world;
+    world.measure_forces(true);
+    REQUIRE(world.advance(0.3).ok());
+    const Forces forces = world.forces();
+    CHECK(forces.on(busy.low, busy.high).impulse == -forces.on(busy.high, busy.low).impulse);
+    CHECK(forces.on(busy.low, busy.slab).impulse == -forces.on(busy.slab, busy.low).impulse);
+    CHECK(forces.on(busy.low, busy.high).contacts == forces.on(busy.high, busy.low).contacts);
+    Vec3 all = Vec3::Zero(), on_slab = Vec3::Zero();
+    for (const PairForces& pair : forces.pairs()) {
+        CHECK(pair.on_first.pressing_impulse > 0);
+        CHECK(pair.on_first.largest_force >= pair.on_first.force().norm());
+        CHECK(pair.on_first.most_contacts >= pair.on_first.contacts);
+        if (pair.first == busy.low || pair.second == busy.low)
+            all += pair.first == busy.low ? pair.on_first.impulse : Vec3(-pair.on_first.impulse);
+        if (pair.collider == busy.slab) on_slab -= pair.on_first.impulse;
+    }
+    CHECK(all == forces.on(busy.low).impulse);
+    CHECK(on_slab == forces.on(busy.slab).impulse);
+    // moments differ by what the contact distance makes of friction
+    const ForceReport one = forces.on(busy.low, busy.high), other = forces.on(busy.high, busy.low);
+    CHECK((one.moment_impulse + other.moment_impulse).norm() <= 0.01 * one.pressing_impulse);
+    CHECK(forces.on(busy.bar).impulse == Vec3::Zero());
+}
+
+TEST_CASE("forces have the same bits on any number of threads", "[scene]") {
+    std::vector<Vec3> first;
+    for (const int threads : {1, 2, 3}) {
+        Settings settings = with(Integrator::symplectic_euler);
+        settings.threads = threads;
+        BusyWorld busy(settings);
+        busy.world.measure_forces(true);
+        REQUIRE(busy.world.advance(0.3).ok());
+        std::vector<Vec3> found{busy.world.forces().by(busy.led).impulse, busy.world.forces().by(busy.led).moment()};
+        for (const PairForces& pair : busy.world.forces().pairs()) {
+            found.push_back(pair.on_first.impulse);
+            found.push_back(pair.on_first.moment_impulse);
+            found.push_back(pair.on_first.largest_force * Vec3::UnitX());
+        }
+        REQUIRE(found.size() > 8);
+        if (first.empty()) first = found;
+        CHECK(found == first);
+    }
+}
+
+TEST_CASE("a block on a slope presses by its weight's normal part and holds by the rest", "[scene]") {
+    for (const Real degrees : {0.0, 15.0}) {
+        Settings settings = accurate(tilted_gravity(degrees));
+        BlockOnPlane slope(settings, {.young_modulus = 1e6, .friction = 0.6, .damping = 60});
+        slope.settle(0.3);
+        slope.world.measure_forces(true);
+        REQUIRE(slope.world.advance(0.2).ok());
+        const ForceReport on = slope.world.forces().on(slope.block);
+        const Real weight = slope.world.mass(slope.block) * standard_gravity;
+        CHECK((on.force() + slope.world.mass(slope.block) * settings.gravity).norm() < 1e-4 * weight);
+        CHECK(on.friction_impulse.x() / on.seconds ==
+              Approx(settings.gravity.x() / standard_gravity * -weight).margin(1e-4 * weight));
+        CHECK(on.pressing_impulse / on.seconds == Approx(-settings.gravity.z() / standard_gravity * weight));
+        CHECK(on.contacts > 3);
+        CHECK(on.largest_force < 1.02 * weight);
+        // about its centre of mass nothing turns it
+        const Vec3 centre = slope.world.center_of_mass(slope.block);
+        CHECK(on.moment_about(centre).norm() < 1e-4 * weight * 0.1);
+    }
+}
+
+TEST_CASE("a step that was tried again counts once", "[scene]") {
+    Settings settings = with(Integrator::symplectic_euler);
+    World world(settings);
+    const auto soft = world.add_material({.young_modulus = 2e4});
+    const Mesh ball = mesh::ball(0.05, 4);
+    const auto plane = world.add_collider(Plane{});
+    const auto body = world.add_body(ball, {.material = soft, .position = {0, 0, 0.2}, .velocity = {3, 0, -40}});
+    world.measure_forces(true);
+    const Momenta before(world, body, ball, density);
+    const StepReport step = world.advance(0.02);
+    REQUIRE(step.ok());
+    REQUIRE(step.shortened + step.retried > 3);
+    const Momenta after(world, body, ball, density);
+    const ForceReport on = world.forces().on(body);
+    CHECK((after.linear - before.linear - on.impulse - 0.02 * world.mass(body) * settings.gravity).norm() <
+          1e-12 * on.pressing_impulse);
+    CHECK(on.impulse == world.forces().on(body, plane).impulse);
+}
+
+TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, damping and losses, too", "[scene]") {
+    for (const bool slivers : {false, true})
+        for (const Real damping : {0.0, 30.0}) {
+            INFO((slivers ? "slivers, damping " : "damping ") << damping);
+            Settings settings;
+            World world(settings);
+            const auto rubber =
+                world.add_material({.young_modulus = 1e5, .damping = damping, .loss_factor = damping > 0 ? 0.05 : 0.3});
+            const Mesh mesh = slivers ? sliver_box(0.2, 6, 0.02, 0.002) : mesh::box({0.2, 0.1, 0.1}, {4, 2, 2});
+            const auto body = world.add_body(mesh, {.material = rubber, .name = "bar"});
+            const auto nodes = world.positions(body);
+            const Real left = std::ranges::min(nodes, {}, [](const Vec3& x) { return x.x(); }).x();
+            const auto hold = world.attach(
+                body, nodes_where(world, body, [&](const Vec3& x) { return x.x() < left + (slivers ? 0.08 : 1e-9); }));
+            world.measure_forces(true);
+            REQUIRE(world.advance(3).ok());
+            if (slivers) REQUIRE(world.report().clusters > 0);
+            Real worst = 0;
+            const Real weight = world.mass(body) * standard_gravity;
+            for (int call = 0; call < 5; ++call) {
+                const Momenta before(world, body, mesh, density);
+                REQUIRE(world.advance(0.1).ok());
+                const ForceReport by = world.forces().by(hold);
+                const Momenta after(world, body, mesh, density);
+                const Vec3 change = after.linear - before.linear;
+                if (damping == 0)
+                    CHECK((change - by.impulse - 0.1 * world.mass(body) * settings.gravity).norm() <
+                          1e-12 * 0.1 * weight);
+                worst = std::max(worst, (by.force() + world.mass(body) * settings.gravity).norm());
+                // it hangs beside what holds it: the moment of its weight
+                const Vec3 lever = world.center_of_mass(body);
+                if (damping > 0)
+                    CHECK((by.moment() + lever.cross(world.mass(body) * settings.gravity)).norm() <
+                          1e-3 * weight * 0.2);
+            }
+            CHECK(worst < (damping > 0 ? 1e-5 : 0.2) * weight);
+        }
+}
+
+TEST_CASE("an attachment that turns a bar gives the force that keeps it on its circle", "[scene]") {
+    Settings settings;
+    settings.gravity.setZero();
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 2e7, .loss_factor = 0.2});
+    const Mesh mesh = mesh::box({0.4, 0.05, 0.05}, {8, 1, 1});
+    const Real rate = 3;  // rad/s
+    const auto bar =
+        world.add_body(mesh, {.material = stiff, .velocity = {0, 0.2 * rate, 0}, .angular_velocity = {0, 0, rate}});
+    const auto hold = world.attach(bar, nodes_where(world, bar, [](const Vec3& x) { return x.x() < -0.19; }),
+                                   {.angular_velocity = {0, 0, rate}}, {-0.2, 0, 0});
+    world.measure_forces(true, {-0.2, 0, 0});
+    REQUIRE(world.advance(2).ok());
+    Real worst = 0;
+    for (int call = 0; call < 10; ++call) {
+        REQUIRE(world.advance(0.01).ok());
+        const ForceReport by = world.forces().by(hold);
+        const Vec3 inward = (Vec3(-0.2, 0, 0) - world.center_of_mass(bar)).normalized();
+        worst = std::max(worst, std::abs(by.force().dot(inward) / (world.mass(bar) * rate * rate * 0.2) - 1));
+        CHECK(by.moment().head<2>().norm() < 1e-2);
+    }
+    CHECK(worst < 0.03);
+}
+
+TEST_CASE("what holds a body at rest goes on as it was while it was still", "[scene]") {
+    Settings settings;
+    settings.sleep_speed = 1e-3;
+    World world(settings);
+    const auto rubber = world.add_material({.young_modulus = 1e5, .damping = 20});
+    const auto floor = world.add_collider(Plane{});
+    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
+    const auto low = world.add_body(block, {.material = rubber, .position = {0, 0, 0.051}});
+    const auto high = world.add_body(block, {.material = rubber, .position = {0, 0, 0.155}});
+    world.measure_forces(true);
+    while (!world.asleep(low) && world.time() < 10) REQUIRE(world.advance(0.1).ok());
+    REQUIRE(world.asleep(high));
+    const Real weight = world.mass(low) * standard_gravity;
+    const Real tolerance = world.mass(low) * settings.sleep_speed / settings.sleep_time;
+    for (int call = 0; call < 3; ++call) {
+        REQUIRE(world.advance(0.1).ok());
+        REQUIRE(world.asleep(low));
+        const Forces forces = world.forces();
+        CHECK(forces.on(low, floor).force().z() == Approx(2 * weight).margin(2 * tolerance));
+        CHECK(forces.on(high, low).force().z() == Approx(weight).margin(tolerance));
+        CHECK(forces.on(high).moment_about(world.center_of_mass(high)).norm() < 0.01 * weight * 0.1);
+        CHECK(forces.on(floor).impulse == forces.on(floor, low).impulse);
+        CHECK(forces.on(low).contacts > 3);
+        CHECK(forces.on(low).unknown_seconds == 0);
+        CHECK(forces.on(low).seconds == Approx(0.1));
+        CHECK(world.clone().forces().on(low).impulse == forces.on(low).impulse);
+    }
+    // what was not measured while it came to rest is not known, and said not to be
+    world.measure_forces(true);
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(world.forces().on(low).impulse == Vec3::Zero());
+    CHECK(world.forces().on(low).unknown_seconds == Approx(0.1));
+    CHECK(world.forces().on(high, low).unknown_seconds == Approx(0.1));
+    world.wake(low);
+    world.wake(high);
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(world.forces().on(low).unknown_seconds == 0);
+    CHECK(world.forces().on(low, floor).force().z() == Approx(2 * weight).epsilon(0.01));
+}
+
+TEST_CASE("measuring changes no step, costs nothing that is not asked for, and says so where it is not on", "[scene]") {
+    BusyWorld one(with(Integrator::leapfrog)), other(with(Integrator::leapfrog));
+    one.world.measure_forces(true);
+    REQUIRE(one.world.advance(0.1).ok());
+    REQUIRE(other.world.advance(0.1).ok());
+    CHECK(one.world.state_hash() == other.world.state_hash());
+    CHECK_THROWS_WITH(other.world.forces(), Catch::Contains("measure_forces(true)"));
+    CHECK_THROWS_WITH(one.world.measure_forces(true, {0, 0, std::nan("")}), Catch::Contains("moment_point"));
+    const ForceReport on = one.world.forces().on(one.low);
+    CHECK_THROWS_AS(one.world.forces().on(BodyHandle{}), SceneError);
+    CHECK_THROWS_AS(one.world.forces().on(other.low), SceneError);
+    one.world.remove(one.high);
+    CHECK(one.world.forces().on(one.low).seconds == on.seconds);
+    CHECK_THROWS_AS(one.world.forces().on(one.high), SceneError);
+    // a slot that is used again begins with nothing
+    one.world.remove(one.bar);
+    const auto again = one.world.add_body(one.block, {.material = one.world.add_material({}), .position = {0, 0, 3}});
+    CHECK(one.world.forces().on(again).impulse == Vec3::Zero());
+    REQUIRE(one.world.advance(0.01).ok());
+    CHECK(one.world.forces().on(again).contacts == 0);
+    one.world.measure_forces(false);
+    CHECK_FALSE(one.world.measures_forces());
+}
+
+TEST_CASE("a body pressed on itself adds nothing to what it gets, but is told how hard", "[scene]") {
+    Settings settings;
+    settings.gravity.setZero();
+    World world(settings);
+    const auto rubber = world.add_material({.young_modulus = 1e5});
+    // two blocks of one body, apart but for nothing: they fly together
+    Mesh two = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    const Mesh one = two;
+    for (const Vec3& x : one.nodes) two.nodes.push_back(x + Vec3(0.11, 0, 0));
+    for (const auto& t : one.tetrahedra) {
+        auto moved = t;
+        for (Index& n : moved) n += static_cast<Index>(one.nodes.size());
+        two.tetrahedra.push_back(moved);
+    }
+    const auto body = world.add_body(two, {.material = rubber, .self_contact = true});
+    std::vector<Vec3> velocity(two.nodes.size(), Vec3(0.5, 0, 0));
+    for (std::size_t n = one.nodes.size(); n < velocity.size(); ++n) velocity[n] = {-0.5, 0, 0};
+    world.set_velocities(body, velocity);
+    world.measure_forces(true);
+    REQUIRE(world.advance(0.1).ok());
+    const Forces forces = world.forces();
+    CHECK(forces.on(body).impulse.norm() < 1e-14);
+    // each half changes its momentum of 0.5 kg m/s to about the opposite
+    CHECK(forces.on(body).pressing_impulse > 0.5);
+    CHECK(forces.on(body, body).pressing_impulse == forces.on(body).pressing_impulse);
+    CHECK(forces.on(body, body).most_contacts > 0);
+}
