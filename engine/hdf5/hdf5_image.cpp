@@ -70,6 +70,17 @@ void Hdf5Image::put_text(const std::string& path, const std::string& text) {
     put(path, type.id(), Hdf5Handle(H5Screate(H5S_SCALAR), H5Sclose), text.c_str());
 }
 
+void Hdf5Image::put_attribute(const std::string& path, const char* name, const std::string& text) {
+    const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.id(), text.size() + 1);
+    H5Tset_strpad(type.id(), H5T_STR_NULLTERM);
+    const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Hdf5Handle attribute(
+        H5Acreate_by_name(file_.id(), path.c_str(), name, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose);
+    expect(attribute.ok() && H5Awrite(attribute.id(), type.id(), text.c_str()) >= 0, path);
+}
+
 std::vector<char> Hdf5Image::bytes() const {
     expect(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) >= 0, "/");
     const ssize_t size = H5Fget_file_image(file_.id(), nullptr, 0);

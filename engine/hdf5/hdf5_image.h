@@ -25,6 +25,8 @@ public:
     /// `width` numbers a row; in two dimensions if that is more than one.
     void put_rows(const std::string& path, hid_t type, std::size_t rows, std::size_t width, const void* values);
     void put_text(const std::string& path, const std::string& text);
+    /// A text that belongs to what is at the path.
+    void put_attribute(const std::string& path, const char* name, const std::string& text);
     /// The whole file.
     std::vector<char> bytes() const;
 

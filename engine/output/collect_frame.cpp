@@ -1,6 +1,25 @@
 #include "engine/output/collect_frame.h"
 
+#include "engine/world/world_state.h"
+
 namespace skerry {
+
+namespace {
+
+/// An element covers tetrahedra of one material.
+std::vector<Index> materials_of(const World& world, BodyHandle body) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const auto row = static_cast<std::size_t>(model.row(body, "frame"));
+    std::vector<Index> material(model.body_records[row].tetrahedra.size(), no_index);
+    const RaggedView<Index> covered = model.body_records[row].element_tetrahedra.view();
+    const auto first = static_cast<std::size_t>(model.bodies.blocks[row].begin);
+    for (std::size_t place = 0; place < covered.size(); ++place)
+        for (const Index t : covered[place])
+            material[static_cast<std::size_t>(t)] = model.elements.material[first + place / element_lanes];
+    return material;
+}
+
+}  // namespace
 
 Frame FrameCollector::collect(const World& world) {
     const WorldReport report = world.report();
@@ -26,7 +45,8 @@ Frame FrameCollector::collect(const World& world) {
                                 .stress = world.stress(body),
                                 .strain = world.strain(body),
                                 .node_stress = world.node_stress(body),
-                                .node_strain = world.node_strain(body)});
+                                .node_strain = world.node_strain(body),
+                                .material = materials_of(world, body)});
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,
                                    .name = world.name(collider),

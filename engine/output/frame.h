@@ -22,6 +22,7 @@ struct BodyFrame {
     std::span<const std::array<Index, 4>> tetrahedra;  // rows of position
     std::vector<Mat3> stress, strain;                  // Cauchy's in Pa and Green's, by tetrahedron
     std::vector<Mat3> node_stress, node_strain;        // the same by node
+    std::vector<Index> material{};                     // by tetrahedron: in the order in which materials were added
 };
 
 struct ColliderFrame {

@@ -75,6 +75,23 @@ std::string counted(std::size_t count, const char* what) {
     return std::to_string(count) + " " + what;
 }
 
+/// The same bodies, colliders and attachments in a world of another number.
+void rename_world(RecordedProbe& probe, std::uint32_t number) {
+    const auto rename = [number](auto& handle) { handle.world = number; };
+    std::visit(
+        [&](auto& what) {
+            if constexpr (requires { what.body; }) rename(what.body);
+            if constexpr (requires { what.collider; }) rename(what.collider);
+            if constexpr (requires { what.attachment; }) rename(what.attachment);
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(what)>, BodyForceProbe>) {
+                if (what.by) std::visit(rename, *what.by);
+            } else if constexpr (requires { what.by; }) {
+                if (what.by) rename(*what.by);
+            }
+        },
+        probe.what);
+}
+
 }  // namespace
 
 Restart read_restart(const std::filesystem::path& file, const LoadSettings& settings) {
@@ -106,6 +123,10 @@ void put_in_place(const std::filesystem::path& file, World world, Scene& scene) 
                    "\"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
     for (Probe& probe : scene.probes)  // handles know their world
         probe.body = bodies[static_cast<std::size_t>(std::ranges::find(of_scene, probe.body) - of_scene.begin())];
+    const std::uint32_t number = bodies.empty() && colliders.empty() ? 0
+                                 : bodies.empty()                    ? colliders.front().world
+                                                                     : bodies.front().world;
+    for (RecordedProbe& probe : scene.recorded) rename_world(probe, number);
     scene.world = std::move(world);
 }
 

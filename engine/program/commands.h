@@ -36,7 +36,7 @@ struct RunOptions {
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
-    std::filesystem::path out, stats, page, trace, problems;  // empty: not written
+    std::filesystem::path out, stats, page, trace, problems, probes;  // empty: not written
     ProblemsOf problems_of = ProblemsOf::step;
     std::optional<int> problems_every;  // steps
     bool quiet = false;

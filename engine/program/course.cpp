@@ -59,7 +59,7 @@ Course course_of(const Scene& scene, const RunOptions& options) {
     Course course{options.seconds.value_or(scene.seconds), scene.frame_step, 1};
     if (options.frames_per_second) course.frame_step = 1 / *options.frames_per_second;
     expect_countable_frames(options, course);
-    if (scene.probes.empty()) return course;
+    if (scene.probes.empty() && scene.recorded.empty()) return course;
     const double samples = std::min(course.frame_step, course.seconds) / scene.probe_step;
     expect_countable(options, "samples of the probes in a frame", samples, "probe_step");
     course.samples = std::max(1, static_cast<int>(std::lround(samples)));

@@ -1,5 +1,6 @@
 // The program: reads the command line, calls a command, turns what goes wrong into a message and an exit code.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <iostream>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "engine/program/commands.h"
+#include "engine/scene/place.h"
 
 namespace {
 
@@ -113,6 +115,8 @@ void add_run(CLI::App& app, RunOptions& options) {
                        "folder for ParaView frames (SCENE.pvd), in place of those of an earlier run");
     command.add_option("--page", options.page, "HTML file that plays the run in a browser, offline");
     command.add_option("--stats", options.stats, "JSON file with the figures of the run");
+    command.add_option("--probes", options.probes,
+                       "file with the series of the scene's probes: .csv grows row by row, .h5 or .hdf5 at the end");
     command.add_option("--trace", options.trace, "file with what every thread did, for Perfetto or chrome://tracing");
     command.add_option("--export-problems", options.problems,
                        "folder for contact problems of steps, in FCLIB's HDF5 form (local)");
@@ -205,6 +209,22 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     command.add_flag("--overwrite", options.overwrite, "--repair may replace the file that is read")->needs(repair);
 }
 
+/// CLI11 asks for a command, but does not say which one it does not know.
+void require_known_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    const std::string found = argv[1];
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::ranges::find(names, found) != names.end()) return;
+    Complaint{.file = {},
+              .object = "command line",
+              .field = {},
+              .found = in_quotes(found),
+              .expected = "one of " + listed(names),
+              .hint = nearest_hint(found, names)}
+        .raise();
+}
+
 int run_command_line(int argc, char** argv) {
     CLI::App app("Deformable bodies that touch each other with friction", "skerry");
     app.footer(general_examples);
@@ -217,6 +237,7 @@ int run_command_line(int argc, char** argv) {
     add_solve(app, solve_options);
     add_inspect(app, inspect_options);
     app.add_subcommand("schema", "Print the JSON schema of scenes");
+    require_known_command(app, argc, argv);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -42,8 +42,10 @@ void require_writable_file(const std::filesystem::path& file) {
 void require_distinct(std::span<const NamedFile> files) {
     const auto place = [](const std::filesystem::path& file) {
         std::error_code error;
-        const std::filesystem::path found = std::filesystem::weakly_canonical(file, error);
-        return error ? std::filesystem::absolute(file) : found;
+        // of a relative name that is not there yet weakly_canonical makes no absolute one
+        const std::filesystem::path full = std::filesystem::absolute(file);
+        const std::filesystem::path found = std::filesystem::weakly_canonical(full, error);
+        return error ? full : found;
     };
     for (std::size_t i = 0; i < files.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {

@@ -122,7 +122,9 @@ private:
         else if (!step.ok())
             result_.status = step.message() + " (" + advice + ")";
         const Real sampled = step.ok() ? duration : world_.time() - start;
-        if (sampled > 0) probes_.sample(world_, sampled);
+        if (!(sampled > 0)) return;
+        probes_.sample(world_, sampled);
+        outputs_.sample(world_);
     }
     void write_checkpoint(long frame, int sample) {
         memory_.frame = frame;
@@ -200,6 +202,7 @@ int run(const RunOptions& asked) {
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(course.seconds / 10), world.time());
     if (!options.trace.empty()) world.set_tracing(true);
     outputs.watch(world, course.steps(world));
+    outputs.record(scene, restart.has_value());
 
     {
         Progress progress(!options.quiet, course.seconds, course.steps(world), course.longest_step(world));

@@ -39,19 +39,43 @@ void require_no_frame(const NamedFile& file, const RunOptions& options, const st
 void check_places(const RunOptions& options, const std::string& scene) {
     for (const auto* folder : {&options.out, &options.problems})
         if (!folder->empty()) require_writable_folder(*folder);
-    for (const auto* file : {&options.stats, &options.page, &options.trace, &options.checkpoint})
+    for (const auto* file : {&options.stats, &options.page, &options.trace, &options.probes, &options.checkpoint})
         if (!file->empty()) require_writable_file(*file);
     // a checkpoint may take the place of the one that the run goes on from
     std::error_code error;
     const bool goes_on = std::filesystem::equivalent(options.restart, options.checkpoint, error);
-    const std::array<NamedFile, 6> files{{{"the scene", options.scene},
+    const std::array<NamedFile, 7> files{{{"the scene", options.scene},
                                           {"--restart", goes_on ? std::filesystem::path() : options.restart},
                                           {"--checkpoint", options.checkpoint},
                                           {"--page", options.page},
+                                          {"--probes", options.probes},
                                           {"--stats", options.stats},
                                           {"--trace", options.trace}}};
     require_distinct(files);
     for (const NamedFile& file : files) require_no_frame(file, options, scene);
+}
+
+bool is_csv(const std::filesystem::path& file) {
+    return file.extension() == ".csv";
+}
+
+void check_probes(const RunOptions& options, const Scene& scene) {
+    if (options.probes.empty()) return;
+    const auto refuse = [&](const std::string& found, const std::string& expected, const std::string& hint) {
+        Complaint{.file = options.probes.string(),
+                  .object = "--probes",
+                  .field = {},
+                  .found = found,
+                  .expected = expected,
+                  .hint = hint}
+            .raise();
+    };
+    const std::string extension = options.probes.extension().string();
+    if (!is_csv(options.probes) && extension != ".h5" && extension != ".hdf5")
+        refuse(extension.empty() ? "a name without extension" : "the extension " + extension, ".csv, .h5 or .hdf5", {});
+    if (scene.recorded.empty())
+        refuse("a scene without a probe that has a series", "one in \"probes\" with a quantity",
+               "motion, force, reaction, energy, stress or volume; docs/outputs.md");
 }
 
 }  // namespace
@@ -59,12 +83,17 @@ void check_places(const RunOptions& options, const std::string& scene) {
 RunOutputs::RunOutputs(const RunOptions& options, const Scene& scene)
     : out_{"--out", options.out},
       page_file_{"--page", options.page},
+      probes_{"--probes", options.probes},
       trace_{"--trace", options.trace},
       problem_folder_{"--export-problems", options.problems},
       stats_{"--stats", options.stats},
       problems_(options, scene.name) {
     check_places(options, scene.name);
-    if (out_.open()) vtk_ = std::make_unique<VtkWriter>(out_.place, scene.name);
+    check_probes(options, scene);
+    if (out_.open()) {
+        vtk_ = std::make_unique<VtkWriter>(out_.place, scene.name);
+        vtk_->name_materials(scene.materials);
+    }
     if (page_file_.open()) page_ = std::make_unique<PageWriter>(page_file_.place, scene.name);
 }
 
@@ -86,6 +115,22 @@ void RunOutputs::watch(World& world, double steps_to_come) {
         if (!problem_folder_.open()) world.watch_contact_problems({});
     };
     world.watch_contact_problems(take, problems_.every(steps_to_come));
+}
+
+void RunOutputs::record(Scene& scene, bool go_on) {
+    if (!probes_.open()) return;
+    recorder_ = std::make_unique<Recorder>(scene.world, scene.recorded);
+    attempt(probes_, [&] {
+        if (is_csv(probes_.place))
+            recorder_->stream_csv(probes_.place, go_on ? std::optional(scene.world.time()) : std::nullopt);
+        if (!go_on) recorder_->sample(scene.world);
+    });
+}
+
+void RunOutputs::sample(const World& world) {
+    const Stopwatch watch;
+    attempt(probes_, [&] { recorder_->sample(world); });
+    seconds_ += watch.seconds();
 }
 
 void RunOutputs::add_frame(const World& world) {
@@ -113,6 +158,9 @@ void RunOutputs::finish(const World& world, RunResult& result) {
     const Stopwatch watch;
     attempt(out_, [&] { vtk_->close(); });
     attempt(page_file_, [&] { page_->close(world); });
+    attempt(probes_, [&] {
+        if (!is_csv(probes_.place)) recorder_->write_hdf5(probes_.place);
+    });
     attempt(trace_, [&] { write_file(trace_.place, [&](std::ostream& out) { world.write_trace(out); }); });
     result.seconds_output += seconds_ + watch.seconds() + problems_.seconds();
     result.frames = frames_;
@@ -138,7 +186,7 @@ bool RunOutputs::all_failed() const {
 std::string RunOutputs::summary() const {
     std::string text;
     const auto add = [&](const std::string& line) { text += "  wrote         " + line + "\n"; };
-    for (const Output* output : {&out_, &page_file_, &stats_, &trace_})
+    for (const Output* output : {&out_, &page_file_, &probes_, &stats_, &trace_})
         if (output->open()) add(output->place.string());
     if (!problem_folder_.place.empty())
         add(std::to_string(problems_.files()) + " contact problems of " + std::to_string(problems_.steps()) +

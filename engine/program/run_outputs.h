@@ -11,6 +11,7 @@
 #include "engine/program/run_result.h"
 #include "jobs/function_ref.h"
 #include "skerry/output.h"
+#include "skerry/recorder.h"
 
 namespace skerry {
 
@@ -21,6 +22,10 @@ public:
 
     /// Writes exported problems from now on, while the world advances.
     void watch(World& world, double steps_to_come);
+    /// Opens the series of probes, whose handles are of the world as it is; `go_on`: with what their file has so far.
+    void record(Scene& scene, bool go_on);
+    /// After every call of advance.
+    void sample(const World& world);
     void add_frame(const World& world);
     /// Of a run that is taken up: frames for ParaView go on, those of the first part being there; a page begins.
     void go_on(const World& world, const RunMemory& memory);
@@ -44,10 +49,13 @@ private:
     };
     /// Does what may fail, unless the output has failed before; says so at once.
     void attempt(Output& output, FunctionRef<void()> write);
-    std::vector<Output*> all() { return {&out_, &page_file_, &trace_, &problem_folder_, &stats_}; }
-    std::vector<const Output*> all() const { return {&out_, &page_file_, &trace_, &problem_folder_, &stats_}; }
+    std::vector<Output*> all() { return {&out_, &page_file_, &probes_, &trace_, &problem_folder_, &stats_}; }
+    std::vector<const Output*> all() const {
+        return {&out_, &page_file_, &probes_, &trace_, &problem_folder_, &stats_};
+    }
 
-    Output out_, page_file_, trace_, problem_folder_, stats_;
+    Output out_, page_file_, probes_, trace_, problem_folder_, stats_;
+    std::unique_ptr<Recorder> recorder_;
     std::unique_ptr<VtkWriter> vtk_;
     std::unique_ptr<PageWriter> page_;
     ProblemExport problems_;

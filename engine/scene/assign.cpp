@@ -92,7 +92,7 @@ private:
         if (!of.is_array()) refuse(of.is_null() ? "nothing" : described(of), "a list, of which to take an item");
         if (step.item >= of.size())
             refuse("item " + std::to_string(step.item) + " of " + std::to_string(of.size()),
-                   "one that is there, from 0");
+                   of.empty() ? "an item of a list that has some" : "0 to " + std::to_string(of.size() - 1));
         return of[step.item];
     }
 

@@ -3,34 +3,92 @@
 
 namespace skerry {
 
+namespace {
+
+struct Built {
+    const World& world;
+    const std::vector<BodyHandle>& bodies;
+    const std::vector<ColliderHandle>& colliders;
+    const std::vector<std::vector<AttachmentHandle>>& pins;  // by body
+};
+
+decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
+    const BodyHandle body = series.body ? built.bodies[*series.body] : BodyHandle{};
+    switch (series.quantity) {
+        case ProbeQuantity::motion:
+            if (series.point) {
+                PointProbe point{.body = body, .node = series.point->node, .weight = series.point->weight};
+                Vec3 place = Vec3::Zero();
+                for (std::size_t a = 0; a < 4; ++a)
+                    place += point.weight[a] * built.world.positions(body)[static_cast<std::size_t>(point.node[a])];
+                point.origin = place;
+                return point;
+            }
+            return BodyProbe{body, built.world.center_of_mass(body)};
+        case ProbeQuantity::force:
+            if (series.collider) {
+                ColliderForceProbe force{built.colliders[*series.collider]};
+                if (series.by_body) force.by = built.bodies[*series.by_body];
+                return force;
+            } else {
+                BodyForceProbe force{body};
+                if (series.by_body) force.by = built.bodies[*series.by_body];
+                if (series.by_collider) force.by = built.colliders[*series.by_collider];
+                return force;
+            }
+        case ProbeQuantity::reaction:
+            return ReactionProbe{built.pins[*series.body][series.pin]};
+        case ProbeQuantity::stress:
+            return StressProbe{body, series.nodes};
+        case ProbeQuantity::volume:
+            return VolumeProbe{body};
+        case ProbeQuantity::contacts:  // has no series
+        case ProbeQuantity::energy:
+            break;
+    }
+    return EnergyProbe{};
+}
+
+}  // namespace
+
 Scene build_scene(const ScenePlan& plan) {
     const Place top(plan.file);
     Scene scene{.name = plan.name,
                 .description = plan.description,
+                .materials = {},
                 .seconds = plan.seconds,
                 .frame_step = plan.frame_step,
                 .world = called_at(top.key("settings"), [&] { return World(plan.settings); }),
                 .probes = {},
+                .recorded = {},
                 .probe_step = plan.probe_step};
     World& world = scene.world;
 
+    for (const auto& [name, material] : plan.materials) scene.materials.push_back(name);
     std::vector<MaterialHandle> materials;
     for (const auto& [name, material] : plan.materials)
         materials.push_back(called_at(top.key("materials").key(name),
                                       [&, &settings = material] { return world.add_material(settings); }));
     std::vector<BodyHandle> bodies;
+    std::vector<std::vector<AttachmentHandle>> pins;  // by body
+    std::vector<ColliderHandle> colliders;
     for (const BodyPlan& body : plan.bodies) {
         BodySettings settings = body.settings;
         settings.material = materials[body.material];
         for (const auto& [label, row] : body.materials) settings.materials.emplace(label, materials[row]);
         bodies.push_back(called_at(body.place, [&] { return world.add_body(plan.meshes[body.mesh], settings); }));
+        pins.emplace_back();
         for (const PinPlan& pin : body.pins)
-            called_at(pin.place, [&] { return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot); });
+            pins.back().push_back(
+                called_at(pin.place, [&] { return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot); }));
     }
     for (const ColliderPlan& collider : plan.colliders)
-        called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); });
+        colliders.push_back(
+            called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); }));
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
+    for (const SeriesPlan& series : plan.series)
+        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins})});
     return scene;
 }
 

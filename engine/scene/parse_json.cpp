@@ -2,12 +2,24 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 
 namespace skerry {
 
 namespace {
+
+/// Bytes above ASCII as \xNN: what a message cites may be no UTF-8.
+std::string printable(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        char code[8];
+        std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+        result += static_cast<unsigned char>(c) < 0x80 ? std::string(1, c) : std::string(code);
+    }
+    return result;
+}
 
 /// Builds the document and watches what nlohmann's own builder lets pass: keys given twice.
 class StrictBuilder : public nlohmann::json_sax<Json> {
@@ -45,8 +57,8 @@ public:
         else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos ||
                  token.find("I") == token.size() - 1)
             hint = "JSON has no NaN and no Infinity";
-        throw SceneError(file_.string() + ": " + line_and_column(position) + ": not valid JSON: " + reason(what) +
-                         (hint.empty() ? "" : " (" + hint + ")"));
+        throw SceneError(file_.string() + ": " + line_and_column(position) +
+                         ": not valid JSON: " + printable(reason(what)) + (hint.empty() ? "" : " (" + hint + ")"));
     }
 
 private:

@@ -52,16 +52,6 @@ Motion make_motion(const MotionEntry& entry) {
     return motion;
 }
 
-std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place) {
-    std::vector<Index> inside;
-    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
-        if ((mesh.nodes[i].array() >= box.lower.array()).all() && (mesh.nodes[i].array() <= box.upper.array()).all())
-            inside.push_back(static_cast<Index>(i));
-    if (inside.empty())
-        place.key("box").refuse("a box without any node", "a box around nodes of the mesh, in the mesh's own frame");
-    return inside;
-}
-
 PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
     PinPlan pin{.nodes = {}, .motion = make_motion(entry.motion), .pivot = entry.pivot, .place = entry.place};
     if (entry.box) {
@@ -174,19 +164,6 @@ ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number) {
     return collider;
 }
 
-ProbePlan plan_probe(const ProbeEntry& entry, const ScenePlan& plan) {
-    std::vector<std::string> names;
-    for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
-    const auto found = std::find(names.begin(), names.end(), entry.body);
-    if (found == names.end())
-        entry.place.key("body").refuse(in_quotes(entry.body), "the name of a body", nearest_hint(entry.body, names));
-    for (const ProbePlan& other : plan.probes)
-        if (other.name == entry.name)
-            entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a name of its own for every probe");
-    const auto body = static_cast<std::size_t>(found - names.begin());
-    return {entry.name, body, nodes_inside(plan.meshes[plan.bodies[body].mesh], entry.box, entry.place)};
-}
-
 void apply(const SceneOverrides& overrides, Settings& settings) {
     if (overrides.threads) settings.threads = *overrides.threads;
     if (overrides.backend) settings.backend = *overrides.backend;
@@ -220,7 +197,7 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i));
-    for (const ProbeEntry& probe : scene.probes) plan.probes.push_back(plan_probe(probe, plan));
+    for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;
 }
 

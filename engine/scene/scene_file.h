@@ -111,10 +111,27 @@ struct ColliderEntry {
     Real contact_distance = 0;
     Place place;
 };
+/// contacts: of a part of a body, what sticks and slides, in the report; all others are series of numbers in a file.
+enum class ProbeQuantity { contacts, motion, force, reaction, energy, stress, volume };
+template <>
+struct EnumNames<ProbeQuantity> {
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 7> table{{
+        {ProbeQuantity::contacts, "contacts"},
+        {ProbeQuantity::motion, "motion"},
+        {ProbeQuantity::force, "force"},
+        {ProbeQuantity::reaction, "reaction"},
+        {ProbeQuantity::energy, "energy"},
+        {ProbeQuantity::stress, "stress"},
+        {ProbeQuantity::volume, "volume"},
+    }};
+};
 struct ProbeEntry {
     std::string name;
-    std::string body;
-    RestBox box;
+    ProbeQuantity quantity = ProbeQuantity::contacts;
+    std::optional<std::string> body, collider, by;
+    std::optional<RestBox> box;
+    std::optional<Vec3> point;  // m, in the mesh's own frame
+    std::optional<int> pin;
     Place place;
 };
 

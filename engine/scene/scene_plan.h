@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/output/series/follow_point.h"
 #include "engine/scene/place.h"
+#include "engine/scene/scene_file.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -34,6 +36,17 @@ struct ProbePlan {
     std::size_t body = 0;      // of ScenePlan::bodies
     std::vector<Index> nodes;  // local
 };
+/// A series: what of it is given depends on the quantity.
+struct SeriesPlan {
+    std::string name;
+    ProbeQuantity quantity = ProbeQuantity::energy;
+    std::optional<std::size_t> body{}, by_body{};          // of ScenePlan::bodies
+    std::optional<std::size_t> collider{}, by_collider{};  // of ScenePlan::colliders
+    std::size_t pin = 0;                                   // of BodyPlan::pins
+    std::vector<Index> nodes;                              // local
+    std::optional<MaterialPoint> point;
+    Place place;
+};
 
 struct ScenePlan {
     std::string name, description;
@@ -45,12 +58,19 @@ struct ScenePlan {
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<ProbePlan> probes;
+    std::vector<SeriesPlan> series;
     Real probe_step = 0;  // s
     std::filesystem::path file;
 };
 
 /// Reads a scene and resolves it. Throws SceneError.
 ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
+
+/// The nodes of a mesh inside a box of its own frame; refuses a box without any.
+std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place);
+
+/// Adds a probe to a plan that has all bodies and colliders.
+void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Puts the world together. Throws SceneError for what only the world finds, such as inverted tetrahedra.
 Scene build_scene(const ScenePlan& plan);

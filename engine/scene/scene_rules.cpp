@@ -106,18 +106,6 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
 }
 
 template <>
-const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
-    static const auto rule =
-        Rule<ProbeEntry>("probe",
-                         "A part of a body whose contacts the report counts: sticking or sliding, how often it "
-                         "changes, how fast it slips.")
-            .key("name", &ProbeEntry::name, {.meaning = "in the report", .required = true})
-            .key("body", &ProbeEntry::body, {.meaning = "the name of a body", .required = true})
-            .key("box", &ProbeEntry::box, {.meaning = "the nodes inside, in the mesh's own frame", .required = true});
-    return rule;
-}
-
-template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
     using M = MaterialSettings;
     static const auto rule =
@@ -247,10 +235,12 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("materials", &SceneFile::materials, {.meaning = "materials by name"})
             .key("bodies", &SceneFile::bodies, {.meaning = "deformable bodies"})
             .key("colliders", &SceneFile::colliders, {.meaning = "rigid shapes"})
-            .key("probes", &SceneFile::probes, {.meaning = "parts of bodies whose contacts are reported"})
-            .key(
-                "probe_step", &SceneFile::probe_step,
-                {.meaning = "between two looks at the probes; frame_step by default", .unit = "s", .limits = above(0)});
+            .key("probes", &SceneFile::probes,
+                 {.meaning = "what is recorded: contacts for the report, series of numbers for --probes"})
+            .key("probe_step", &SceneFile::probe_step,
+                 {.meaning = "between two looks at the probes, or rows of their series; frame_step by default",
+                  .unit = "s",
+                  .limits = above(0)});
     return rule;
 }
 

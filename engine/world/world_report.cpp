@@ -50,6 +50,29 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     report.folded += ratios.near_inversion;
 }
 
+/// J, below which energy is rounding: that of the strain which positions with all their digits cannot tell from none,
+/// as if it had added up for ten thousand steps in a row. What rests without weight has no more.
+Real energy_of_rounding(const Model& model) {
+    constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
+    Real sum = 0;
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        if (model.bodies.tetrahedron_count[b] == 0) continue;
+        Real farthest = 0;  // m
+        for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n)
+            farthest = std::max(farthest, model.nodes.position[static_cast<std::size_t>(n)].norm());
+        Real stiffness = 0;  // J, by unit of strain squared
+        for (auto block = static_cast<std::size_t>(model.bodies.blocks[b].begin);
+             block < static_cast<std::size_t>(model.bodies.blocks[b].end); ++block) {
+            const auto material = static_cast<std::size_t>(model.elements.material[block]);
+            for (const Real volume : model.elements.volume[block].lane)
+                stiffness += volume * model.materials.young_modulus[material];
+        }
+        const Real strain = digits * (1 + farthest / model.bodies.min_altitude[b]);
+        sum += stiffness * strain * strain / 2;
+    }
+    return sum;
+}
+
 }  // namespace
 
 std::string StepReport::message() const {
@@ -164,7 +187,8 @@ WorldReport World::report() const {
     const Balance balance = checked_balance(world.model, lag_between_steps(world), world.record.balance);
     const auto share = [](Real of, Real whole) { return whole > 0 ? of / whole : 0; };
     report.energy_error = balance.energy_error;
-    report.energy_error_share = share(balance.energy_error, balance.energy_scale);
+    report.energy_error_share =
+        share(balance.energy_error, std::max(balance.energy_scale, energy_of_rounding(world.model)));
     report.momentum_error = balance.momentum_known ? balance.momentum_error : std::numeric_limits<Real>::quiet_NaN();
     report.momentum_error_share = share(report.momentum_error, balance.momentum_scale);
     report.balanced_steps = balance.steps;

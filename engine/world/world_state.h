@@ -53,6 +53,10 @@ struct WorldAccess {
         world.state_->settle();
         return *world.state_;
     }
+    static const WorldState& state_of(const World& world) {
+        world.state_->settle();
+        return *world.state_;
+    }
 };
 
 /// What lies at a place in a WorldState, for messages: "nodes.velocity".

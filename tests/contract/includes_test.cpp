@@ -46,7 +46,7 @@ int inner_floor(const std::string& path) {
         {"systems/collision/inputs/", 1},  {"systems/collision/tree/", 1},     {"systems/collision/narrow/", 2},
         {"systems/collision/overlap/", 3}, {"systems/collision/search/", 3},   {"systems/dynamics/kinds/", 1},
         {"systems/dynamics/elements/", 2}, {"systems/dynamics/stability/", 3}, {"systems/dynamics/motion/", 4},
-        {"systems/dynamics/checks/", 4},   {"systems/dynamics/clusters/", 4},  {"systems/solver/inputs/", 1},
+        {"systems/dynamics/checks/", 5},   {"systems/dynamics/clusters/", 4},  {"systems/solver/inputs/", 1},
         {"systems/solver/local/", 2},      {"systems/solver/operators/", 3},   {"systems/solver/methods/", 4},
         {"systems/solver/lanes/", 5},      {"systems/solver/coloured/", 5},    {"systems/solver/regions/", 6},
     };

@@ -79,6 +79,38 @@ TEST_CASE("a change from outside starts the balance afresh, and a held body that
     CHECK(damped.report().energy_error_share < 0.05);
 }
 
+TEST_CASE("what rests without weight has no doubtful energy: shares of rounding are none", "[scene]") {
+    Settings settings;
+    settings.gravity.setZero();
+    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.3, -0.2, 7), Vec3(100, 0, 0)}) {
+        World world(settings);
+        const auto rubber = world.add_material({.young_modulus = 1e6});
+        world.add_body(mesh::ball(0.1, 6), {.material = rubber, .position = place, .rotation = {0.3, 0.2, 0.1}});
+        REQUIRE(world.advance(0.3).ok());
+        CHECK(world.report().energy_error < 1e-12);
+        CHECK(world.report().energy_error_share < 1e-3);
+    }
+}
+
+TEST_CASE("motion that is small, but none of rounding, has the share of error that it has when it is large",
+          "[scene]") {
+    std::vector<Real> shares;
+    for (const Real rate : {1e-3, 1e-7}) {  // 1/s: strains of about 1e-6 and 1e-10
+        Settings settings;
+        settings.gravity.setZero();
+        World world(settings);
+        const auto rubber = world.add_material({.young_modulus = 1e6});
+        const auto ball = world.add_body(mesh::ball(0.1, 6), {.material = rubber});
+        std::vector<Vec3> velocity(world.positions(ball).begin(), world.positions(ball).end());
+        for (Vec3& v : velocity) v *= rate;
+        world.set_velocities(ball, velocity);
+        REQUIRE(world.advance(0.02).ok());
+        shares.push_back(world.report().energy_error_share);
+    }
+    CHECK(shares[0] > 1e-6);
+    CHECK(shares[1] == Approx(shares[0]).epsilon(0.05));
+}
+
 TEST_CASE("a report names the body and the element that turned inside out", "[scene]") {
     Settings settings;
     settings.gravity = Vec3::Zero();

@@ -58,6 +58,13 @@ def time_of(data):
     return data.GetFieldData().GetArray("TimeValue").GetValue(0)
 
 
+def texts(data, name):
+    array = data.GetFieldData().GetAbstractArray(name)
+    assert array is not None and array.IsA("vtkStringArray"), f"no texts {name}"
+    values = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+    return [value if isinstance(value, bytes) else value.encode() for value in values]  # bytes that are no text
+
+
 def six(matrix):
     return [matrix[row][column] for row, column in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]]
 
@@ -75,13 +82,19 @@ def check_bodies(path, frame):
     assert data.GetPoints().GetDataType() == vtk.VTK_DOUBLE, "places are doubles"
     same("position", points(data), frame["position"], 0)
     same("velocity", point_array(data, "velocity"), frame["velocity"], FLOAT)
+    same("displacement", point_array(data, "displacement"), frame["displacement"], FLOAT)
     same("speed", point_array(data, "speed"), np.linalg.norm(frame["velocity"], axis=1), FLOAT)
     for name, array, expected in [("stress", cell_array, "stress"), ("strain", cell_array, "strain"),
-                                  ("stress", point_array, "node_stress")]:
+                                  ("stress", point_array, "node_stress"), ("strain", point_array, "node_strain")]:
         same(name, array(data, name), [six(m) for m in frame[expected]], FLOAT)
     for array, expected in [(cell_array, "stress"), (point_array, "node_stress")]:
         same("von_mises", array(data, "von_mises"), [von_mises(np.array(m)) for m in frame[expected]], FLOAT)
     same("body", cell_array(data, "body"), frame["body"], 0)
+    same("material", cell_array(data, "material"), frame["material"], 0)
+    names = [bytes(name) for name in frame["body_names"]]
+    assert texts(data, "body_names") == names, "names of bodies, also of those that have gone"
+    assert texts(data, "material_names")[0] == b'gum <& "rubber">', "the name that a material was given"
+    assert texts(data, "material_names")[1:] in ([], [b"material 1"]), "the name of one that was given none"
     for number, nodes in enumerate(frame["cells"]):
         cell = data.GetCell(number)
         assert cell.GetCellType() == vtk.VTK_TETRA
@@ -106,6 +119,7 @@ def check_contacts(path, frame):
 def check_colliders(path):
     data = read(vtk.vtkXMLPolyDataReader(), path)
     numbers = cell_array(data, "collider")
+    assert texts(data, "collider_names") == [f"collider {i}".encode() for i in range(5)], "names of colliders"
     assert set(numbers) == {0, 1, 2, 3, 4}, "a picture of each collider"
     place = points(data)
     ids = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)

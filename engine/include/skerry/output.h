@@ -9,10 +9,12 @@
 
 namespace skerry {
 
-/// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (velocity, speed, stress, strain, body number) and
-/// one .vtp of the contacts (impulse, force, normal, gap, slip, state, region) a frame. Stress is Cauchy's in Pa, by
-/// tetrahedron and by node, strain Green's, by tetrahedron; components as VTK has them: XX, YY, ZZ, XY, YZ, XZ. Files
-/// appear complete or not at all. Throws SceneError when the folder cannot be written.
+/// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (displacement, velocity, speed, stress, strain,
+/// numbers of body and material) and one .vtp of the contacts (impulse, force, normal, gap, slip, state, region) a
+/// frame. Displacements are from where a body was first seen. Stress is Cauchy's in Pa, strain Green's, both by
+/// tetrahedron and by node; components as VTK has them: XX, YY, ZZ, XY, YZ, XZ. Names of bodies, materials and
+/// colliders, by number, are texts in the field data. Files appear complete or not at all. Throws SceneError when the
+/// folder cannot be written.
 class VtkWriter {
 public:
     VtkWriter(const std::filesystem::path& folder, const std::string& name);
@@ -20,6 +22,9 @@ public:
     /// Goes on with a series that has `frames` frames by now, `frame_step` seconds apart: those of them that are in the
     /// folder are in the .pvd, and the next one has the next number. Before the first frame.
     void go_on(const World& world, std::size_t frames, Real frame_step);
+    /// In the order in which materials were added; by default they are called "material NUMBER". Before the first
+    /// frame.
+    void name_materials(std::vector<std::string> names);
     void write_frame(const World& world);
     /// Writes the .pvd; frames written so far open without it, too.
     void close();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "skerry/recorder.h"
 #include "skerry/world.h"
 
 namespace skerry {
@@ -39,11 +40,13 @@ struct Probe {
 struct Scene {
     std::string name;
     std::string description;
-    Real seconds = 2;            // s, length of a run unless asked otherwise
-    Real frame_step = 1.0 / 60;  // s, between frames of output
+    std::vector<std::string> materials;  // names, in the order added
+    Real seconds = 2;                    // s, length of a run unless asked otherwise
+    Real frame_step = 1.0 / 60;          // s, between frames of output
     World world;
     std::vector<Probe> probes;
-    Real probe_step = 1.0 / 60;  // s, between two looks at the probes
+    std::vector<RecordedProbe> recorded;  // what a Recorder takes, in the order of the file
+    Real probe_step = 1.0 / 60;           // s, between two looks at the probes, or two rows
 };
 
 /// Reads and builds a scene. Mesh files are looked for beside it. Throws SceneError for anything it does not

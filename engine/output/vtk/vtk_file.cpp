@@ -15,12 +15,23 @@ std::string number_text(double value) {
     return {text.data(), end};
 }
 
-VtkFile::VtkFile(std::string_view kind, Real time) : kind_(kind) {
+VtkFile::VtkFile(std::string_view kind, Real time, std::initializer_list<VtkTexts> texts) : kind_(kind) {
     tags_ = "<?xml version=\"1.0\"?>\n";
     open("VTKFile", "type=\"" + kind_ + "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"");
     open(kind_);
     tags_ += "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
-             number_text(time) + "</DataArray></FieldData>\n";
+             number_text(time) + "</DataArray>\n";
+    // as VTK writes them: the codes of the bytes, each text ended by a zero
+    for (const auto& [name, strings] : texts) {
+        tags_.append("<Array type=\"String\" Name=\"").append(name).append("\" NumberOfTuples=\"");
+        tags_.append(std::to_string(strings.size())).append("\" format=\"ascii\">");
+        for (const std::string& text : strings) {
+            for (const char c : text) tags_.append(std::to_string(static_cast<unsigned char>(c))).append(" ");
+            tags_.append("0 ");
+        }
+        tags_ += "</Array>\n";
+    }
+    tags_ += "</FieldData>\n";
 }
 
 void VtkFile::open(std::string_view tag, std::string_view attributes) {

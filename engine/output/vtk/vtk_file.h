@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -28,6 +30,12 @@ inline constexpr std::string_view vtk_type<std::uint8_t> = "UInt8";
 /// Shortest text that reads back as the same number, whatever the locale.
 std::string number_text(double value);
 
+/// Texts of the field data, which ParaView shows as an array of strings.
+struct VtkTexts {
+    std::string_view name;
+    std::span<const std::string> texts;
+};
+
 /// Put together in the order of the format (VTK file formats, "XML file formats", appended data): tags, and for each
 /// array its raw little-endian bytes behind a count of 64 bits. Raw, not base64: a third smaller, and every reader of
 /// VTK's own takes it.
@@ -35,7 +43,7 @@ class VtkFile {
 public:
     /// `kind` is UnstructuredGrid or PolyData. The time goes into the field data, where ParaView looks for it in a file
     /// of its own.
-    VtkFile(std::string_view kind, Real time);
+    VtkFile(std::string_view kind, Real time, std::initializer_list<VtkTexts> texts = {});
 
     void open(std::string_view tag, std::string_view attributes = "");
     void close(std::string_view tag);

@@ -1,7 +1,10 @@
 #include "engine/output/vtk/vtk_series.h"
 
 #include <algorithm>
+#include <cstring>
+#include <fstream>
 #include <ostream>
+#include <sstream>
 #include <utility>
 
 #include "components/check.h"
@@ -107,10 +110,17 @@ std::string VtkSeries::frame_file(const char* what, const char* extension) const
 }
 
 void VtkSeries::number(const Frame& frame) {
-    for (const BodyFrame& body : frame.bodies)
-        body_number_.try_emplace(body.handle, static_cast<Index>(body_number_.size()));
+    for (const BodyFrame& body : frame.bodies) {
+        if (body_number_.try_emplace(body.handle, static_cast<Index>(body_number_.size())).second)
+            body_names_.push_back(body.name);
+        origin_.try_emplace(body.handle, body.position.begin(), body.position.end());
+        for (const Index material : body.material)
+            while (material >= static_cast<Index>(material_names_.size()))
+                material_names_.push_back("material " + std::to_string(material_names_.size()));
+    }
     for (const ColliderFrame& collider : frame.colliders)
-        collider_number_.try_emplace(collider.handle, static_cast<Index>(collider_number_.size()));
+        if (collider_number_.try_emplace(collider.handle, static_cast<Index>(collider_number_.size())).second)
+            collider_names_.push_back(collider.name);
 }
 
 void VtkSeries::remove_earlier() {
@@ -129,7 +139,30 @@ void VtkSeries::remove_earlier() {
     earlier_.clear();
 }
 
+/// Displacements go on from the first frame, if that has the same nodes.
+void VtkSeries::read_origins(const Frame& now) {
+    std::size_t points = 0;
+    for (const BodyFrame& body : now.bodies) points += body.position.size();
+    std::ifstream in(folder_ / frame_file("bodies", ".vtu"), std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    const std::string file = text.str(), start = "<AppendedData encoding=\"raw\">_";
+    const std::size_t found = file.find(start), first = found + start.size() + sizeof(std::uint64_t);
+    std::uint64_t bytes = 0;  // the places are the first array
+    if (found == std::string::npos || first + points * sizeof(Vec3) > file.size()) return;
+    std::memcpy(&bytes, file.data() + found + start.size(), sizeof bytes);
+    if (bytes != points * sizeof(Vec3)) return;
+    const char* place = file.data() + first;
+    for (const BodyFrame& body : now.bodies) {
+        std::vector<Vec3>& origin = origin_[body.handle];
+        origin.resize(body.position.size());
+        std::memcpy(static_cast<void*>(origin.data()), place, origin.size() * sizeof(Vec3));
+        place += origin.size() * sizeof(Vec3);
+    }
+}
+
 void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
+    read_origins(now);
     number(now);
     const auto list = [&](int part, const std::string& file) {
         std::error_code ignored;
@@ -204,7 +237,7 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
         };
     };
 
-    VtkFile file("UnstructuredGrid", frame.time);
+    VtkFile file("UnstructuredGrid", frame.time, {{"body_names", body_names_}, {"material_names", material_names_}});
     file.open("Piece", count_attribute("Points", points) + count_attribute("Cells", cells));
     // Places in double: what people measure from them are differences (gaps, travel, strain), where float leaves few
     // digits. The rest in float, which is more than the simulation knows.
@@ -226,6 +259,9 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                              of_cells([](auto& put, const BodyFrame&, std::size_t) { put(vtk_tetra); }));
     file.close("Cells");
     file.open("PointData");
+    file.array<float>("displacement", 3, points, of_nodes([this](auto& put, const BodyFrame& b, std::size_t n) {
+                          put_vector(put, b.position[n] - origin_.at(b.handle)[n]);
+                      }));
     file.array<float>("velocity", 3, points,
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.velocity[n]); }));
     file.array<float>("speed", 1, points,
@@ -234,6 +270,9 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(von_mises(b.node_stress[n])); }));
     file.array<float>("stress", 6, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
                           put_symmetric(put, b.node_stress[n]);
+                      }));
+    file.array<float>("strain", 6, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
+                          put_symmetric(put, b.node_strain[n]);
                       }));
     file.close("PointData");
     file.open("CellData");
@@ -246,6 +285,9 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
     file.array<std::int32_t>("body", 1, cells, of_cells([this](auto& put, const BodyFrame& b, std::size_t) {
                                  put(number_of(body_number_, b.handle));
                              }));
+    file.array<std::int32_t>("material", 1, cells, of_cells([](auto& put, const BodyFrame& b, std::size_t c) {
+                                 put(b.material.empty() ? no_index : b.material[c]);
+                             }));
     file.close("CellData");
     file.close("Piece");
     file.write(folder_ / name);
@@ -253,7 +295,7 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
 
 void VtkSeries::write_contacts(const Frame& frame, const std::string& name) const {
     const std::span<const Contact> rows = frame.contacts;
-    VtkFile file("PolyData", frame.time);
+    VtkFile file("PolyData", frame.time, {{"body_names", body_names_}, {"collider_names", collider_names_}});
     file.open("Piece", count_attribute("Points", rows.size()) + count_attribute("Verts", rows.size()) +
                            count_attribute("Polys", 0));
     file.open("Points");
@@ -323,7 +365,7 @@ void VtkSeries::write_colliders(const Frame& frame, const std::string& name) con
         for (const auto& [a, b, c] : picture.triangles) triangles.push_back({first + a, first + b, first + c});
         numbers.resize(triangles.size(), number_of(collider_number_, collider.handle));
     }
-    VtkFile file("PolyData", frame.time);
+    VtkFile file("PolyData", frame.time, {{"collider_names", collider_names_}});
     file.open("Piece", count_attribute("Points", nodes.size()) + count_attribute("Polys", triangles.size()));
     file.open("Points");
     file.array<double>("Points", 3, nodes.size(), [&](auto put) {

@@ -25,6 +25,8 @@ public:
     /// As if `frames` frames had been written, `frame_step` seconds apart, `now` being the last: those that are there
     /// are listed.
     void go_on(const Frame& now, std::size_t frames, Real frame_step);
+    /// In the order in which materials were added; "material NUMBER" of those that are not named.
+    void name_materials(std::vector<std::string> names) { material_names_ = std::move(names); }
     void write_frame(const Frame& frame);
     void write_index() const;
 
@@ -38,6 +40,7 @@ private:
     void remove_earlier();
     void write_files(const Frame& frame);
     void number(const Frame& frame);
+    void read_origins(const Frame& now);
     void write_bodies(const Frame& frame, const std::string& file) const;
     void write_contacts(const Frame& frame, const std::string& file) const;
     void write_colliders(const Frame& frame, const std::string& file) const;
@@ -51,6 +54,9 @@ private:
     std::size_t frame_count_ = 0;
     std::map<BodyHandle, Index> body_number_;
     std::map<ColliderHandle, Index> collider_number_;
+    std::vector<std::string> body_names_, collider_names_;  // by number
+    std::vector<std::string> material_names_;
+    std::map<BodyHandle, std::vector<Vec3>> origin_;                    // m, by node: where a body was first seen
     std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;  // as last written
     std::string colliders_file_;                                        // last written
     Vec3 patch_center_ = Vec3::Zero();                                  // m, of the pictures of planes

@@ -2,6 +2,8 @@
 #include "engine/output/vtk/vtk_series.h"
 #include "skerry/output.h"
 
+#include <utility>
+
 namespace skerry {
 
 struct VtkWriter::Impl {
@@ -17,6 +19,10 @@ VtkWriter::~VtkWriter() = default;
 void VtkWriter::go_on(const World& world, std::size_t frames, Real frame_step) {
     // forces of the next frame are impulses over the mean step since this one
     impl_->series.go_on(impl_->collector.collect(world), frames, frame_step);
+}
+
+void VtkWriter::name_materials(std::vector<std::string> names) {
+    impl_->series.name_materials(std::move(names));
 }
 
 void VtkWriter::write_frame(const World& world) {

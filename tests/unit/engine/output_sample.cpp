@@ -157,7 +157,8 @@ const Frame& OutputSample::frame(int number) {
                                  .stress = {},
                                  .strain = {},
                                  .node_stress = {},
-                                 .node_strain = {}});
+                                 .node_strain = {},
+                                 .material = std::vector<Index>(tetrahedra_.size(), ball % 2)});
         place_ball(ball, time);
         BodyFrame& body = frame_.bodies.back();
         body.stress = b.stress;

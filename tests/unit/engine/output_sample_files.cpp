@@ -38,6 +38,8 @@ Json expected(const Frame& frame) {
             json["body"].push_back(body.handle.slot);
         }
         for (const Mat3& strain : body.strain) json["strain"].push_back(json_of_matrix(strain));
+        for (const Mat3& strain : body.node_strain) json["node_strain"].push_back(json_of_matrix(strain));
+        for (const Index material : body.material) json["material"].push_back(material);
         for (const Mat3& stress : body.node_stress) json["node_stress"].push_back(json_of_matrix(stress));
         first += static_cast<Index>(body.position.size());
     }
@@ -67,14 +69,26 @@ int main(int argc, char** argv) {
     // late.
     OutputSample small(3, 1, 45);
     VtkSeries series(folder / "vtk", "drop & bounce");
+    series.name_materials({"gum <& \"rubber\">"});
     Json frames = Json::array();
     std::map<std::uint32_t, int> number;
+    std::map<int, std::string> names;
+    std::map<std::uint32_t, std::vector<Vec3>> origin;
     for (int i = 0; i < small.frame_count(); ++i) {
         const Frame& frame = small.frame(i);
         series.write_frame(frame);
         for (const BodyFrame& body : frame.bodies)
             number.try_emplace(body.handle.slot, static_cast<int>(number.size()));
         Json json = expected(frame);
+        for (const BodyFrame& body : frame.bodies) {
+            const std::vector<Vec3>& first =
+                origin.try_emplace(body.handle.slot, body.position.begin(), body.position.end()).first->second;
+            for (std::size_t n = 0; n < first.size(); ++n)
+                json["displacement"].push_back(json_of(body.position[n] - first[n]));
+            names[number.at(body.handle.slot)] = body.name;
+        }
+        for (const auto& [of, name] : names)
+            json["body_names"].push_back(std::vector<unsigned char>(name.begin(), name.end()));
         for (Json& slot : json["body"]) slot = number.at(slot.get<std::uint32_t>());
         for (Json& contact : json["contacts"])
             contact["first_body"] = number.at(contact["first_body"].get<std::uint32_t>());

@@ -1,0 +1,211 @@
+#include "engine/output/series/probe_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/world/world_state.h"
+#include "systems/dynamics/checks/volume_ratios.h"
+#include "systems/dynamics/elements/element_energy.h"
+
+namespace skerry {
+
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+
+void put_vector(const Vec3& v, std::vector<Real>& values) {
+    values.insert(values.end(), {v.x(), v.y(), v.z()});
+}
+
+Vec3 at_point(std::span<const Vec3> values, const PointProbe& point) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t a = 0; a < 4; ++a)
+        if (point.weight[a] != 0) sum += point.weight[a] * values[static_cast<std::size_t>(point.node[a])];
+    return sum;
+}
+
+struct Motion3 {
+    Vec3 position, velocity;
+};
+
+Motion3 motion_of(const World& world, const PointProbe& point) {
+    return {at_point(world.positions(point.body), point), at_point(world.velocities(point.body), point)};
+}
+
+Motion3 motion_of(const World& world, const BodyProbe& probe) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const Range nodes = model.bodies.nodes[static_cast<std::size_t>(model.row(probe.body, "sample"))];
+    Vec3 momentum = Vec3::Zero();
+    for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n)
+        momentum += model.nodes.mass[n] * model.nodes.velocity[n];
+    return {world.center_of_mass(probe.body), momentum / world.mass(probe.body)};
+}
+
+ForceReport force_of(const Forces& forces, const BodyForceProbe& probe) {
+    if (!probe.by) return forces.on(probe.body);
+    return std::visit([&](auto by) { return forces.on(probe.body, by); }, *probe.by);
+}
+ForceReport force_of(const Forces& forces, const ColliderForceProbe& probe) {
+    return probe.by ? forces.on(probe.collider, *probe.by) : forces.on(probe.collider);
+}
+ForceReport force_of(const Forces& forces, const ReactionProbe& probe) {
+    return forces.by(probe.attachment);
+}
+
+Real largest_stress(const World& world, const StressProbe& probe) {
+    const std::vector<Mat3> stress = world.node_stress(probe.body);
+    Real largest = 0;
+    if (probe.nodes.empty())
+        for (const Mat3& of_node : stress) largest = std::max(largest, von_mises(of_node));
+    for (const Index n : probe.nodes) largest = std::max(largest, von_mises(stress[static_cast<std::size_t>(n)]));
+    return largest;
+}
+
+Real smallest_volume(const World& world, BodyHandle body) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const Range blocks = model.bodies.tetrahedron_blocks[static_cast<std::size_t>(model.row(body, "sample"))];
+    return tetrahedron_volume_ratios(model.tetrahedra.node, model.tetrahedra.volume, blocks, model.nodes.position)
+        .smallest;
+}
+
+[[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& expected) {
+    Complaint{.file = {}, .object = {}, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+}
+
+void require_nodes(const World& world, BodyHandle body, std::span<const Index> nodes) {
+    const auto count = static_cast<Index>(world.positions(body).size());
+    for (const Index n : nodes)
+        if (n < 0 || n >= count)
+            refuse("nodes", "node " + std::to_string(n), "nodes of the body, 0 to " + std::to_string(count - 1));
+}
+
+void require_weights(const PointProbe& point) {
+    Real sum = 0;
+    for (const Real w : point.weight) sum += w;
+    constexpr Real rounding = 1e-9;
+    if (!(std::abs(sum - 1) < rounding))
+        refuse("weight", "weights whose sum is " + std::to_string(sum), "weights that sum to one");
+}
+
+void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
+    // without a step no time passed that an impulse acted for; what a rest hides is not known
+    const bool known = force.seconds > 0 && !(force.unknown > 0);
+    const Real none = std::numeric_limits<Real>::quiet_NaN();
+    const Real per = known ? 1 / force.seconds : none;
+    put_vector(known ? force.impulse : Vec3::Constant(none), values);
+    put_vector(per * force.impulse, values);
+    put_vector(per * force.moment, values);
+    values.push_back(known ? force.largest : none);
+    if (of_contacts) {
+        values.push_back(per * force.pressing);
+        put_vector(per * force.friction, values);
+        values.push_back(force.contacts);
+    }
+    force = {};
+}
+
+void put_motion(const Motion3& motion, const Vec3& origin, std::vector<Real>& values) {
+    put_vector(motion.position, values);
+    put_vector(motion.position - origin, values);
+    put_vector(motion.velocity, values);
+}
+
+}  // namespace
+
+void ForceSum::add(const ForceReport& report) {
+    impulse += report.impulse;
+    moment += report.moment_impulse;
+    friction += report.friction_impulse;
+    pressing += report.pressing_impulse;
+    largest = std::max(largest, report.largest_force);
+    seconds += report.seconds;
+    unknown += report.unknown_seconds;
+    contacts = report.contacts;
+}
+
+bool measures_force(const RecordedProbe& probe) {
+    return std::holds_alternative<BodyForceProbe>(probe.what) ||
+           std::holds_alternative<ColliderForceProbe>(probe.what) || std::holds_alternative<ReactionProbe>(probe.what);
+}
+
+TrackedProbe track(const World& world, RecordedProbe probe) {
+    TrackedProbe tracked{.probe = std::move(probe)};
+    std::visit(Overloaded{[&](const PointProbe& point) {
+                              require_nodes(world, point.body, point.node);
+                              require_weights(point);
+                              tracked.origin = point.origin.value_or(motion_of(world, point).position);
+                          },
+                          [&](const BodyProbe& body) {
+                              tracked.origin = body.origin.value_or(motion_of(world, body).position);
+                          },
+                          [&](const StressProbe& stress) { require_nodes(world, stress.body, stress.nodes); },
+                          [&](const VolumeProbe& volume) { smallest_volume(world, volume.body); },
+                          [](const EnergyProbe&) {}, [&](const auto& force) { force_of(world.forces(), force); }},
+               tracked.probe.what);
+    return tracked;
+}
+
+void add_columns(const RecordedProbe& probe, std::vector<SeriesColumn>& columns) {
+    const auto one = [&](const char* quantity, const char* unit) { columns.push_back({probe.name, quantity, unit}); };
+    const auto three = [&](const std::string& quantity, const char* unit) {
+        for (const char* axis : {"_x", "_y", "_z"}) columns.push_back({probe.name, quantity + axis, unit});
+    };
+    const auto motion = [&] {
+        three("position", "m");
+        three("displacement", "m");
+        three("velocity", "m/s");
+    };
+    const auto force = [&] {
+        three("impulse", "N s");
+        three("force", "N");
+        three("moment", "N m");
+        one("largest_force", "N");
+    };
+    const auto contact_force = [&] {
+        force();
+        one("pressing_force", "N");
+        three("friction_force", "N");
+        one("contacts", "1");
+    };
+    std::visit(Overloaded{[&](const PointProbe&) { motion(); }, [&](const BodyProbe&) { motion(); },
+                          [&](const BodyForceProbe&) { contact_force(); },
+                          [&](const ColliderForceProbe&) { contact_force(); }, [&](const ReactionProbe&) { force(); },
+                          [&](const EnergyProbe&) {
+                              for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");
+                          },
+                          [&](const StressProbe&) { one("largest_von_mises", "Pa"); },
+                          [&](const VolumeProbe&) { one("smallest_volume_ratio", "1"); }},
+               probe.what);
+}
+
+void add_forces(const World& world, TrackedProbe& probe) {
+    const auto add = [&](const auto& force) { probe.force.add(force_of(world.forces(), force)); };
+    std::visit(Overloaded{[&](const BodyForceProbe& force) { add(force); },
+                          [&](const ColliderForceProbe& force) { add(force); },
+                          [&](const ReactionProbe& force) { add(force); }, [](const auto&) {}},
+               probe.probe.what);
+}
+
+void put_row(const World& world, TrackedProbe& probe, std::vector<Real>& values) {
+    std::visit(
+        Overloaded{
+            [&](const PointProbe& point) { put_motion(motion_of(world, point), probe.origin, values); },
+            [&](const BodyProbe& body) { put_motion(motion_of(world, body), probe.origin, values); },
+            [&](const BodyForceProbe&) { put_force(probe.force, true, values); },
+            [&](const ColliderForceProbe&) { put_force(probe.force, true, values); },
+            [&](const ReactionProbe&) { put_force(probe.force, false, values); },
+            [&](const EnergyProbe&) {
+                const Energy energy = world.energy();
+                values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
+            },
+            [&](const StressProbe& stress) { values.push_back(largest_stress(world, stress)); },
+            [&](const VolumeProbe& volume) { values.push_back(smallest_volume(world, volume.body)); }},
+        probe.probe.what);
+}
+
+}  // namespace skerry

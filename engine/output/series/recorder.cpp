@@ -1,0 +1,255 @@
+#include "skerry/recorder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "engine/hdf5/hdf5_image.h"
+#include "engine/output/series/follow_point.h"
+#include "engine/output/series/probe_columns.h"
+#include "engine/output/vtk/vtk_file.h"
+#include "engine/output/write_file.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real slack = 1e-9;  // of `every`: times are sums of steps
+
+[[noreturn]] void refuse(const std::string& name, const char* field, const std::string& found,
+                         const std::string& expected) {
+    Complaint{.file = {},
+              .object = "probe \"" + name + "\"",
+              .field = field,
+              .found = found,
+              .expected = expected,
+              .hint = {}}
+        .raise();
+}
+
+/// Says of which probe a complaint is.
+template <class Function>
+auto called_for(const RecordedProbe& probe, Function function) {
+    try {
+        return function();
+    } catch (const SceneError& error) {
+        throw SceneError("probe \"" + probe.name + "\": " + error.what());
+    }
+}
+
+void check_names(const std::vector<RecordedProbe>& probes) {
+    std::set<std::string> names;
+    for (const RecordedProbe& probe : probes) {
+        const bool odd = std::ranges::any_of(
+            probe.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
+        if (probe.name.empty() || probe.name == "." || probe.name == "time" || odd)
+            refuse(probe.name, "name", "\"" + probe.name + "\"",
+                   "a text that is not \"time\", without / and control characters: it heads columns");
+        if (!names.insert(probe.name).second) refuse(probe.name, "name", "the name again", "a name of its own");
+    }
+}
+
+/// RFC 4180: in quotes where it has to be.
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string csv_head(const std::vector<SeriesColumn>& columns) {
+    std::string line;
+    for (const SeriesColumn& column : columns) line += (line.empty() ? "" : ",") + csv_field(column.heading());
+    return line + "\n";
+}
+
+std::string csv_row(std::span<const Real> values) {
+    std::string line;
+    for (const Real value : values) {
+        if (!line.empty()) line += ",";
+        line += std::isfinite(value) ? number_text(value) : "nan";
+    }
+    return line + "\n";
+}
+
+/// Whole rows of a file of the same headings, up to a time.
+std::string rows_to_keep(const std::filesystem::path& file, const std::string& head, Real until) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return {};
+    std::stringstream all;
+    all << in.rdbuf();
+    const std::string text = all.str();
+    if (text.empty()) return {};
+    if (!text.starts_with(head))
+        Complaint{.file = file.string(),
+                  .object = "output",
+                  .field = "first line",
+                  .found = "\"" + text.substr(0, std::min<std::size_t>(text.find('\n'), 60)) + "\"",
+                  .expected = "the headings of the same probes, to go on with",
+                  .hint = "another file, or none there"}
+            .raise();
+    std::string kept;
+    for (std::size_t begin = head.size(), end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+        const std::string line = text.substr(begin, end + 1 - begin);
+        char* number_end = nullptr;
+        const Real time = std::strtod(line.c_str(), &number_end);
+        if (number_end == line.c_str() || !(time <= until * (1 + slack))) break;
+        kept += line;
+    }
+    return kept;
+}
+
+}  // namespace
+
+std::string SeriesColumn::heading() const {
+    return (probe.empty() ? quantity : probe + "." + quantity) + " [" + unit + "]";
+}
+
+PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point) {
+    const std::span<const Vec3> nodes = world.positions(body);
+    const auto found = follow_point(nodes, world.tetrahedra(body), point, world.mean_edge(body));
+    if (!found) {
+        std::ostringstream place, nearest;
+        place << "(" << point.x() << ", " << point.y() << ", " << point.z() << ") m";
+        const auto [node, distance] = nearest_node(nodes, point);
+        nearest << "a point of the body";
+        if (node != no_index)
+            nearest << "; node " << node << ", " << distance << " m away, at (" << nodes[node].x() << ", "
+                    << nodes[node].y() << ", " << nodes[node].z() << ") m is the nearest";
+        Complaint{.file = {},
+                  .object = "body '" + world.name(body) + "'",
+                  .field = "point",
+                  .found = place.str(),
+                  .expected = nearest.str(),
+                  .hint = {}}
+            .raise();
+    }
+    return {.body = body, .node = found->node, .weight = found->weight};
+}
+
+struct Recorder::Impl {
+    std::vector<TrackedProbe> probes;
+    std::vector<SeriesColumn> columns;
+    Real every = 0, next = 0;  // s
+    bool begun = false;
+    Real last_time = 0;        // s, of the last look
+    std::vector<Real> values;  // row by row
+    std::filesystem::path stream_file;
+    std::ofstream stream;
+
+    std::size_t rows() const { return values.size() / columns.size(); }
+    std::span<const Real> row(std::size_t number) const {
+        return std::span<const Real>(values).subspan(number * columns.size(), columns.size());
+    }
+    void put(const std::string& text) {
+        errno = 0;
+        stream << text << std::flush;
+        if (stream) return;
+        const std::string reason = std::generic_category().message(errno);
+        stream.close();
+        Complaint{.file = stream_file.string(),
+                  .object = "output",
+                  .field = {},
+                  .found = "\"" + reason + "\" while writing a row",
+                  .expected = "room for it",
+                  .hint = {}}
+            .raise();
+    }
+};
+
+Recorder::Recorder(World& world, std::vector<RecordedProbe> probes, Real every) : impl_(std::make_unique<Impl>()) {
+    if (!(every >= 0) || !std::isfinite(every))
+        Complaint{.file = {},
+                  .object = "Recorder",
+                  .field = "every",
+                  .found = std::to_string(every),
+                  .expected = "a time >= 0 (s)",
+                  .hint = {}}
+            .raise();
+    check_names(probes);
+    if (std::ranges::any_of(probes, measures_force) && !world.measures_forces()) world.measure_forces(true);
+    impl_->every = every;
+    impl_->last_time = world.time();
+    impl_->columns.push_back({"", "time", "s"});
+    for (RecordedProbe& probe : probes) {
+        add_columns(probe, impl_->columns);
+        impl_->probes.push_back(called_for(probe, [&] { return track(world, probe); }));
+    }
+}
+Recorder::~Recorder() = default;
+Recorder::Recorder(Recorder&&) noexcept = default;
+Recorder& Recorder::operator=(Recorder&&) noexcept = default;
+
+void Recorder::sample(const World& world) {
+    Impl& r = *impl_;
+    const Real time = world.time();
+    if (r.begun && !(time > r.last_time)) return;  // no time has passed: its forces were seen
+    if (time > r.last_time)
+        for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });
+    r.last_time = time;
+    if (r.begun && time < r.next - slack * r.every) return;
+    r.begun = true;
+    if (r.every > 0) r.next = (std::floor(time / r.every + slack) + 1) * r.every;
+    const std::size_t before = r.values.size();
+    try {
+        r.values.push_back(time);
+        for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { put_row(world, probe, r.values); });
+    } catch (...) {
+        r.values.resize(before);  // rows are whole
+        throw;
+    }
+    if (r.stream.is_open()) r.put(csv_row(r.row(r.rows() - 1)));
+}
+
+const std::vector<SeriesColumn>& Recorder::columns() const {
+    return impl_->columns;
+}
+std::size_t Recorder::row_count() const {
+    return impl_->rows();
+}
+std::span<const Real> Recorder::row(std::size_t number) const {
+    return impl_->row(number);
+}
+
+void Recorder::stream_csv(const std::filesystem::path& file, std::optional<Real> keep_until) {
+    Impl& r = *impl_;
+    const std::string head = csv_head(r.columns);
+    const std::string kept = keep_until ? rows_to_keep(file, head, *keep_until) : std::string();
+    write_file(file, [&](std::ostream& out) {
+        out << head << kept;
+        for (std::size_t i = 0; i < r.rows(); ++i) out << csv_row(r.row(i));
+    });
+    r.stream_file = file;
+    errno = 0;
+    r.stream = std::ofstream(file, std::ios::binary | std::ios::app);
+    if (!r.stream) r.put("");
+}
+
+void Recorder::write_csv(const std::filesystem::path& file) const {
+    write_file(file, [&](std::ostream& out) {
+        out << csv_head(impl_->columns);
+        for (std::size_t i = 0; i < impl_->rows(); ++i) out << csv_row(impl_->row(i));
+    });
+}
+
+void Recorder::write_hdf5(const std::filesystem::path& file) const {
+    const Impl& r = *impl_;
+    Hdf5Image image(file.string());
+    std::vector<Real> values(r.rows());
+    for (std::size_t c = 0; c < r.columns.size(); ++c) {
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = r.row(i)[c];
+        const SeriesColumn& column = r.columns[c];
+        const std::string path = (column.probe.empty() ? "" : "/" + column.probe) + "/" + column.quantity;
+        image.put(path, std::span<const Real>(values));
+        image.put_attribute(path, "unit", column.unit);
+    }
+    const std::vector<char> bytes = image.bytes();
+    write_file(file, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+}
+
+}  // namespace skerry

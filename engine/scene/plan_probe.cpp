@@ -1,0 +1,117 @@
+// Finds what probes name.
+#include <algorithm>
+
+#include "engine/scene/scene_plan.h"
+
+namespace skerry {
+
+std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place) {
+    std::vector<Index> inside;
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+        if ((mesh.nodes[i].array() >= box.lower.array()).all() && (mesh.nodes[i].array() <= box.upper.array()).all())
+            inside.push_back(static_cast<Index>(i));
+    if (inside.empty())
+        place.key("box").refuse("a box without any node", "a box around nodes of the mesh, in the mesh's own frame");
+    return inside;
+}
+
+namespace {
+
+constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+/// Where a name stands in a list of plans, or nowhere.
+std::size_t find_name(const auto& plans, const std::string& name) {
+    const auto found = std::ranges::find(plans, name, [](const auto& plan) { return plan.settings.name; });
+    return found == plans.end() ? nowhere : static_cast<std::size_t>(found - plans.begin());
+}
+
+std::vector<std::string> names_of(const auto& plans) {
+    std::vector<std::string> names;
+    for (const auto& plan : plans) names.push_back(plan.settings.name);
+    return names;
+}
+
+std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place) {
+    const std::size_t body = find_name(plan.bodies, name);
+    if (body == nowhere) place.refuse(in_quotes(name), "the name of a body", nearest_hint(name, names_of(plan.bodies)));
+    return body;
+}
+
+std::size_t find_collider(const ScenePlan& plan, const std::string& name, const Place& place) {
+    const std::size_t collider = find_name(plan.colliders, name);
+    if (collider == nowhere)
+        place.refuse(in_quotes(name), "the name of a collider", nearest_hint(name, names_of(plan.colliders)));
+    return collider;
+}
+
+/// The partner of a force: a body or a collider, by a name that only one of them has.
+void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {
+    const Place place = entry.place.key("by");
+    const std::size_t body = find_name(plan.bodies, *entry.by), collider = find_name(plan.colliders, *entry.by);
+    if (body != nowhere) series.by_body = body;
+    if (collider != nowhere && !series.collider) {
+        if (body != nowhere)
+            place.refuse(in_quotes(*entry.by) + ", a body and a collider", "a name that only one of them has");
+        series.by_collider = collider;
+    }
+    if (series.by_body || series.by_collider) return;
+    std::vector<std::string> names = names_of(plan.bodies);
+    if (!series.collider)
+        for (const std::string& name : names_of(plan.colliders)) names.push_back(name);
+    place.refuse(in_quotes(*entry.by), series.collider ? "the name of a body" : "the name of a body or a collider",
+                 nearest_hint(*entry.by, names));
+}
+
+MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
+    Vec3 lower = mesh.nodes.front(), upper = lower;
+    for (const Vec3& node : mesh.nodes) {
+        lower = lower.cwiseMin(node);
+        upper = upper.cwiseMax(node);
+    }
+    constexpr Real reach = 0.01;  // of the diagonal: what rounding and the edges of round shapes leave
+    const auto found = follow_point(mesh.nodes, mesh.tetrahedra, *entry.point, reach * (upper - lower).norm());
+    if (found) return *found;
+    const Vec3& nearest = mesh.nodes[static_cast<std::size_t>(nearest_node(mesh.nodes, *entry.point).first)];
+    const auto text = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}.dump(); };
+    entry.place.key("point").refuse(text(*entry.point), "a point inside the body, in the mesh's own frame",
+                                    "the nearest node is at " + text(nearest));
+}
+
+void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
+    SeriesPlan series;
+    series.name = entry.name;
+    series.quantity = entry.quantity;
+    series.place = entry.place;
+    if (entry.body) series.body = find_body(plan, *entry.body, entry.place.key("body"));
+    if (entry.collider) series.collider = find_collider(plan, *entry.collider, entry.place.key("collider"));
+    if (entry.by) find_partner(entry, plan, series);
+    if (series.body) {
+        const BodyPlan& body = plan.bodies[*series.body];
+        const Mesh& mesh = plan.meshes[body.mesh];
+        if (entry.box) series.nodes = nodes_inside(mesh, *entry.box, entry.place);
+        if (entry.point) series.point = find_point(entry, mesh);
+        if (entry.quantity == ProbeQuantity::reaction) {
+            series.pin = static_cast<std::size_t>(entry.pin.value_or(0));
+            if (series.pin >= body.pins.size())
+                entry.place.key(entry.pin ? "pin" : "body")
+                    .refuse(body.pins.empty() ? "a body without pins" : "pin " + std::to_string(series.pin),
+                            body.pins.empty() ? "a body with pins"
+                                              : "a number of its pins, 0 to " + std::to_string(body.pins.size() - 1));
+        }
+    }
+    plan.series.push_back(std::move(series));
+}
+
+}  // namespace
+
+void plan_probe(const ProbeEntry& entry, ScenePlan& plan) {
+    const auto same = [&](const auto& other) { return other.name == entry.name; };
+    if (std::ranges::any_of(plan.probes, same) || std::ranges::any_of(plan.series, same))
+        entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a name of its own for every probe");
+    if (entry.quantity != ProbeQuantity::contacts) return plan_series(entry, plan);
+    const std::size_t body = find_body(plan, *entry.body, entry.place.key("body"));
+    plan.probes.push_back(
+        {entry.name, body, nodes_inside(plan.meshes[plan.bodies[body].mesh], *entry.box, entry.place)});
+}
+
+}  // namespace skerry

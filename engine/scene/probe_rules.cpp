@@ -1,0 +1,86 @@
+// The keys of probes, and which of them each quantity has.
+#include <algorithm>
+
+#include "engine/scene/scene_rules.h"
+
+namespace skerry {
+
+namespace {
+
+struct KeysOf {
+    std::vector<std::string> required, optional;
+};
+
+KeysOf keys_of(ProbeQuantity quantity) {
+    switch (quantity) {
+        case ProbeQuantity::contacts:
+            return {{"body", "box"}, {}};
+        case ProbeQuantity::motion:
+            return {{"body"}, {"point"}};
+        case ProbeQuantity::force:
+            return {{}, {"body", "collider", "by"}};
+        case ProbeQuantity::reaction:
+            return {{"body"}, {"pin"}};
+        case ProbeQuantity::energy:
+            return {{}, {}};
+        case ProbeQuantity::stress:
+            return {{"body"}, {"box"}};
+        case ProbeQuantity::volume:
+            return {{"body"}, {}};
+    }
+    return {};
+}
+
+void check_keys(const Place& place, const ProbeEntry& probe) {
+    const KeysOf keys = keys_of(probe.quantity);
+    const std::string of = "for the quantity " + in_quotes(name_of(probe.quantity));
+    const std::vector<std::pair<std::string, bool>> given{
+        {"body", probe.body.has_value()}, {"collider", probe.collider.has_value()}, {"by", probe.by.has_value()},
+        {"box", probe.box.has_value()},   {"point", probe.point.has_value()},       {"pin", probe.pin.has_value()}};
+    for (const auto& [key, is_given] : given) {
+        const bool required = std::ranges::find(keys.required, key) != keys.required.end();
+        if (required && !is_given) place.refuse("no key " + in_quotes(key), in_quotes(key) + " " + of);
+        if (!is_given || required || std::ranges::find(keys.optional, key) != keys.optional.end()) continue;
+        std::vector<std::string> possible = keys.required;
+        possible.insert(possible.end(), keys.optional.begin(), keys.optional.end());
+        place.key(key).refuse("a key that says nothing " + of,
+                              possible.empty() ? "none but name and quantity" : "one of " + listed(possible));
+    }
+    if (probe.quantity == ProbeQuantity::force && probe.body.has_value() == probe.collider.has_value())
+        place.refuse(probe.body ? "both \"body\" and \"collider\"" : "neither \"body\" nor \"collider\"",
+                     "one of them: on whom the force acts");
+    const bool odd = std::ranges::any_of(
+        probe.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
+    if (probe.quantity != ProbeQuantity::contacts && (odd || probe.name == "." || probe.name == "time"))
+        place.key("name").refuse(in_quotes(probe.name),
+                                 "a text that is not \"time\", without / and control characters: it heads columns");
+}
+
+}  // namespace
+
+template <>
+const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
+    using P = ProbeEntry;
+    static const auto rule =
+        Rule<P>("probe",
+                "What is recorded. Contacts of a part of a body, for the report: sticking or sliding, how often it "
+                "changes, how fast it slips. All other quantities are series for --probes (docs/outputs.md).")
+            .key("name", &P::name, {.meaning = "in the report, and of columns", .required = true})
+            .key("quantity", &P::quantity,
+                 {.meaning = "contacts (default); motion of a point or of the centre of mass; force of contacts on a "
+                             "body or a collider; reaction of a pin; energy of the world; largest stress; smallest "
+                             "ratio of volume to that at rest"})
+            .key("body", &P::body, {.meaning = "the name of a body"})
+            .key("collider", &P::collider, {.meaning = "of a force: the name of the collider it acts on"})
+            .key("by", &P::by, {.meaning = "of a force: only what this body or collider exerts"})
+            .key("box", &P::box, {.meaning = "the nodes inside, in the mesh's own frame; of a stress by default all"})
+            .key("point", &P::point,
+                 {.meaning = "of a motion: in the mesh's own frame; by default the centre of mass", .unit = "m"})
+            .key("pin", &P::pin,
+                 {.meaning = "of a reaction: which of the body's pins, from 0; the first by default",
+                  .limits = at_least(0)})
+            .check(check_keys);
+    return rule;
+}
+
+}  // namespace skerry

@@ -1,0 +1,180 @@
+"""Series of probes, and frames for ParaView, read back without any package: numbers are those of the run.
+
+Called as: series_test.py PROGRAM SOURCE_FOLDER
+"""
+import csv
+import math
+import re
+import signal
+import struct
+import subprocess
+import sys
+import time
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+sys.dont_write_bytecode = True
+from program_case import PROGRAM, ProgramCase
+
+SCENE = {
+    "seconds": 0.3,
+    "materials": {"rubber": {"E": 5e4, "rho": 500, "mu": 0.5, "damping": 40}, "cord, thick": {"E": 2e5}},
+    "bodies": [
+        {"name": "block", "mesh": {"box": {"size": [0.2, 0.2, 0.2], "cells": [2, 2, 2]}}, "material": "rubber",
+         "position": [0, 0, 0.102]},
+        {"name": "strap é", "mesh": {"box": {"size": [0.4, 0.1, 0.1], "cells": [4, 1, 1]}}, "material": "cord, thick",
+         "position": [1, 0, 1], "pin": {"box": {"lower": [-1, -1, -1], "upper": [-0.19, 1, 1]}}}],
+    "colliders": [{"name": "floor", "shape": {"plane": {}}}],
+    "probes": [
+        {"name": "corner", "quantity": "motion", "body": "block", "point": [0.1, 0.1, 0.1]},
+        {"name": "centre", "quantity": "motion", "body": "block"},
+        {"name": "weight", "quantity": "force", "body": "block", "by": "floor"},
+        {"name": "ground", "quantity": "force", "collider": "floor"},
+        {"name": "clamp", "quantity": "reaction", "body": "strap é"},
+        {"name": "energy", "quantity": "energy"},
+        {"name": "bend", "quantity": "stress", "body": "strap é"},
+        {"name": "squeeze", "quantity": "volume", "body": "block"}],
+    "probe_step": 0.01,
+    "frame_step": 0.05,
+}
+GRAVITY = 9.81
+
+
+def read_csv(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    return {head: [float(row[i]) for row in rows[1:]] for i, head in enumerate(rows[0])}
+
+
+TYPES = {"Float64": "d", "Float32": "f", "Int32": "i", "UInt8": "B"}
+
+
+def read_vtk(path):
+    """Arrays of a file by place and name, in tuples, and the texts of its field data."""
+    content = path.read_bytes()
+    head, data = content.split(b'<AppendedData encoding="raw">_', 1)
+    tree = ElementTree.fromstring(head.decode() + "</VTKFile>")
+    arrays, texts = {}, {}
+    for group in tree.iter():
+        for array in group:
+            if array.tag == "Array" and array.get("type") == "String":
+                codes = bytes(int(code) for code in array.text.split())
+                texts[array.get("Name")] = codes.decode().split("\0")[:-1]
+            if array.get("format") != "appended":
+                continue
+            begin, width = int(array.get("offset")), int(array.get("NumberOfComponents"))
+            size = struct.unpack_from("<Q", data, begin)[0]
+            kind = TYPES[array.get("type")]
+            values = struct.unpack_from(f"<{size // struct.calcsize(kind)}{kind}", data, begin + 8)
+            arrays[group.tag, array.get("Name")] = [values[i:i + width] for i in range(0, len(values), width)]
+    return arrays, texts
+
+
+class SeriesTest(ProgramCase):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("two.json", SCENE)
+
+    def test_rows_are_those_of_the_run_and_forces_carry_what_is_there(self):
+        series, stats = self.folder / "out" / "series.csv", self.folder / "stats.json"
+        done = self.skerry("run", self.scene, "--probes", series, "--stats", stats)
+        self.assertIn(str(series), done.stdout)
+        rows = read_csv(series)
+        self.assertEqual(len(rows["time [s]"]), 31)
+        for i, at in enumerate(rows["time [s]"]):
+            self.assertAlmostEqual(at, 0.01 * i, places=12)
+        mass = 500 * 0.2 ** 3
+        mean = sum(rows["weight.force_z [N]"][-10:]) / 10
+        self.assertAlmostEqual(mean, mass * GRAVITY, delta=0.02 * mass * GRAVITY)
+        for of_body, of_floor in zip(rows["weight.impulse_z [N s]"][1:], rows["ground.impulse_z [N s]"][1:]):
+            self.assertEqual(of_body, -of_floor)
+        strap = 1000 * 0.4 * 0.1 * 0.1 * GRAVITY
+        self.assertAlmostEqual(sum(rows["clamp.force_z [N]"][1:]) / 30, strap, delta=strap)
+        self.assertTrue(math.isnan(rows["clamp.force_z [N]"][0]))
+        self.assertEqual(rows["corner.displacement_x [m]"][0], 0)
+        self.assertAlmostEqual(rows["corner.position_z [m]"][0], 0.202, places=15)
+        self.assertLess(rows["corner.displacement_z [m]"][-1], 0)
+        self.assertGreater(rows["bend.largest_von_mises [Pa]"][-1], 100)
+        self.assertLess(rows["squeeze.smallest_volume_ratio [1]"][-1], 1)
+        self.assertGreater(rows["energy.elastic [J]"][-1], 0)
+        # recording changes nothing
+        other = self.folder / "other.json"
+        self.skerry("run", self.scene, "--stats", other)
+        of = [re.search(r'"state_hash": "(\w+)"', path.read_text()).group(1) for path in (stats, other)]
+        self.assertEqual(*of)
+
+    def test_hdf5_holds_the_same_numbers_with_units(self):
+        self.skerry("run", self.scene, "--probes", self.folder / "s.h5", "--seconds", 0.05)
+        content = (self.folder / "s.h5").read_bytes()
+        self.assertEqual(content[:8], b"\x89HDF\r\n\x1a\n")
+        self.skerry("run", self.scene, "--probes", self.folder / "s.csv", "--seconds", 0.05)
+        rows = read_csv(self.folder / "s.csv")
+        for name in ("energy.potential [J]", "corner.position_z [m]"):
+            self.assertIn(struct.pack(f"<{len(rows[name])}d", *rows[name]), content)
+        for unit in (b"m/s\0", b"N s\0", b"unit\0"):
+            self.assertIn(unit, content)
+
+    def test_a_run_that_is_killed_leaves_whole_rows_and_goes_on_with_them(self):
+        series, checkpoint = self.folder / "series.csv", self.folder / "run.skerry"
+        whole = self.folder / "whole.csv"
+        self.skerry("run", self.scene, "--seconds", 2, "--probes", whole)
+        run = subprocess.Popen([PROGRAM, "run", self.scene, "--seconds", "2", "--probes", series, "--checkpoint",
+                                checkpoint, "--every", "0.05"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            end = time.monotonic() + 60
+            while not checkpoint.exists() and run.poll() is None and time.monotonic() < end:
+                time.sleep(0.002)
+        finally:
+            run.send_signal(signal.SIGKILL)
+            run.wait()
+        rows = read_csv(series)
+        self.assertEqual(len({len(column) for column in rows.values()}), 1)
+        self.assertGreater(len(rows["time [s]"]), 4)
+        with open(series, "a", encoding="utf-8") as file:
+            file.write("0.0")  # as if it had been cut off within a row
+        self.skerry("run", "--restart", checkpoint, "--probes", series)
+        self.assertEqual(series.read_text(), whole.read_text())
+
+    def test_frames_have_displacements_strains_names_and_forces(self):
+        out = self.folder / "frames"
+        self.skerry("run", self.scene, "--out", out, "--seconds", 0.3)
+        first, names = read_vtk(out / "two_bodies_0000.vtu")
+        last, _ = read_vtk(out / "two_bodies_0006.vtu")
+        self.assertEqual(names, {"body_names": ["block", "strap é"], "material_names": ["rubber", "cord, thick"]})
+        place = ("Points", "Points")
+        for before, now, moved in zip(first[place], last[place], last["PointData", "displacement"]):
+            for k in range(3):
+                self.assertAlmostEqual(now[k] - before[k], moved[k], delta=1e-6)
+        self.assertEqual(set(first["PointData", "displacement"]), {(0, 0, 0)})
+        cells, points = len(last["Cells", "types"]), len(last[place])
+        for name, width in (("stress", 6), ("strain", 6)):
+            self.assertEqual([len(row) for row in last["CellData", name]], [width] * cells)
+            self.assertEqual([len(row) for row in last["PointData", name]], [width] * points)
+        for body, material in zip(last["CellData", "body"], last["CellData", "material"]):
+            self.assertEqual(body, material)
+        # its own weight presses the block, which does not turn: about half of it at mid-height
+        of_block = [row[2] for row, body in zip(last["CellData", "stress"], last["CellData", "body"]) if body == (0,)]
+        self.assertAlmostEqual(sum(of_block) / len(of_block), -500 * GRAVITY * 0.1, delta=100)
+        of_block = [row[2] for row, body in zip(last["CellData", "strain"], last["CellData", "body"]) if body == (0,)]
+        self.assertAlmostEqual(sum(of_block) / len(of_block), -500 * GRAVITY * 0.1 / 5e4, delta=2e-3)
+        contacts, names = read_vtk(out / "two_contacts_0006.vtp")
+        self.assertEqual(names["collider_names"], ["floor"])
+        force = sum(row[2] for row in contacts["PointData", "force"])
+        self.assertAlmostEqual(force, 500 * 0.2 ** 3 * GRAVITY, delta=8)
+        _, names = read_vtk(out / "two_colliders_0000.vtp")
+        self.assertEqual(names, {"collider_names": ["floor"]})
+
+    def test_displacements_go_on_from_the_first_frame_after_a_restart(self):
+        out, checkpoint = self.folder / "frames", self.folder / "run.skerry"
+        self.skerry("run", self.scene, "--out", out, "--checkpoint", checkpoint, "--seconds", 0.1)
+        self.skerry("run", "--restart", checkpoint, "--out", out, "--seconds", 0.3)
+        first, _ = read_vtk(out / "two_bodies_0000.vtu")
+        last, _ = read_vtk(out / "two_bodies_0006.vtu")
+        for before, now, moved in zip(first["Points", "Points"], last["Points", "Points"],
+                                      last["PointData", "displacement"]):
+            for k in range(3):
+                self.assertAlmostEqual(now[k] - before[k], moved[k], delta=1e-6)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
