@@ -204,7 +204,8 @@ struct WorldReport : RunCounters {
     // How far to trust it. Differences of energy and momentum from what loads, weights, colliders and losses account
     // for, the largest of the looks taken every 256 steps and now; shares of all that there was to be exchanged.
     Real energy_error = 0, energy_error_share = 0;  // J, 1
-    // kg m/s, 1; not a number where a body that is damped is held: damping takes momentum then
+    // kg m/s, 1; not a number where a body that is damped is held, or by a node of an implicit element: damping, or the
+    // inertia of the element, takes momentum then (World::forces tells that of the element)
     Real momentum_error = 0, momentum_error_share = 0;
     std::uint64_t balanced_steps = 0;  // steps since the balance was opened: it is closed by changes from outside
     Real worst_volume_ratio = 1;       // smallest det F now; < 0 is inverted

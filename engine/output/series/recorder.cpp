@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -141,6 +143,7 @@ struct Recorder::Impl {
     std::vector<Real> values;  // row by row
     std::filesystem::path stream_file;
     std::ofstream stream;
+    std::uintmax_t stream_size = 0;  // bytes, of whole rows
 
     std::size_t rows() const { return values.size() / columns.size(); }
     std::span<const Real> row(std::size_t number) const {
@@ -149,9 +152,12 @@ struct Recorder::Impl {
     void put(const std::string& text) {
         errno = 0;
         stream << text << std::flush;
+        stream_size += text.size();
         if (stream) return;
         const std::string reason = std::generic_category().message(errno);
         stream.close();
+        std::error_code ignored;  // rows are whole
+        std::filesystem::resize_file(stream_file, stream_size - text.size(), ignored);
         Complaint{.file = stream_file.string(),
                   .object = "output",
                   .field = {},
@@ -227,6 +233,8 @@ void Recorder::stream_csv(const std::filesystem::path& file, std::optional<Real>
     r.stream_file = file;
     errno = 0;
     r.stream = std::ofstream(file, std::ios::binary | std::ios::app);
+    std::error_code ignored;  // of a pipe, which has none
+    r.stream_size = std::filesystem::file_size(file, ignored);
     if (!r.stream) r.put("");
 }
 

@@ -51,6 +51,20 @@ bool damps_held_body(const Model& model) {
     return false;
 }
 
+/// Moving nodes pull at held ones through the inertia of the implicit elements between them.
+bool holds_implicit_element(const Model& model) {
+    if (model.clusters.empty()) return false;
+    const ElementInputs elements = model.all_elements();
+    for (std::size_t block = 0; block < model.elements.implicit_modulus.size(); ++block)
+        for (std::size_t lane = 0; lane < element_lanes; ++lane) {
+            if (!(model.elements.implicit_modulus[block][lane] > 0)) continue;
+            const BlockNodes nodes = elements.nodes_of(block);
+            for (Index k = 0; k < nodes.count; ++k)
+                if (!(model.nodes.inverse_mass[static_cast<std::size_t>(nodes.node[k][lane])] > 0)) return true;
+        }
+    return false;
+}
+
 }  // namespace
 
 void add_step(const StepScratch& step, Balance& balance) {
@@ -85,6 +99,7 @@ void check_balance(const Model& model, Real lag, Balance& balance) {
         balance.steps = 0;
         balance.work = balance.energy_flow = balance.momentum_flow = 0;
     }
+    balance.momentum_known &= !holds_implicit_element(model);  // elements become implicit while a run goes on
     // the height of a weight means nothing: what it fell does
     const Real exchanged =
         now.kinetic + now.elastic + std::abs(now.potential - balance.potential) + balance.energy_flow;

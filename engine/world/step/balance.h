@@ -13,7 +13,8 @@ struct StepScratch;
 /// Since the last change from outside (a body added, velocities set, ...), and the worst of all times before.
 struct Balance {
     bool open = false;
-    // false while a body that is damped is held: what the damping takes from it is not measured
+    // false while a body that is damped is held, or by a node of an implicit element: what damping or the inertia of
+    // the element takes from it is not measured
     bool momentum_known = true;
     std::uint64_t steps = 0;  // since the opening
     // at the opening

@@ -3,8 +3,10 @@
 Called as: series_test.py PROGRAM SOURCE_FOLDER
 """
 import csv
+import json
 import math
 import re
+import resource
 import signal
 import struct
 import subprocess
@@ -134,6 +136,19 @@ class SeriesTest(ProgramCase):
             file.write("0.0")  # as if it had been cut off within a row
         self.skerry("run", "--restart", checkpoint, "--probes", series)
         self.assertEqual(series.read_text(), whole.read_text())
+
+    def test_a_full_disk_leaves_whole_rows_and_takes_no_other_output_with_it(self):
+        series, stats = self.folder / "series.csv", self.folder / "stats.json"
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (30000, 30000))
+        done = subprocess.run([PROGRAM, "run", self.scene, "--seconds", "1", "--quiet", "--probes", series, "--stats",
+                               stats], preexec_fn=limit, capture_output=True, text=True, timeout=300, check=False)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("series.csv", done.stderr)
+        self.assertEqual(list(json.loads(stats.read_text())["outputs_failed"]), ["--probes"])
+        rows = read_csv(series)
+        self.assertEqual(len({len(column) for column in rows.values()}), 1)
+        self.assertGreater(len(rows["time [s]"]), 5)
+        self.assertTrue(series.read_text().endswith("\n"))
 
     def test_frames_have_displacements_strains_names_and_forces(self):
         out = self.folder / "frames"
