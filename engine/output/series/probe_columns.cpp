@@ -17,6 +17,8 @@ template <class... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
 };
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 does not guess it of an aggregate
 
 void put_vector(const Vec3& v, std::vector<Real>& values) {
     values.insert(values.end(), {v.x(), v.y(), v.z()});
