@@ -30,6 +30,7 @@ struct RunRecord {
     Trace trace;
     bool tracing = false;
     ProblemWatch problem_watch;
+    std::function<void(const StepReport&)> step_watch;
     std::vector<Contact> contact_view;  // what contacts() shows
     bool contact_view_is_current = false;
 };
