@@ -16,7 +16,7 @@ struct AttachmentTable {
     Column<Index> body;           // row of BodyTable
     Column<Range> nodes;          // range in `node` and `anchor`
     Column<RigidMotion> motion;   // of this step; a node sits at position + rotation anchor
-    Column<RigidMotion> initial;  // when it was attached
+    Column<RigidMotion> initial;  // at the start of the script
     Column<MotionScript> script;
     Column<Index> node;         // rows of NodeTable, of all attachments
     Column<Vec3> anchor;        // m, of `node`, in the frame of the attachment

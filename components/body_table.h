@@ -4,8 +4,10 @@
 #include <cstdint>
 
 #include "components/bvh_table.h"
+#include "components/collision_filter.h"
 #include "components/column.h"
 #include "components/column_role.h"
+#include "components/material_table.h"
 #include "components/range.h"
 #include "components/step_levels.h"
 #include "components/types.h"
@@ -30,8 +32,10 @@ struct BodyTable {
     Column<std::uint32_t> slot;  // handle slot of the body, or of the collider that a kinematic body belongs to
     Column<BodyKind> kind;
     Column<std::uint8_t> self_contact;
-    Column<Index> material;  // row of MaterialTable; no_index for a kinematic body
-    Column<Index> collider;  // row of ColliderTable of a kinematic body, else no_index
+    Column<Index> material;             // row of MaterialTable; no_index for a kinematic body
+    Column<SurfaceProperties> surface;  // a property below zero: that of its material
+    Column<CollisionFilter> filter;     // whom it touches; of a kinematic body that of its collider counts
+    Column<Index> collider;             // row of ColliderTable of a kinematic body, else no_index
     Column<Range> nodes;
     Column<Range> node_blocks;
     Column<Range> blocks;         // of ElementBlockTable
@@ -74,6 +78,8 @@ struct BodyTable {
         visit("kind", kind, ColumnRole::state);
         visit("self_contact", self_contact, ColumnRole::state);
         visit("material", material, ColumnRole::link);
+        visit("surface", surface, ColumnRole::link);
+        visit("filter", filter, ColumnRole::link);
         visit("collider", collider, ColumnRole::link);
         visit("nodes", nodes, ColumnRole::link);
         visit("node_blocks", node_blocks, ColumnRole::link);

@@ -1,8 +1,9 @@
-// One row per collider: a rigid shape that stands still or moves by a script.
+// One row per collider: a rigid shape that stands still or moves by a script, which may be changed between steps.
 #pragma once
 
 #include <cstdint>
 
+#include "components/collision_filter.h"
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/material_table.h"
@@ -42,16 +43,18 @@ struct MotionScript {
     Vec3 angular_velocity;  // rad/s, when there are no keys
     Index key_begin;        // range in ColliderTable::keyframe or AttachmentTable::keyframe
     Index key_end;
+    Real start = 0;  // s, when it was at its initial pose, when there are no keys
 };
 
 struct ColliderTable {
     Column<std::uint32_t> slot;
     Column<ColliderGeometry> geometry;
     Column<RigidMotion> motion;   // of this step, by move_colliders
-    Column<RigidMotion> initial;  // at time 0
+    Column<RigidMotion> initial;  // at the start of the script
     Column<MotionScript> script;
     Column<Keyframe> keyframe;          // of all colliders, by script range
     Column<SurfaceProperties> surface;  // a property below zero: the contact takes the body's
+    Column<CollisionFilter> filter;     // whom it touches
     Column<Index> body;                 // row of the kinematic body of a mesh collider, else no_index
     Column<Real> travel;                // m, how far any of its points near a body can have moved, as BodyTable::travel
 
@@ -63,6 +66,7 @@ struct ColliderTable {
         visit("initial", initial, ColumnRole::state);
         visit("script", script, ColumnRole::link);
         visit("surface", surface, ColumnRole::state);
+        visit("filter", filter, ColumnRole::link);
         visit("body", body, ColumnRole::link);
         visit("travel", travel, ColumnRole::memory);
     }

@@ -70,6 +70,7 @@ public:
             if (row > erased) --row;
     }
 
+    bool has_slot(std::uint32_t slot) const { return slot < row_.size() && row_[slot] != no_index; }
     /// The live handle of a slot that a table row stores.
     HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot], world_}; }
 

@@ -32,11 +32,14 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     return material;
 }
 
-/// What a contact needs of a surface.
+/// What a contact needs of a surface. What is below zero is left to others: of a body to its material, of a collider to
+/// the body.
 struct SurfaceProperties {
-    Real static_friction;
-    Real dynamic_friction;
-    Real restitution;
+    Real static_friction = -1;
+    Real dynamic_friction = -1;
+    Real restitution = -1;
+
+    bool operator==(const SurfaceProperties&) const = default;
 };
 
 struct MaterialTable {

@@ -134,6 +134,8 @@ void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
+        body.settings.collision_group = entry.collision_group;
+        body.settings.collision_mask = entry.collision_mask;
         body.settings.element = entry.element;
         body.settings.name = copies ? name + "_" + std::to_string(copy) : name;
         body.mesh = plan.meshes.size() - 1;
@@ -159,6 +161,8 @@ ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number) {
     collider.settings.dynamic_friction = entry.dynamic_friction;
     collider.settings.restitution = entry.restitution;
     collider.settings.contact_distance = entry.contact_distance;
+    collider.settings.collision_group = entry.collision_group;
+    collider.settings.collision_mask = entry.collision_mask;
     collider.settings.name = entry.name.empty() ? "collider_" + std::to_string(number) : entry.name;
     collider.place = entry.place;
     return collider;

@@ -87,6 +87,7 @@ struct BodyEntry {
     Vec3 angular_velocity = Vec3::Zero();
     std::optional<Real> contact_distance;
     bool self_contact = false;
+    std::uint32_t collision_group = BodySettings{}.collision_group, collision_mask = BodySettings{}.collision_mask;
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;
     Place place;
@@ -109,6 +110,8 @@ struct ColliderEntry {
     MotionEntry motion;
     std::optional<Real> friction, static_friction, dynamic_friction, restitution;
     Real contact_distance = 0;
+    std::uint32_t collision_group = ColliderSettings{}.collision_group,
+                  collision_mask = ColliderSettings{}.collision_mask;
     Place place;
 };
 /// contacts: of a part of a body, what sticks and slides, in the report; all others are series of numbers in a file.

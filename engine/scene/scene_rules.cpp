@@ -5,6 +5,17 @@
 
 namespace skerry {
 
+namespace {
+
+constexpr Real all_groups = 4294967295;
+const KeyDoc group_doc{.meaning = "its collision groups, a bit each; 1 by default", .limits = within(0, all_groups)};
+const KeyDoc mask_doc{.meaning =
+                          "the groups that it touches, a bit each; all by default. Two touch if each is in a group "
+                          "that the mask of the other has",
+                      .limits = within(0, all_groups)};
+
+}  // namespace
+
 template <>
 const Rule<PinEntry>& rule_of<PinEntry>() {
     static const auto rule =
@@ -64,6 +75,8 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                   .unit = "m",
                   .limits = at_least(0)})
             .key("self_contact", &BodyEntry::self_contact, {.meaning = "whether it touches itself; false by default"})
+            .key("collision_group", &BodyEntry::collision_group, group_doc)
+            .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "what carries its stress"})
             .key("pin", &BodyEntry::pin, {.meaning = "nodes that are held"})
             .at_most_one({"position", "positions"})
@@ -93,6 +106,8 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
                  {.meaning = "by default the body's own; else the larger of both counts", .limits = within(0, 1)})
             .key("contact_distance", &Entry::contact_distance,
                  {.meaning = "thickness of the contact shell of a mesh", .unit = "m", .limits = at_least(0)})
+            .key("collision_group", &Entry::collision_group, group_doc)
+            .key("collision_mask", &Entry::collision_mask, mask_doc)
             .together({"static_friction", "dynamic_friction"})
             .at_most_one({"friction", "static_friction"})
             .at_most_one({"mu", "static_friction"})

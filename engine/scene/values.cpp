@@ -91,15 +91,29 @@ void Value<bool>::read(const Json& json, const Place& place, const KeyDoc&, bool
     out = json.get<bool>();
 }
 
-void Value<int>::read(const Json& json, const Place& place, const KeyDoc& doc, int& out) {
+namespace {
+
+/// Between `least` and `largest`, and within the limits of the key.
+Real read_whole(const Json& json, const Place& place, const KeyDoc& doc, Real least, Real largest) {
     const std::string kind = "a whole number";
     if (!json.is_number()) place.refuse(described(json), expected_number(doc, kind));
     const Real number = json.get<Real>();
-    constexpr Real largest = 2147483647;
-    if (number != std::floor(number) || std::abs(number) > largest)
+    if (number != std::floor(number) || number < least || number > largest)
         place.refuse(described(json), expected_number(doc, kind));
     check_limits(number, json, place, doc, kind);
-    out = static_cast<int>(number);
+    return number;
+}
+
+}  // namespace
+
+void Value<int>::read(const Json& json, const Place& place, const KeyDoc& doc, int& out) {
+    constexpr Real largest = 2147483647;
+    out = static_cast<int>(read_whole(json, place, doc, -largest, largest));
+}
+
+void Value<std::uint32_t>::read(const Json& json, const Place& place, const KeyDoc& doc, std::uint32_t& out) {
+    constexpr Real largest = 4294967295;
+    out = static_cast<std::uint32_t>(read_whole(json, place, doc, 0, largest));
 }
 
 int read_number_key(const std::string& key, const Place& place) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -58,6 +59,11 @@ struct Value<Real> {
 template <>
 struct Value<int> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, int& out);
+    static Json schema(SchemaBook&, const KeyDoc& doc) { return number_schema("integer", doc); }
+};
+template <>
+struct Value<std::uint32_t> {
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, std::uint32_t& out);
     static Json schema(SchemaBook&, const KeyDoc& doc) { return number_schema("integer", doc); }
 };
 template <>

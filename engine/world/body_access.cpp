@@ -1,6 +1,4 @@
-// Reading and writing the state of single bodies and colliders.
-#include <algorithm>
-
+// Reading the state of single bodies and colliders.
 #include "engine/world/world_state.h"
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/geometry/rotation.h"
@@ -14,21 +12,6 @@ std::span<T> rows_of(Column<T>& column, Range range) {
     return column.span().subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
 }
 
-void set_nodes(WorldState& world, BodyHandle body, const char* call, const char* field, std::span<const Vec3> values,
-               Column<Vec3>& column) {
-    const auto row = static_cast<std::size_t>(world.model.row(body, call));
-    const std::span<Vec3> target = rows_of(column, world.model.bodies.nodes[row]);
-    const auto refuse = [&](const std::string& found, const std::string& expected) {
-        Complaint{.file = {}, .object = call, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
-    };
-    if (values.size() != target.size())
-        refuse(std::to_string(values.size()) + " values",
-               std::to_string(target.size()) + ", one a node of body '" + world.model.body_records[row].name + "'");
-    for (std::size_t n = 0; n < values.size(); ++n)
-        if (!values[n].allFinite()) refuse("a value that is not finite at node " + std::to_string(n), "finite numbers");
-    std::copy(values.begin(), values.end(), target.begin());
-}
-
 }  // namespace
 
 std::span<const Vec3> World::positions(BodyHandle body) const {
@@ -39,23 +22,6 @@ std::span<const Vec3> World::positions(BodyHandle body) const {
 std::span<const Vec3> World::velocities(BodyHandle body) const {
     return rows_of(state_->model.nodes.velocity,
                    state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "velocities"))]);
-}
-
-void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
-    set_nodes(*state_, body, "set_velocities", "velocity", velocity, state_->model.nodes.velocity);
-    // Nodes without freedom keep the motion of what holds them.
-    const Range nodes = state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "set_velocities"))];
-    for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n)
-        if (state_->model.nodes.inverse_mass[n] == 0) state_->model.nodes.velocity[n] = Vec3::Zero();
-    state_->cache.search_afresh(state_->model);  // the search counts on the speed of the last step
-    state_->record.balance.close();
-    state_->model.wake(static_cast<std::size_t>(state_->model.row(body, "set_velocities")));
-}
-
-void World::set_loads(BodyHandle body, std::span<const Vec3> load) {
-    set_nodes(*state_, body, "set_loads", "load", load, state_->model.nodes.load);
-    state_->model.wake(static_cast<std::size_t>(state_->model.row(body, "set_loads")));
-    state_->model.note_loads();
 }
 
 std::span<const std::array<Index, 3>> World::surface(BodyHandle body) const {
@@ -107,6 +73,7 @@ bool World::asleep(BodyHandle body) const {
 }
 
 void World::wake(BodyHandle body) {
+    state_->require_between_steps("wake");
     state_->model.wake(static_cast<std::size_t>(state_->model.row(body, "wake")));
 }
 

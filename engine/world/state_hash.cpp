@@ -106,6 +106,12 @@ void add_script(Hash& hash, const MotionScript& script, std::span<const Keyframe
     add_row(hash, script.angular_velocity);
     for (Index k = script.key_begin; k < script.key_end; ++k) add_row(hash, keyframe[static_cast<std::size_t>(k)]);
     add_row(hash, script.key_end - script.key_begin);
+    if (script.start != 0) add_row(hash, script.start);
+}
+
+/// What nobody has set is not hashed.
+void add_filter(Hash& hash, const CollisionFilter& filter) {
+    if (filter != CollisionFilter{}) add_row(hash, filter);
 }
 
 /// Columns with one row per collider or attachment, but for links.
@@ -133,6 +139,7 @@ void add_collider(Hash& hash, Model& model, std::size_t c) {
     ColliderTable& table = model.colliders;
     add_row_state(hash, table, c);
     add_script(hash, table.script[c], table.keyframe);
+    add_filter(hash, table.filter[c]);
     if (table.body[c] != no_index) hash.add(body_hash(model, static_cast<std::size_t>(table.body[c])));
 }
 
@@ -171,6 +178,8 @@ std::uint64_t body_hash(Model& model, std::size_t body) {
     add_state(hash, bodies, single(body));
     hash.add(slot_of(model.materials.slot, bodies.material[body]));
     hash.add(slot_of(model.colliders.slot, bodies.collider[body]));
+    add_filter(hash, bodies.filter[body]);
+    if (bodies.surface[body] != SurfaceProperties{}) add_row(hash, bodies.surface[body]);
     for (Range range : {bodies.nodes[body], bodies.node_blocks[body], bodies.blocks[body]}) add_row(hash, range.size());
     add_nodes(hash, model, body);
     add_elements(hash, model, body);
@@ -188,6 +197,7 @@ std::uint64_t state_hash(WorldState& world) {
         if (model.bodies.kind[b] == BodyKind::deformable) hash.add(body_hash(model, b));
     for (std::size_t c : in_slot_order(model.colliders.slot)) add_collider(hash, model, c);
     for (std::size_t a : in_slot_order(model.attachments.slot)) add_attachment(hash, model, a);
+    add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     WarmStartTable& warm_start = world.cache.warm_start;
     warm_start.for_each_column([&](const char*, const auto& column, ColumnRole) { add_rows(hash, column.span()); });
     add_pairs(hash, model, world.cache.pairs);

@@ -35,10 +35,6 @@ void require(bool good, const std::string& object, const char* field, Real found
     if (!good || !std::isfinite(found)) refuse(object, field, text(found), expected);
 }
 
-void require_finite(const std::string& object, const char* field, const Vec3& found) {
-    if (!found.allFinite()) refuse(object, field, text(found), "three finite numbers");
-}
-
 std::string titled(const char* kind, const std::string& name) {
     return name.empty() ? kind : kind + (" '" + name + "'");
 }
@@ -92,7 +88,25 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
             refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
 }
 
+/// What is asked of a surface whatever else touches it.
+void require_surface(const std::optional<Real>& friction, const std::optional<Real>& static_friction,
+                     const std::optional<Real>& dynamic_friction, const std::optional<Real>& restitution,
+                     const std::string& object) {
+    if (friction) require(*friction >= 0, object, "friction", *friction, "a number >= 0");
+    if (dynamic_friction)
+        require(*dynamic_friction >= 0, object, "dynamic_friction", *dynamic_friction, "a number >= 0");
+    if (static_friction)
+        require(*static_friction >= dynamic_friction.value_or(friction.value_or(0)), object, "static_friction",
+                *static_friction, "a number not below dynamic_friction");
+    if (restitution)
+        require(*restitution >= 0 && *restitution <= 1, object, "restitution", *restitution, "a number from 0 to 1");
+}
+
 }  // namespace
+
+void require_finite(const std::string& object, const char* field, const Vec3& found) {
+    if (!found.allFinite()) refuse(object, field, text(found), "three finite numbers");
+}
 
 void validate(const Settings& settings) {
     require_finite("settings", "gravity", settings.gravity);
@@ -249,19 +263,22 @@ void validate(const Shape& shape, const ColliderSettings& collider) {
     require_finite(object, "position", collider.position);
     require_finite(object, "rotation", collider.rotation);
     validate(collider.motion, object);
-    if (collider.friction) require(*collider.friction >= 0, object, "friction", *collider.friction, "a number >= 0");
-    if (collider.dynamic_friction)
-        require(*collider.dynamic_friction >= 0, object, "dynamic_friction", *collider.dynamic_friction,
-                "a number >= 0");
-    if (collider.static_friction) {
-        const Real dynamic = collider.dynamic_friction.value_or(collider.friction.value_or(0));
-        require(*collider.static_friction >= dynamic, object, "static_friction", *collider.static_friction,
-                "a number not below dynamic_friction");
-    }
-    if (collider.restitution)
-        require(*collider.restitution >= 0 && *collider.restitution <= 1, object, "restitution", *collider.restitution,
-                "a number from 0 to 1");
+    require_surface(collider.friction, collider.static_friction, collider.dynamic_friction, collider.restitution,
+                    object);
     require(collider.contact_distance >= 0, object, "contact_distance", collider.contact_distance, "a length >= 0 (m)");
+}
+
+void validate(const SurfaceSettings& surface, const std::string& object, const Settings& settings) {
+    require_surface(surface.friction, surface.static_friction, surface.dynamic_friction, surface.restitution, object);
+    const Real most = std::max(
+        {surface.friction.value_or(0), surface.static_friction.value_or(0), surface.dynamic_friction.value_or(0)});
+    require(most == 0 || !needs_frictionless(settings.method), object, "friction", most,
+            "0: the method of the settings knows no friction");
+}
+
+void validate(const Pose& pose, const std::string& object) {
+    require_finite(object, "position", pose.position);
+    require_finite(object, "rotation", pose.rotation);
 }
 
 }  // namespace skerry

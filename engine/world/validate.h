@@ -17,5 +17,9 @@ void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
+void validate(const SurfaceSettings& surface, const std::string& object, const Settings& settings);
+/// Of `object`, three numbers each.
+void require_finite(const std::string& object, const char* field, const Vec3& found);
+void validate(const Pose& pose, const std::string& object);
 
 }  // namespace skerry

@@ -8,11 +8,12 @@
 #include <utility>
 
 #include "engine/world/contact_view.h"
+#include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/material_row.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "systems/geometry/rotation.h"
-#include "systems/material/material_law.h"
 
 namespace skerry {
 
@@ -74,6 +75,7 @@ void WorldState::end_edit(EditedRows rows) {
 
 void WorldState::settle() {
     if (edited_ == EditedRows::none) return;
+    query_trees.forget();
     if (edited_ == EditedRows::bodies) {
         model.rebuild_derived();
         model.clusters.clear();  // of rows that have moved
@@ -138,16 +140,7 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
     MaterialTable& table = state_->model.materials;
     const std::size_t row = table.slot.size();
     table.for_each_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
-    const Real e = material.young_modulus, nu = material.poisson_ratio;
-    table.constants[row] = material_constants(material.model, e, nu, material.density);
-    table.constants[row].loss_factor = material.loss_factor;
-    table.constants[row].bulk_viscosity = material.bulk_viscosity;
-    const Real dynamic = material.dynamic_friction.value_or(material.friction);
-    table.surface[row] = {material.static_friction.value_or(std::max(material.friction, dynamic)), dynamic,
-                          material.restitution};
-    table.young_modulus[row] = e;
-    table.poisson_ratio[row] = nu;
-    table.damping[row] = material.damping;
+    MaterialRow::of(material).write(table, row);
     const MaterialHandle handle = state_->model.material_map.insert(static_cast<Index>(row));
     table.slot[row] = handle.slot;
     return handle;
@@ -163,6 +156,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
                 {.slot = handle.slot,
                  .kind = BodyKind::deformable,
                  .self_contact = body.self_contact,
+                 .filter = {body.collision_group, body.collision_mask},
                  .element = body.element,
                  .material = material,
                  .tetrahedron_material = tetrahedron_material,
@@ -229,6 +223,7 @@ void World::remove(BodyHandle body) {
     forces.forget_body(body.slot);
     for (std::size_t a = 0; a < state_->model.attachments.slot.size(); ++a)
         if (state_->model.attachments.body[a] == row) forces.forget_attachment(state_->model.attachments.slot[a]);
+    enable_pairs_of(body, state_->model.disabled_pairs);
     erase_body(state_->model, row);
     state_->model.body_map.erase(body);
     state_->end_edit(EditedRows::bodies);
@@ -239,6 +234,7 @@ void World::remove(ColliderHandle collider) {
     state_->begin_edit("remove");
     forget_contacts_of(collider, state_->record);
     state_->record.forces.forget_collider(collider.slot);
+    enable_pairs_of(collider, state_->model.disabled_pairs);
     const EditedRows rows = rows_of(state_->model.collider_records[static_cast<std::size_t>(row)].shape);
     erase_collider(state_->model, row);
     state_->model.collider_map.erase(collider);
@@ -272,6 +268,8 @@ const Settings& World::settings() const {
 }
 
 void World::set_gravity(const Vec3& gravity) {
+    state_->require_between_steps("set_gravity");
+    if (gravity == state_->model.settings.gravity) return;
     Settings changed = state_->model.settings;
     changed.gravity = gravity;
     validate(changed);

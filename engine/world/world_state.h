@@ -8,6 +8,7 @@
 #include "engine/world/state/clock.h"
 #include "engine/world/state/contact_cache.h"
 #include "engine/world/state/model.h"
+#include "engine/world/state/query_trees.h"
 #include "engine/world/state/run_record.h"
 #include "engine/world/state/step_scratch.h"
 #include "engine/world/step/transaction.h"
@@ -28,6 +29,7 @@ struct WorldState {
     StepScratch scratch;
     RunRecord record;
     StepTransaction transaction;
+    QueryTrees query_trees;
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
     bool advancing = false;  // what it calls back must not change what it goes over

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 
 #include "jobs/executor.h"
@@ -123,6 +124,48 @@ TEST_CASE("measuring forces allocates nothing, either, and nor do bodies that it
         CHECK(world.forces().pairs().size() >= 6);
         CHECK((world.report().asleep > 0) == (sleep_speed > 0));
     }
+}
+
+TEST_CASE(
+    "a control loop that sets velocities and targets, asks and is called back in each millisecond allocates nothing",
+    "[determinism]") {
+    World world({.backend = Backend::serial, .threads = 1});
+    const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.8, .damping = 20});
+    world.add_collider(Plane{});
+    const auto ball = world.add_body(mesh::ball(0.05, 6), {.material = rubber, .position = {0, 0, 0.052}});
+    const auto pad = world.add_body(mesh::box({0.02, 0.05, 0.05}, {1, 2, 2}),
+                                    {.material = rubber, .position = {-0.063, 0, 0.055}, .name = "pad"});
+    const auto hold = world.attach(pad, std::vector<Index>{0, 3, 6, 9, 12, 15});
+    const auto finger = world.add_collider(Box{{0.02, 0.05, 0.05}}, {.position = {0.063, 0, 0.055}});
+    const auto mesh_finger =
+        world.add_collider(mesh::boundary(mesh::box({0.05, 0.02, 0.05}, {1, 1, 1})), {.position = {0, 0.063, 0.055}});
+    Real force = 0;
+    world.watch_steps([&](const StepReport&) {
+        for (const Contact& contact : world.contacts()) force += contact.impulse.norm();
+    });
+    const std::vector<Vec3> load(world.positions(ball).size(), Vec3(0, 0, -1e-3));
+    const auto control = [&](int from, int to) {
+        for (int i = from; i < to; ++i) {
+            const Real turn = 0.01 * i;
+            world.set_velocity(finger, {-0.02 * std::sin(turn), 0, 0}, {0, 0, 0.01});
+            world.set_velocity(hold, {0.02 * std::sin(turn), 0, 0});
+            world.move_to(mesh_finger, {{0, 0.0625 - 0.001 * std::sin(turn), 0.055}, {0, 0, 0}}, 1e-3);
+            world.set_loads(ball, load);
+            (void)world.nearest_point({0, 0, 0.2}, 1);
+            if (!world.advance(1e-3).ok()) return false;
+        }
+        return true;
+    };
+    REQUIRE(control(0, 2000));
+    const std::uint64_t searches = world.report().broad_searches;
+    allocations = 0;
+    counting = true;
+    const bool went_well = control(2000, 2600);
+    counting = false;
+    CHECK(went_well);
+    CHECK(allocations == 0);
+    CHECK(world.report().broad_searches < searches + 60);  // and searches afresh as rarely as without
+    CHECK(force > 0);
 }
 
 TEST_CASE("the memory that bodies take while they are added grows with their number, not with its square",

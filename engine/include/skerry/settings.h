@@ -2,6 +2,7 @@
 // initialiser, so that naming some of them warns about none.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -48,6 +49,9 @@ struct BodySettings {
     Vec3 angular_velocity = Vec3::Zero();    // rad/s, about the centre of mass
     std::optional<Real> contact_distance{};  // m, >= 0; by default 2 % of the mean surface edge
     bool self_contact = false;
+    // Two touch each other if each is in a group that the mask of the other has. A bit is a group.
+    std::uint32_t collision_group = 1;
+    std::uint32_t collision_mask = 0xffffffffu;
     ElementKind element = ElementKind::smoothed;
     std::string name{};  // for messages and output
 };
@@ -100,6 +104,8 @@ struct ColliderSettings {
     std::optional<Real> static_friction{}, dynamic_friction{};
     std::optional<Real> restitution{};  // by default the body's own; else the larger of both counts
     Real contact_distance = 0;          // m, shell of a mesh collider
+    std::uint32_t collision_group = 1;  // as BodySettings::collision_group
+    std::uint32_t collision_mask = 0xffffffffu;
     std::string name{};
 };
 

@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "skerry/control.h"
 #include "skerry/error.h"
 #include "skerry/forces.h"
 #include "skerry/mesh.h"
+#include "skerry/query.h"
 #include "skerry/report.h"
 #include "skerry/settings.h"
 
@@ -77,19 +79,20 @@ public:
     /// The same, but before each try of a step asks whether to go on, with the report so far. An answer of false ends
     /// the call between two steps: the report says `stopped`, and the world may go on from there.
     StepReport advance(Real dt, const std::function<bool(const StepReport&)>& go_on);
+    /// From now on calls `look` after every step that is committed, with the report so far, on the thread that
+    /// advances. Positions, contacts and all else can be read in it, and nothing set (with leapfrog positions are half
+    /// a step further than velocities there). What it throws ends the call of advance between two steps, and comes out
+    /// of it. An empty function stops it.
+    void watch_steps(std::function<void(const StepReport&)> look);
     Real time() const;
     const Settings& settings() const;
-    void set_gravity(const Vec3& gravity);
     /// The step that advance would take at most, s.
     Real stable_step() const;
 
     // State of a body. Spans stay valid until bodies are added or removed; positions and velocities also change with
     // advance.
-    std::span<const Vec3> positions(BodyHandle body) const;   // m
-    std::span<const Vec3> velocities(BodyHandle body) const;  // m/s
-    void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
-    /// External forces on the nodes, kept until set again, N.
-    void set_loads(BodyHandle body, std::span<const Vec3> load);
+    std::span<const Vec3> positions(BodyHandle body) const;                   // m
+    std::span<const Vec3> velocities(BodyHandle body) const;                  // m/s
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // boundary triangles, local nodes
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // local nodes
     /// Cauchy stress, Pa, without what relaxes (losses), and Green's strain. A tetrahedron has the mean of the elements
@@ -114,10 +117,65 @@ public:
     Real mean_edge(BodyHandle body) const;         // m, of the rest surface
     std::vector<BodyHandle> bodies() const;        // in the order added
     std::vector<ColliderHandle> colliders() const;
-    /// Pose of a collider now: position and rotation (axis times angle).
+    /// Pose of a collider now: position and rotation (axis times angle). Of a plane, its point and a rotation that
+    /// takes +z to its normal.
     MotionKey pose(ColliderHandle collider) const;
+    /// Of the frame that carries the nodes: where it was attached it stood at the pivot, unturned, or as its keys say.
+    MotionKey pose(AttachmentHandle attachment) const;
     const Shape& shape(ColliderHandle collider) const;
     const std::string& name(ColliderHandle collider) const;
+
+    // Live control (docs/control.md), between calls of advance, refused with SceneError in what these call. Costs what
+    // the change itself takes; what is derived of the whole world stays. A value that was there before changes nothing,
+    // to the last bit; one that is refused changes nothing either, and the SceneError names it.
+    void set_gravity(const Vec3& gravity);
+    /// From now on a collider, or what an attachment holds, moves by these velocities (m/s, rad/s about the origin of
+    /// its pose), until they are set again. Its script or target is forgotten.
+    void set_velocity(ColliderHandle collider, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
+    void set_velocity(AttachmentHandle attachment, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
+    /// Moves at constant velocities, the shorter way round, so that the pose is reached after `duration` (s, > 0), and
+    /// stands still from then on. With advance(duration) it is there at the end of the call.
+    void move_to(ColliderHandle collider, const Pose& pose, Real duration);
+    void move_to(AttachmentHandle attachment, const Pose& pose, Real duration);
+    /// Is there at once and touches nothing on the way: what is in between is neither pushed nor noticed. Constant
+    /// velocities go on from there, keys and targets are forgotten. What it then overlaps is treated as at a start
+    /// (Settings::start_overlaps). What an attachment holds is deformed by it; refused where that inverts elements.
+    void set_pose(ColliderHandle collider, const Pose& pose);
+    void set_pose(AttachmentHandle attachment, const Pose& pose);
+    /// Puts the nodes of a body somewhere else (m, world frame). Velocities stay, nodes that are held are held where
+    /// they are put. What overlaps then is treated as at a start. Refused where it inverts elements.
+    void set_positions(BodyHandle body, std::span<const Vec3> position);
+    void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
+    /// External forces on the nodes, kept until set again, N.
+    void set_loads(BodyHandle body, std::span<const Vec3> load);
+    /// What a material is now, and what it shall be from now on: bodies that have it keep their shapes and velocities
+    /// and get masses, stable steps and clusters of their new kind. Refused: another model; with multirate, all but
+    /// friction, restitution and damping; what gives one of these bodies no stable step. Kinds of smoothed elements
+    /// stay what Poisson's ratio made them when their bodies were added.
+    MaterialSettings material(MaterialHandle material) const;
+    void set_material(MaterialHandle material, const MaterialSettings& settings);
+    void set_surface_properties(BodyHandle body, const SurfaceSettings& surface);
+    void set_surface_properties(ColliderHandle collider, const SurfaceSettings& surface);
+    /// See BodySettings::collision_group.
+    void set_collision_groups(BodyHandle body, std::uint32_t group, std::uint32_t mask);
+    void set_collision_groups(ColliderHandle collider, std::uint32_t group, std::uint32_t mask);
+    /// Whether two collide where their groups let them: all do, until they are switched off. A body with itself: its
+    /// self_contact. Of what is switched on, overlaps are treated as at a start.
+    void set_collision(BodyHandle a, BodyHandle b, bool on);
+    void set_collision(BodyHandle body, ColliderHandle collider, bool on);
+    /// By groups and switches.
+    bool may_collide(BodyHandle a, BodyHandle b) const;
+    bool may_collide(BodyHandle body, ColliderHandle collider) const;
+
+    // Questions to the surfaces as they are now. The first one after a step fits the trees of the bodies that it looks
+    // at.
+    /// The first surface on the way from `origin` (m) along `direction` (any length but zero), no further than
+    /// `max_distance` (m), from whichever side; nothing where there is none. Of equally near ones bodies come first, in
+    /// the order added.
+    std::optional<SurfaceHit> cast_ray(const Vec3& origin, const Vec3& direction, Real max_distance,
+                                       const QueryFilter& filter = {}) const;
+    /// The nearest point of any surface, from inside or outside; nothing within `max_distance` (m).
+    std::optional<SurfaceHit> nearest_point(const Vec3& point, Real max_distance, const QueryFilter& filter = {}) const;
 
     // What happened.
     /// Of the last step, in a fixed order, without those of what was removed since; none when the step was refused.

@@ -9,9 +9,7 @@
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/element_levels.h"
-#include "systems/dynamics/stability/find_relaxation.h"
 #include "systems/dynamics/stability/stable_step.h"
-#include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
 
@@ -43,27 +41,6 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// Row of the material of a tetrahedron.
-Index material_of(const NewBody& body, std::size_t tetrahedron) {
-    return body.tetrahedron_material.empty() ? body.material : body.tetrahedron_material[tetrahedron];
-}
-
-/// In the order in which the mesh comes to their materials.
-std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
-    std::vector<MaterialZone> zones;
-    for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
-        const Index material = material_of(body, t);
-        auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
-        if (zone == zones.end()) {
-            const Real poisson_ratio = model.materials.poisson_ratio[static_cast<std::size_t>(material)];
-            zone = zones.insert(zones.end(),
-                                {material, resolved(body.element, poisson_ratio, model.settings.multirate), {}});
-        }
-        zone->tetrahedra.push_back(static_cast<Index>(t));
-    }
-    return zones;
-}
-
 /// What all zones have, or, where `smoothed` stands for both, the one with nodes.
 ElementKind kind_of(const NewBody& body, std::span<const MaterialZone> zones) {
     ElementKind kind = zones.empty() ? body.element : zones.front().kind;
@@ -77,14 +54,10 @@ void set_masses_and_motion(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     if (body.kind == BodyKind::kinematic) return;  // no mass: inverse mass 0
     const auto first = static_cast<std::size_t>(range.begin), count = static_cast<std::size_t>(range.size());
-    std::vector<Real> density(body.tetrahedra.size());
-    for (std::size_t t = 0; t < density.size(); ++t)
-        density[t] = model.materials.constants[static_cast<std::size_t>(material_of(body, t))].density;
-    add_lumped_mass(body.tetrahedra, body.nodes, density, nodes.mass.span().subspan(first, count));
+    set_masses(model, body, range);
     Vec3 center = Vec3::Zero();
     Real mass = 0;
     for (std::size_t n = first; n < first + count; ++n) {
-        nodes.inverse_mass[n] = nodes.mass[n] > 0 ? 1 / nodes.mass[n] : 0;
         center += nodes.mass[n] * nodes.position[n];
         mass += nodes.mass[n];
     }
@@ -179,37 +152,6 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
         covered.offset.push_back(static_cast<Index>(covered.item.size()));
     }
     return covered;
-}
-
-/// m/s, of waves along a thin bar, sqrt(E / rho). Of several materials with their mean density and a modulus halfway,
-/// by factors, between the bounds of all mixtures: one beside the other (Voigt) and one behind the other (Reuss).
-Real bar_speed(const Model& model, const NewBody& body, std::span<const MaterialZone> zones) {
-    Real volume = 0, mass = 0, stiffness = 0, compliance = 0;
-    for (const MaterialZone& zone : zones) {
-        const auto row = static_cast<std::size_t>(zone.material);
-        const Real modulus = model.materials.young_modulus[row], density = model.materials.constants[row].density;
-        if (zones.size() == 1) return std::sqrt(modulus / density);
-        Real of_zone = 0;
-        for (const Index t : zone.tetrahedra)
-            of_zone += six_volumes(body.tetrahedra[static_cast<std::size_t>(t)], body.nodes) / 6;
-        volume += of_zone;
-        mass += of_zone * density;
-        stiffness += of_zone * modulus;
-        compliance += of_zone / modulus;
-    }
-    return std::sqrt(std::sqrt(stiffness / compliance) * volume / mass);
-}
-
-/// How the elements of a new body relax, whose stable step would be `step` (s) if they did not. `speed`: bar_speed.
-void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real speed,
-                    Real step) {
-    ElementBlockTable& elements = model.elements;
-    const Real lowest =
-        lowest_frequency_estimate(rows_of(model.nodes.position, nodes), rows_of(model.nodes.mass, nodes), speed);
-    find_relaxation(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.position, model.nodes.mass,
-                    stiffness_sum, lowest, step_times_frequency / step,
-                    {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
-                     rows_of(elements.relaxing_share, blocks)});
 }
 
 /// The triangles that the user gave, or the boundary of the tetrahedra; local nodes.
@@ -324,6 +266,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.kind[b] = body.kind;
     bodies.self_contact[b] = body.self_contact;
     bodies.material[b] = body.material;
+    bodies.filter[b] = body.filter;
     bodies.collider[b] = body.collider;
     bodies.nodes[b] = nodes;
     bodies.node_blocks[b] = {
@@ -346,22 +289,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.contact_distance[b] =
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);
-    const auto step = [&] {
-        return stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
-    };
-    bodies.rest_step[b] = bodies.stable_step[b] = step();
-    if (body.tetrahedra.empty()) return row;
-    const auto relaxes = [&](const MaterialZone& zone) {
-        return model.materials.constants[static_cast<std::size_t>(zone.material)].relaxes();
-    };
-    if (std::any_of(zones.begin(), zones.end(), relaxes))
-        set_relaxation(model, nodes, blocks, stiffness_sum, bar_speed(model, body, zones), bodies.rest_step[b]);
-    // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
-    const auto& levels = bodies.level_count[b];
-    if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; }))
-        find_mass_shares(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum,
-                         rows_of(model.elements.mass_share, blocks));
-    bodies.rest_step[b] = bodies.stable_step[b] = step();
+    find_steps(model, row, body, zones, model.nodes.position, stiffness_sum);
     return row;
 }
 

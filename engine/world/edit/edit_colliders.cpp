@@ -11,7 +11,7 @@ namespace skerry {
 namespace {
 
 MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
-    MotionScript script{motion.velocity, motion.angular_velocity, static_cast<Index>(keyframe.size()), 0};
+    MotionScript script{motion.velocity, motion.angular_velocity, static_cast<Index>(keyframe.size()), 0, 0};
     for (const MotionKey& key : motion.keys) keyframe.push_back({key.time, key.position, key.rotation});
     script.key_end = static_cast<Index>(keyframe.size());
     return script;
@@ -51,15 +51,6 @@ struct GeometryOf {
     ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
 };
 
-/// What is not given is left to the body: below zero.
-SurfaceProperties surface_of(const ColliderSettings& settings) {
-    constexpr Real left_to_the_body = -1;
-    const Real friction = settings.friction.value_or(left_to_the_body);
-    const Real dynamic = settings.dynamic_friction.value_or(friction);
-    return {settings.static_friction.value_or(std::max(friction, dynamic)), dynamic,
-            settings.restitution.value_or(left_to_the_body)};
-}
-
 /// The smallest rotation that takes the z axis to a direction; half a turn about x takes it to its opposite.
 Mat3 turn_from_z(const Vec3& direction) {
     const Vec3 axis(-direction.y(), direction.x(), 0);
@@ -90,6 +81,14 @@ Motion motion_of_shape(Motion motion, const RigidPose& frame) {
 }
 
 }  // namespace
+
+SurfaceProperties surface_properties(const SurfaceSettings& settings) {
+    constexpr Real left_to_others = -1;
+    const Real friction = settings.friction.value_or(left_to_others);
+    const Real dynamic = settings.dynamic_friction.value_or(friction);
+    return {settings.static_friction.value_or(std::max(friction, dynamic)), dynamic,
+            settings.restitution.value_or(left_to_others)};
+}
 
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
                         const RigidPose& pose, const Motion& motion, Real now) {
@@ -155,7 +154,9 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
     table.script[row] = append_script(motion_of_shape(settings.motion, frame), table.keyframe);
     const RigidPose present = pose_at(table.script[row], table.keyframe, table.initial[row], now);
     table.motion[row] = {present.position, present.rotation, Vec3::Zero(), Vec3::Zero()};
-    table.surface[row] = surface_of(settings);
+    table.surface[row] = surface_properties(
+        {settings.friction, settings.static_friction, settings.dynamic_friction, settings.restitution});
+    table.filter[row] = {settings.collision_group, settings.collision_mask};
     table.body[row] = no_index;
     table.travel[row] = 0;
     model.collider_records.push_back({.name = settings.name, .shape = shape});

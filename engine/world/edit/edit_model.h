@@ -4,8 +4,10 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "engine/world/state/model.h"
+#include "systems/dynamics/kinds/element_list.h"
 #include "systems/dynamics/motion/move_colliders.h"
 
 namespace skerry {
@@ -14,6 +16,7 @@ struct NewBody {
     std::uint32_t slot = 0;
     BodyKind kind = BodyKind::deformable;
     bool self_contact = false;
+    CollisionFilter filter = {};
     ElementKind element = ElementKind::linear;
     Index material = no_index;                         // of the surface and of what has no other
     std::span<const Index> tetrahedron_material = {};  // by tetrahedron; empty: `material`
@@ -33,7 +36,22 @@ struct NewBody {
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body);
 void erase_body(Model& model, Index row);
 
+// body_steps.cpp
+/// Tetrahedra by material, in the order in which the mesh comes to their materials.
+std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body);
+/// Adds the masses of the tetrahedra to those of the nodes, which are free then.
+void set_masses(Model& model, const NewBody& body, Range nodes);
+/// How the elements of a body relax, how they share its masses and which step they stand, at rest at `position` (m, by
+/// node of the world). Its elements are as new.
+void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
+                std::span<const Vec3> position, Column<Real>& stiffness_sum);
+/// The same after its materials have changed, all that follows from the old ones forgotten. Not for elements of several
+/// levels.
+void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum);
+
 // edit_colliders.cpp; `now` is the time at which they come, s
+/// What is not given is below zero.
+SurfaceProperties surface_properties(const SurfaceSettings& settings);
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
                         const RigidPose& pose, const Motion& motion, Real now);
 void erase_attachment(Model& model, Index row);

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "engine/world/save/checks.h"
+#include "systems/collision/inputs/contact_key.h"
 
 namespace skerry {
 
@@ -204,6 +205,22 @@ void check_moved(const Hdf5File& file, const Model& model) {
         }
 }
 
+void check_disabled_pairs(const Hdf5File& file, const Model& model) {
+    const auto lives = [](const auto& map, std::uint64_t slot) {
+        return map.has_slot(static_cast<std::uint32_t>(slot));
+    };
+    std::span<const std::uint64_t> keys = model.disabled_pairs.key;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const PairSlots slots = slots_of_pair(keys[i]);
+        const bool named = lives(model.body_map, slots.first) &&
+                           (slots.is_collider ? lives(model.collider_map, slots.second)
+                                              : lives(model.body_map, slots.second) && slots.first < slots.second);
+        if (!named || (i > 0 && !(keys[i - 1] < keys[i])))
+            file.complain("/disabled_pairs/key", std::to_string(keys[i]) + " at row " + std::to_string(i),
+                          "pairs of two bodies, or of a body and a collider, that are there, ascending");
+    }
+}
+
 /// What follows from the lists of nodes is put beside them.
 void check_clusters(const Hdf5File& file, Model& model) {
     NodeClusters& clusters = model.clusters;
@@ -248,6 +265,7 @@ void check_model(const Hdf5File& file, Model& model) {
     check_rows_of_bodies(file, model);
     check_moved(file, model);
     check_handles(file, model);
+    check_disabled_pairs(file, model);
     check_clusters(file, model);
 }
 

@@ -14,7 +14,7 @@ namespace skerry {
 namespace {
 
 constexpr const char* title = "Skerry world, version ";
-constexpr const char* expected_file = "a world that Skerry saved, version 1";
+constexpr const char* expected_file = "a world that Skerry saved, version 2";
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected,
                          const std::string& hint = {}) {

@@ -85,6 +85,8 @@ struct NumbersOf<MovingFrame> : SameNumbers<Real, 10> {};
 template <>
 struct NumbersOf<Keyframe> : SameNumbers<Real, 7> {};
 template <>
+struct NumbersOf<CollisionFilter> : SameNumbers<std::uint32_t, 2> {};
+template <>
 struct NumbersOf<SurfaceProperties> : SameNumbers<Real, 3> {};
 
 /// How many values an enum has: others are refused. 0: no enum.
@@ -157,8 +159,10 @@ struct MembersOf<MotionScript> {
     static constexpr auto list() {
         using S = MotionScript;
         return std::tuple{Member{"velocity", &S::velocity}, Member{"angular_velocity", &S::angular_velocity},
-                          Member{"key_begin", &S::key_begin}, Member{"key_end", &S::key_end}};
+                          Member{"key_begin", &S::key_begin}, Member{"key_end", &S::key_end},
+                          Member{"start", &S::start}};
     }
+    static_assert(sizeof(MotionScript) == 8 * sizeof(Real), "a member is not saved");
 };
 template <>
 struct MembersOf<Stencil> {

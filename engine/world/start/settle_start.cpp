@@ -187,6 +187,7 @@ void World::settle_start() {
         MoveApart(model, search).run(overlaps);
         moves = take_over_shifts(search, model);
         world.cache.drop_pairs(model);
+        world.query_trees.forget();
         world.record.balance.close();
         for (StartOverlap& report : reports) report.resolved = true;
     }

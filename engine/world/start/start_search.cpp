@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/inputs/may_collide.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/overlap/collider_overlap.h"
 #include "systems/collision/tree/box.h"
@@ -60,7 +61,7 @@ std::vector<StartPair> StartSearch::close_pairs(const std::vector<char>& marked)
             if (!deforms(row) && !deforms(other)) return;
             const bool own_first = deforms(row) && (!deforms(other) || row < other);
             const StartPair pair{own_first ? row : other, own_first ? other : row, false};
-            if (!is_settled(pair)) pairs.push_back(pair);
+            if (!is_settled(pair) && collides(pair)) pairs.push_back(pair);
         });
     }
     add_analytic(marked, tree, pairs);
@@ -76,7 +77,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
         const auto add = [&](Index b) {
             const StartPair pair{b, static_cast<Index>(c), true};
             if (marked[static_cast<std::size_t>(b)] && model_.bodies.kind[b] == BodyKind::deformable &&
-                !is_settled(pair))
+                !is_settled(pair) && collides(pair))
                 pairs.push_back(pair);
         };
         if (geometry.shape == ColliderShape::plane)
@@ -126,6 +127,11 @@ bool StartSearch::is_settled(const StartPair& pair) const {
     const auto second = static_cast<std::size_t>(pair.second);
     return model_.body_records[static_cast<std::size_t>(pair.first)].settled &&
            (pair.is_analytic ? model_.collider_records[second].settled : model_.body_records[second].settled);
+}
+
+bool StartSearch::collides(const StartPair& pair) const {
+    return may_collide(model_.bodies, model_.colliders, model_.disabled_pairs.key,
+                       pair.is_analytic ? PairKind::collider : PairKind::bodies, pair.first, pair.second);
 }
 
 const Solid& StartSearch::solid(Index body) {

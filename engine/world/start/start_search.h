@@ -50,6 +50,7 @@ public:
 private:
     Aabb box(Index body) const;
     bool is_settled(const StartPair& pair) const;
+    bool collides(const StartPair& pair) const;
     const Solid& solid(Index body);
     Real mean_edge(const StartPair& pair) const;
     /// m: two that are in each other by less cannot be told from two that touch.

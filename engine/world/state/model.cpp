@@ -81,8 +81,15 @@ Real Model::note_rest() {
     return awake_mass;
 }
 
-void Model::note_loads() {
-    loaded = std::ranges::any_of(nodes.load, [](const Vec3& load) { return load != Vec3::Zero(); });
+bool Model::has_loads(std::size_t body) const {
+    for (Index n = bodies.nodes[body].begin; n < bodies.nodes[body].end; ++n)
+        if (nodes.load[static_cast<std::size_t>(n)] != Vec3::Zero()) return true;
+    return false;
+}
+
+void Model::note_loads(std::size_t body, bool before) {
+    loaded_bodies += static_cast<Index>(has_loads(body)) - static_cast<Index>(before);
+    loaded = loaded_bodies > 0;
 }
 
 void Model::rebuild_derived() {
@@ -95,7 +102,8 @@ void Model::rebuild_derived() {
     body_mass.assign(bodies.slot.size(), 0);
     for (std::size_t n = 0; n < nodes.mass.size(); ++n)
         body_mass[static_cast<std::size_t>(nodes.body[n])] += nodes.mass[n];
-    note_loads();
+    loaded_bodies = 0;
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b) note_loads(b, false);
     // What a step leaves where it has nothing to do: nodes at rest, and nodes that no contact pushes.
     std::ranges::fill(nodes.velocity_next, Vec3::Zero());
     std::ranges::fill(nodes.push_out, Vec3::Zero());

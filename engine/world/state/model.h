@@ -9,6 +9,7 @@
 #include "components/body_table.h"
 #include "components/bvh_table.h"
 #include "components/collider_table.h"
+#include "components/collision_filter.h"
 #include "components/element_table.h"
 #include "components/handle.h"
 #include "components/material_table.h"
@@ -62,6 +63,7 @@ struct Model {
     MaterialTable materials;
     ColliderTable colliders;
     AttachmentTable attachments;
+    DisabledPairTable disabled_pairs;
     HandleMap<MaterialHandle> material_map;
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
@@ -73,7 +75,8 @@ struct Model {
     // bodies, colliders or settings have changed since it was last decided which elements are implicit
     bool clusters_open = true;
     bool settled = true;      // all bodies and colliders are
-    bool loaded = false;      // some node has a load; derived: note_loads
+    bool loaded = false;      // some node has a load; derived: rebuild_derived, note_loads
+    Index loaded_bodies = 0;  // that have one; derived: rebuild_derived, note_loads
     bool any_asleep = false;  // some body rests; derived: note_rest. While none does, no stage asks
 
     /// The number that its handles bear.
@@ -96,8 +99,9 @@ struct Model {
     void wake_all();
     /// Before a step: whether any body is out of it. Returns the mass of those that are in it, kg.
     Real note_rest();
-    /// After loads were set.
-    void note_loads();
+    /// After loads were set: those of one body, which had some before or not.
+    void note_loads(std::size_t body, bool before);
+    bool has_loads(std::size_t body) const;
     /// After bodies or colliders came or went: what is derived from all of them.
     void rebuild_derived();
     /// After elements became implicit or explicit.
@@ -122,6 +126,7 @@ struct Model {
         visit("materials", materials);
         visit("colliders", colliders);
         visit("attachments", attachments);
+        visit("disabled_pairs", disabled_pairs);
     }
 };
 

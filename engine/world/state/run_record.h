@@ -32,6 +32,7 @@ struct RunRecord {
     bool tracing = false;
     ProblemWatch problem_watch;
     ForceLedger forces;
+    std::function<void(const StepReport&)> step_watch;
     std::vector<Contact> contact_view;  // what contacts() shows
     bool contact_view_is_current = false;
 };

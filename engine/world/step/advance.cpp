@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <limits>
+#include <utility>
 
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
@@ -169,6 +171,16 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
+    // by what is called back: the call ends between two steps all the same
+    std::exception_ptr thrown;
+    const auto call_back = [&thrown](auto&& call) {
+        try {
+            return call();
+        } catch (...) {
+            thrown = std::current_exception();
+            return false;
+        }
+    };
     world.transaction.begin_call(model, clock);
     ForceLedger& forces = world.record.forces;
     if (forces.on()) forces.begin_call(model, world.scratch);
@@ -178,7 +190,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on() && seconds != 0) forces.add_drift(model, seconds, world.scratch);
     };
     while (left > 0) {
-        if (go_on && !go_on(report)) {
+        if (go_on && !call_back([&] { return go_on(std::as_const(report)); })) {
             report.status = StepStatus::stopped;
             break;
         }
@@ -190,6 +202,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             break;
         }
         const StepPlan plan = plan_step(model, clock.cycle, left, tries.longest);
+        world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
@@ -217,7 +230,12 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             else
                 look_at_end = true;
         }
-        show_contact_problem(model, world.scratch, start, world.record);
+        const bool heard = call_back([&] {
+            show_contact_problem(model, world.scratch, start, world.record);
+            if (world.record.step_watch) world.record.step_watch(std::as_const(report));
+            return true;
+        });
+        if (!heard) break;
     }
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
@@ -226,9 +244,16 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     } else {
         drift(0);
     }
+    world.query_trees.forget();
     if (left == 0) clock.time = end;
     if (look_at_end) check_balance(model, lag_between_steps(world), world.record.balance);
+    if (thrown) std::rethrow_exception(thrown);
     return report;
+}
+
+void World::watch_steps(std::function<void(const StepReport&)> look) {
+    state_->require_between_steps("watch_steps");
+    state_->record.step_watch = std::move(look);
 }
 
 }  // namespace skerry

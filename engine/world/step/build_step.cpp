@@ -56,7 +56,8 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
 }
 
 auto collision_inputs(const Model& m) {
-    return inputs<CollisionInputs>(m.bodies, m.colliders, m.surface, m.materials, m.bvh, m.bvh_leaves, m.nodes);
+    return inputs<CollisionInputs>(m.bodies, m.colliders, m.surface, m.materials, m.bvh, m.bvh_leaves, m.nodes,
+                                   m.disabled_pairs);
 }
 
 void list_contact_branch(WorldState& w, TaskGraph& g) {

@@ -25,25 +25,27 @@ Real trusted_step(const Model& model, Index* body) {
     return std::min(stable, model.settings.step_size.value_or(stable));
 }
 
+Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
+                         Column<Real>& stiffness_sum) {
+    stiffness_sum.resize(position.size());
+    const ElementInputs elements = model.all_elements();
+    const Range blocks = model.bodies.blocks[body];
+    const Real step = stable_step(elements, blocks, position, model.nodes.mass, stiffness_sum).step;
+    const Real of_clusters = model.bodies.cluster_step[body];
+    if (!(of_clusters > 0)) return step;
+    const Real stiffening =
+        worst_stiffening(elements, blocks, position,
+                         model.elements.implicit_modulus.span().subspan(static_cast<std::size_t>(blocks.begin),
+                                                                        static_cast<std::size_t>(blocks.size())));
+    // not a number where a shape is none
+    return std::min(step, of_clusters / std::sqrt(stiffening > 1 ? stiffening : Real(1)));
+}
+
 Real watch_stable_steps(Model& model, Column<Real>& stiffness_sum) {
     constexpr Real worth_clusters = 1.25;  // steps that a strained body makes shorter by this
     constexpr Real reserve = 1.05;         // so that the next look finds it standing, too
-    stiffness_sum.resize(model.nodes.position.size());
     BodyTable& bodies = model.bodies;
-    const auto now = [&](std::size_t b) {
-        const ElementInputs elements = model.all_elements();
-        const Range blocks = bodies.blocks[b];
-        Real step = stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
-        if (bodies.cluster_step[b] > 0) {
-            const Real stiffening =
-                worst_stiffening(elements, blocks, model.nodes.position,
-                                 model.elements.implicit_modulus.span().subspan(
-                                     static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size())));
-            // not a number where a shape is none
-            step = std::min(step, bodies.cluster_step[b] / std::sqrt(stiffening > 1 ? stiffening : Real(1)));
-        }
-        return step;
-    };
+    const auto now = [&](std::size_t b) { return look_at_stable_step(model, b, model.nodes.position, stiffness_sum); };
     Real goal = std::numeric_limits<Real>::infinity();  // s, what bodies stand when they are not strained
     for (std::size_t b = 0; b < bodies.slot.size(); ++b)
         if (bodies.tetrahedron_count[b] > 0) goal = std::min(goal, bodies.rest_step[b]);

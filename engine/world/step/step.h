@@ -18,6 +18,9 @@ void count_step(const StepScratch& scratch, RunCounters& counters);
 Real stable_step(const BodyTable& bodies, Index* body = nullptr);
 /// The longest step that is taken: that of the settings, or the stable step where that is shorter.
 Real trusted_step(const Model& model, Index* body = nullptr);
+/// Looks at the stable step of one body again, s.
+Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
+                         Column<Real>& stiffness_sum);
 /// Looks at the stable step of every body again. Bodies that stand much less than at rest get clusters where that
 /// helps; returns the energy that these, by changing what their elements weigh, bring into the balance, J.
 Real watch_stable_steps(Model& model, Column<Real>& stiffness_sum);

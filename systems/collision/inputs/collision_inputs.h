@@ -7,6 +7,7 @@
 #include "components/body_table.h"
 #include "components/bvh_table.h"
 #include "components/collider_table.h"
+#include "components/collision_filter.h"
 #include "components/material_table.h"
 #include "components/node_table.h"
 #include "components/surface_table.h"
@@ -25,10 +26,12 @@ struct CollisionInputs {
     std::span<const Vec3> position;            // by node, start of the step
     std::span<const Vec3> velocity;            // by node, start of the step
     std::span<const Vec3> rest_position = {};  // by node; empty: self-contact has no rest shape to compare with
+    std::span<const std::uint64_t> disabled_pairs = {};  // ContactKey::pair, ascending
 
     static CollisionInputs bind(const Binder& binder, const BodyTable& body, const ColliderTable& collider,
                                 const SurfaceTables& surface, const MaterialTable& material, const BvhTable& bvh,
-                                const BvhLeafTable& bvh_leaf, const NodeTable& node) {
+                                const BvhLeafTable& bvh_leaf, const NodeTable& node,
+                                const DisabledPairTable& disabled) {
         return {.body = binder.read(body),
                 .collider = binder.read(collider),
                 .surface = binder.read(surface),
@@ -38,7 +41,8 @@ struct CollisionInputs {
                 .leaf_triangle = binder.read(bvh_leaf.triangle),
                 .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity),
-                .rest_position = binder.read(node.rest_position)};
+                .rest_position = binder.read(node.rest_position),
+                .disabled_pairs = binder.read(disabled.key)};
     }
 };
 

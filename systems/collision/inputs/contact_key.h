@@ -22,6 +22,17 @@ inline std::uint64_t collider_pair_key(std::uint32_t body_slot, std::uint32_t co
     return std::uint64_t{1} << 62 | std::uint64_t{body_slot} << local_bits | collider_slot;
 }
 
+/// What a key names: slots of two bodies, or of a body and a collider.
+struct PairSlots {
+    std::uint32_t first, second;
+    bool is_collider;
+};
+inline PairSlots slots_of_pair(std::uint64_t key) {
+    constexpr std::uint64_t collider_bit = std::uint64_t{1} << 62;
+    return {static_cast<std::uint32_t>((key & ~collider_bit) >> local_bits),
+            static_cast<std::uint32_t>(key & local_mask), (key & collider_bit) != 0};
+}
+
 /// Numbers are local to their body. `point_of_second`: the point belongs to the second body of the pair.
 inline std::uint64_t point_triangle_feature(bool point_of_second, Index point, Index triangle) {
     return (point_of_second ? second_side_bit : 0) | static_cast<std::uint64_t>(point) << local_bits |

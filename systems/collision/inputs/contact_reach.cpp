@@ -5,6 +5,22 @@
 
 namespace skerry {
 
+namespace {
+
+/// What is not below zero takes the place of what others say.
+SurfaceProperties with_given(SurfaceProperties properties, const SurfaceProperties& given) {
+    if (given.static_friction >= 0) properties.static_friction = given.static_friction;
+    if (given.dynamic_friction >= 0) properties.dynamic_friction = given.dynamic_friction;
+    if (given.restitution >= 0) properties.restitution = given.restitution;
+    return properties;
+}
+
+SurfaceProperties surface_of_body(const CollisionInputs& inputs, Index body) {
+    return with_given(inputs.material_surface[inputs.body.material[body]], inputs.body.surface[body]);
+}
+
+}  // namespace
+
 PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
     const BodyTable& body = inputs.body;
     PairScale scale;
@@ -24,16 +40,13 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
 }
 
 SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
-    const SurfaceProperties own = inputs.material_surface[inputs.body.material[first]];
+    const SurfaceProperties own = surface_of_body(inputs, first);
     SurfaceProperties other = own;
     if (kind == PairKind::collider || inputs.body.kind[second] == BodyKind::kinematic) {
         const Index collider = kind == PairKind::collider ? second : inputs.body.collider[second];
-        const SurfaceProperties given = inputs.collider.surface[collider];
-        if (given.static_friction >= 0) other.static_friction = given.static_friction;
-        if (given.dynamic_friction >= 0) other.dynamic_friction = given.dynamic_friction;
-        if (given.restitution >= 0) other.restitution = given.restitution;
+        other = with_given(own, inputs.collider.surface[collider]);
     } else {
-        other = inputs.material_surface[inputs.body.material[second]];
+        other = surface_of_body(inputs, second);
     }
     return {std::sqrt(own.static_friction * other.static_friction),
             std::sqrt(own.dynamic_friction * other.dynamic_friction), std::max(own.restitution, other.restitution)};

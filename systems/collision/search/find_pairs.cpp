@@ -7,6 +7,7 @@
 #include "jobs/parallel_for.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/inputs/may_collide.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/search/step_reach.h"
 #include "systems/collision/tree/box.h"
@@ -177,6 +178,7 @@ private:
 
     /// A new pair is searched at once: only that tells how far apart the two really are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second) {
+        if (!may_collide(inputs_.body, inputs_.collider, inputs_.disabled_pairs, kind, first, second)) return;
         const Vec3 apart = kind == PairKind::collider
                                ? Vec3(Vec3::Zero())
                                : Vec3(inputs_.body.frame[first].position - inputs_.body.frame[second].position);

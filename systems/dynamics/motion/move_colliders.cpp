@@ -24,9 +24,11 @@ Mat3 rotation_between(const Vec3& a, const Vec3& b, Real s) {
 RigidPose pose_at(const MotionScript& script, std::span<const Keyframe> keyframe, const RigidMotion& initial, Real t) {
     const std::span<const Keyframe> keys = keyframe.subspan(
         static_cast<std::size_t>(script.key_begin), static_cast<std::size_t>(script.key_end - script.key_begin));
-    if (keys.empty())
-        return {initial.position + t * script.velocity,
-                rotation_matrix(t * script.angular_velocity) * initial.rotation};
+    if (keys.empty()) {
+        const Real since = t - script.start;
+        return {initial.position + since * script.velocity,
+                rotation_matrix(since * script.angular_velocity) * initial.rotation};
+    }
     const auto after =
         std::upper_bound(keys.begin(), keys.end(), t, [](Real time, const Keyframe& key) { return time < key.time; });
     if (after == keys.begin()) return {keys.front().position, rotation_matrix(keys.front().rotation)};

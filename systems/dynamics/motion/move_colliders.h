@@ -11,7 +11,7 @@
 namespace skerry {
 
 /// Where a script is at time t. With keys: linear in position, constant angular velocity between keys, held before the
-/// first and after the last. Without keys: initial pose moved by the constant velocities.
+/// first and after the last. Without keys: initial pose moved by the constant velocities since the start of the script.
 struct RigidPose {
     Vec3 position;
     Mat3 rotation;

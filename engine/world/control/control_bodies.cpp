@@ -1,0 +1,136 @@
+// Positions, velocities and loads of the nodes of a body.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/world/control/control.h"
+#include "engine/world/step/step.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+std::span<Vec3> rows_of(Column<Vec3>& column, Range range) {
+    return column.span().subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
+}
+
+std::string title_of_body(const Model& model, std::size_t body) {
+    return "body '" + model.body_records[body].name + "'";
+}
+
+[[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
+                         const std::string& expected) {
+    Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+}
+
+void require_values(const Model& model, std::size_t body, const char* call, const char* field,
+                    std::span<const Vec3> values) {
+    const auto count = static_cast<std::size_t>(model.bodies.nodes[body].size());
+    if (values.size() != count)
+        refuse(call, field, std::to_string(values.size()) + " values",
+               std::to_string(count) + ", one a node of " + title_of_body(model, body));
+    for (std::size_t n = 0; n < values.size(); ++n)
+        if (!values[n].allFinite())
+            refuse(call, field, "a value that is not finite at node " + std::to_string(n), "finite numbers");
+}
+
+Real volume_sign(const std::array<Index, 4>& corner, std::span<const Vec3> position) {
+    const auto at = [&](std::size_t k) -> const Vec3& { return position[static_cast<std::size_t>(corner[k])]; };
+    Mat3 edges;
+    edges << at(1) - at(0), at(2) - at(0), at(3) - at(0);
+    return edges.determinant();
+}
+
+/// What an attachment holds it holds where it is now.
+void hold_here(Model& model, std::size_t body, Real now) {
+    AttachmentTable& table = model.attachments;
+    for (std::size_t a = 0; a < table.slot.size(); ++a) {
+        if (table.body[a] != static_cast<Index>(body)) continue;
+        const RigidPose pose = pose_at(table.script[a], table.keyframe, table.initial[a], now);
+        for (Index i = table.nodes[a].begin; i < table.nodes[a].end; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            table.anchor[at] = pose.rotation.transpose() *
+                               (model.nodes.position[static_cast<std::size_t>(table.node[at])] - pose.position);
+        }
+    }
+}
+
+}  // namespace
+
+void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
+                     const char* field) {
+    const Range nodes = model.bodies.nodes[body];
+    const std::span<const Vec3> now = model.nodes.position.span().subspan(static_cast<std::size_t>(nodes.begin),
+                                                                          static_cast<std::size_t>(nodes.size()));
+    const std::vector<std::array<Index, 4>>& tetrahedra = model.body_records[body].tetrahedra;
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+        if (!(volume_sign(tetrahedra[t], position) > 0) && volume_sign(tetrahedra[t], now) > 0)
+            refuse(object, field, "a shape in which tetrahedron " + std::to_string(t) + " has no volume, or less",
+                   "one that turns none of them inside out");
+}
+
+void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {
+    Model& model = world.model;
+    const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
+    const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
+    for (std::size_t n = 0; n < position.size(); ++n) {
+        origin[n] += position[n] - target[n];  // it has not moved by itself
+        target[n] = position[n];
+    }
+    if (model.bodies.tetrahedron_count[body] > 0)
+        model.bodies.stable_step[body] =
+            look_at_stable_step(model, body, model.nodes.position, world.scratch.stiffness_sum);
+    model.body_records[body].settled = model.settled = false;
+    world.query_trees.forget();
+    world.cache.search_afresh(model);
+    world.record.balance.close();
+    model.wake_all();  // of what lay on it, or is in it now
+}
+
+void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
+    state_->require_between_steps("set_positions");
+    Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "set_positions"));
+    require_values(model, row, "set_positions", "position", position);
+    if (std::ranges::equal(position, rows_of(model.nodes.position, model.bodies.nodes[row]))) return;
+    require_upright(model, row, position, title_of_body(model, row), "position");
+    place_nodes(*state_, row, position);
+    hold_here(model, row, time());
+}
+
+void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
+    state_->require_between_steps("set_velocities");
+    Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "set_velocities"));
+    require_values(model, row, "set_velocities", "velocity", velocity);
+    const Range nodes = model.bodies.nodes[row];
+    const std::span<Vec3> target = rows_of(model.nodes.velocity, nodes);
+    bool changed = false;
+    for (std::size_t n = 0; n < velocity.size(); ++n) {
+        // nodes without freedom keep the motion of what holds them
+        const bool free = model.nodes.inverse_mass[static_cast<std::size_t>(nodes.begin) + n] > 0;
+        if (!free || target[n] == velocity[n]) continue;
+        target[n] = velocity[n];
+        changed = true;
+    }
+    if (!changed) return;
+    state_->cache.search_afresh(model);  // the search counts on the speed of the last step
+    state_->record.balance.close();
+    model.wake(row);
+}
+
+void World::set_loads(BodyHandle body, std::span<const Vec3> load) {
+    state_->require_between_steps("set_loads");
+    Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "set_loads"));
+    require_values(model, row, "set_loads", "load", load);
+    const std::span<Vec3> target = rows_of(model.nodes.load, model.bodies.nodes[row]);
+    if (std::ranges::equal(load, target)) return;
+    const bool before = model.has_loads(row);
+    std::ranges::copy(load, target.begin());
+    model.note_loads(row, before);
+    model.wake(row);
+}
+
+}  // namespace skerry

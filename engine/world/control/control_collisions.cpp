@@ -1,0 +1,129 @@
+// Who may touch whom: groups, masks, pairs that are switched off.
+#include <algorithm>
+
+#include "engine/world/control/control.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/inputs/may_collide.h"
+
+namespace skerry {
+
+namespace {
+
+/// A pair of handles by rows.
+struct RowPair {
+    PairKind kind;
+    Index first, second;
+};
+
+RowPair rows_of(const Model& model, BodyHandle a, BodyHandle b, const char* call) {
+    const Index first = model.row(a, call), second = model.row(b, call);
+    return {first == second ? PairKind::self : PairKind::bodies, first, second};
+}
+
+RowPair rows_of(const Model& model, BodyHandle body, ColliderHandle collider, const char* call) {
+    return {PairKind::collider, model.row(body, call), model.row(collider, call)};
+}
+
+/// Pairs are found again, and what they overlap in is looked at as at a start.
+void look_afresh(WorldState& world) {
+    world.settle();
+    world.cache.drop_pairs(world.model);
+    world.model.wake_all();
+}
+
+void look_for_overlaps(Model& model, Index body) {
+    model.body_records[static_cast<std::size_t>(body)].settled = model.settled = false;
+}
+
+void look_for_overlaps_of_collider(Model& model, Index collider) {
+    const auto c = static_cast<std::size_t>(collider);
+    model.collider_records[c].settled = model.settled = false;
+    if (model.colliders.body[c] != no_index) look_for_overlaps(model, model.colliders.body[c]);
+}
+
+void set_collision(WorldState& world, const RowPair& pair, bool on) {
+    Model& model = world.model;
+    Column<std::uint64_t>& disabled = model.disabled_pairs.key;
+    const std::uint64_t key = pair_key(model.bodies, model.colliders, pair.kind, pair.first, pair.second);
+    const auto place = std::lower_bound(disabled.begin(), disabled.end(), key);
+    const bool is_off = place != disabled.end() && *place == key;
+    if (is_off == !on) return;
+    const auto at = static_cast<std::size_t>(place - disabled.begin());
+    if (on) {
+        disabled.erase(at, 1);
+        look_for_overlaps(model, pair.first);
+    } else {
+        disabled.push_back(key);
+        std::ranges::rotate(disabled.span().subspan(at), disabled.span().end() - 1);
+    }
+    look_afresh(world);
+}
+
+bool collide(const Model& model, const RowPair& pair) {
+    if (pair.kind == PairKind::self) return model.bodies.self_contact[pair.first] != 0;
+    return may_collide(model.bodies, model.colliders, model.disabled_pairs.key, pair.kind, pair.first, pair.second);
+}
+
+void enable_if(Column<std::uint64_t>& disabled, auto&& names) {
+    for (std::size_t i = disabled.size(); i-- > 0;)
+        if (names(slots_of_pair(disabled[i]))) disabled.erase(i, 1);
+}
+
+}  // namespace
+
+void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled) {
+    enable_if(disabled.key, [&](const PairSlots& pair) {
+        return pair.first == body.slot || (!pair.is_collider && pair.second == body.slot);
+    });
+}
+
+void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled) {
+    enable_if(disabled.key, [&](const PairSlots& pair) { return pair.is_collider && pair.second == collider.slot; });
+}
+
+void World::set_collision_groups(BodyHandle body, std::uint32_t group, std::uint32_t mask) {
+    state_->require_between_steps("set_collision_groups");
+    Model& model = state_->model;
+    const Index row = model.row(body, "set_collision_groups");
+    CollisionFilter& filter = model.bodies.filter[static_cast<std::size_t>(row)];
+    if (filter == CollisionFilter{group, mask}) return;
+    filter = {group, mask};
+    look_for_overlaps(model, row);
+    look_afresh(*state_);
+}
+
+void World::set_collision_groups(ColliderHandle collider, std::uint32_t group, std::uint32_t mask) {
+    state_->require_between_steps("set_collision_groups");
+    Model& model = state_->model;
+    const Index row = model.row(collider, "set_collision_groups");
+    CollisionFilter& filter = model.colliders.filter[static_cast<std::size_t>(row)];
+    if (filter == CollisionFilter{group, mask}) return;
+    filter = {group, mask};
+    look_for_overlaps_of_collider(model, row);
+    look_afresh(*state_);
+}
+
+void World::set_collision(BodyHandle a, BodyHandle b, bool on) {
+    state_->require_between_steps("set_collision");
+    const RowPair pair = rows_of(state_->model, a, b, "set_collision");
+    if (pair.kind != PairKind::self) return skerry::set_collision(*state_, pair, on);
+    std::uint8_t& self_contact = state_->model.bodies.self_contact[static_cast<std::size_t>(pair.first)];
+    if ((self_contact != 0) == on) return;
+    self_contact = on;
+    look_afresh(*state_);
+}
+
+void World::set_collision(BodyHandle body, ColliderHandle collider, bool on) {
+    state_->require_between_steps("set_collision");
+    skerry::set_collision(*state_, rows_of(state_->model, body, collider, "set_collision"), on);
+}
+
+bool World::may_collide(BodyHandle a, BodyHandle b) const {
+    return collide(state_->model, rows_of(state_->model, a, b, "may_collide"));
+}
+
+bool World::may_collide(BodyHandle body, ColliderHandle collider) const {
+    return collide(state_->model, rows_of(state_->model, body, collider, "may_collide"));
+}
+
+}  // namespace skerry

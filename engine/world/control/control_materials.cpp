@@ -1,0 +1,185 @@
+// Materials of bodies that are there, and surfaces of single bodies and colliders.
+#include <algorithm>
+#include <vector>
+
+#include "engine/world/control/control.h"
+#include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/material_row.h"
+#include "engine/world/step/step.h"
+#include "engine/world/validate.h"
+
+namespace skerry {
+
+namespace {
+
+/// All that a change of material writes of a body, to be put back.
+class KeptBody {
+public:
+    KeptBody(Model& model, std::size_t body) : body_(body) {
+        visit(model, [&](auto& kept, auto rows) { kept.assign(rows.begin(), rows.end()); });
+        rest_step_ = model.bodies.rest_step[body];
+        stable_step_ = model.bodies.stable_step[body];
+    }
+    void put_back(Model& model) {
+        visit(model, [](auto& kept, auto rows) { std::ranges::copy(kept, rows.begin()); });
+        model.bodies.rest_step[body_] = rest_step_;
+        model.bodies.stable_step[body_] = stable_step_;
+    }
+
+private:
+    void visit(Model& model, auto&& with) {
+        const Range nodes = model.bodies.nodes[body_], blocks = model.bodies.blocks[body_];
+        const auto rows = [](auto& column, Range range) {
+            return column.span().subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
+        };
+        with(mass_, rows(model.nodes.mass, nodes));
+        with(inverse_mass_, rows(model.nodes.inverse_mass, nodes));
+        with(mass_share_, rows(model.elements.mass_share, blocks));
+        with(implicit_modulus_, rows(model.elements.implicit_modulus, blocks));
+        with(relaxation_rate_, rows(model.elements.relaxation_rate, blocks));
+        with(own_frequency_, rows(model.elements.own_frequency, blocks));
+        with(relaxing_share_, rows(model.elements.relaxing_share, blocks));
+    }
+
+    std::size_t body_;
+    std::vector<Real> mass_, inverse_mass_, relaxing_share_;
+    std::vector<ElementLane> mass_share_, implicit_modulus_, relaxation_rate_, own_frequency_;
+    Real rest_step_ = 0, stable_step_ = 0;
+};
+
+std::vector<std::size_t> bodies_of(const Model& model, Index material) {
+    std::vector<std::size_t> found;
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        if (model.bodies.kind[b] != BodyKind::deformable) continue;
+        bool has = model.bodies.material[b] == material;
+        for (Index e = model.bodies.blocks[b].begin; e < model.bodies.blocks[b].end && !has; ++e)
+            has = model.elements.material[static_cast<std::size_t>(e)] == material;
+        if (has) found.push_back(b);
+    }
+    return found;
+}
+
+/// Which material each tetrahedron has: that of the elements that cover it.
+std::vector<Index> materials_of_tetrahedra(const Model& model, std::size_t body) {
+    std::vector<Index> material(model.body_records[body].tetrahedra.size(), model.bodies.material[body]);
+    const Ragged<Index>& covered = model.body_records[body].element_tetrahedra;
+    const auto first = static_cast<std::size_t>(model.bodies.blocks[body].begin);
+    for (std::size_t place = 0; place < covered.size(); ++place)
+        for (const Index t : covered[place])
+            material[static_cast<std::size_t>(t)] = model.elements.material[first + place / element_lanes];
+    return material;
+}
+
+void restart(WorldState& world, std::size_t body) {
+    Model& model = world.model;
+    const std::vector<Index> material = materials_of_tetrahedra(model, body);
+    const BodyRecord& record = model.body_records[body];
+    const Range nodes = model.bodies.nodes[body];
+    NewBody as_new;
+    as_new.element = record.element;
+    as_new.material = model.bodies.material[body];
+    as_new.tetrahedron_material = material;
+    as_new.nodes = model.nodes.rest_position.span().subspan(static_cast<std::size_t>(nodes.begin),
+                                                            static_cast<std::size_t>(nodes.size()));
+    as_new.tetrahedra = record.tetrahedra;
+    restart_elements(model, static_cast<Index>(body), as_new, world.scratch.stiffness_sum);
+    validate_step(model, static_cast<Index>(body), record.name);
+}
+
+void weigh(Model& model, std::size_t body) {
+    const Range nodes = model.bodies.nodes[body];
+    model.body_mass[body] = 0;
+    for (Index n = nodes.begin; n < nodes.end; ++n)
+        model.body_mass[body] += model.nodes.mass[static_cast<std::size_t>(n)];
+}
+
+[[noreturn]] void refuse(const char* field, const std::string& found, const std::string& expected) {
+    Complaint{.file = {}, .object = "material", .field = field, .found = found, .expected = expected, .hint = {}}
+        .raise();
+}
+
+void require_changeable(const Settings& settings, const MaterialRow& now, const MaterialRow& next) {
+    if (now.constants.model != next.constants.model)
+        refuse("model", std::string(name_of(next.constants.model)),
+               std::string(name_of(now.constants.model)) + ": the law stays, a new material can have another");
+    if (settings.multirate && !now.same_elements(next))
+        refuse("young_modulus, poisson_ratio, density, loss_factor, bulk_viscosity", "other values",
+               "those that it has: with multirate elements have levels that follow from them");
+}
+
+}  // namespace
+
+MaterialSettings World::material(MaterialHandle material) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(material, "material"));
+    const MaterialRow now = MaterialRow::of(state_->model.materials, row);
+    MaterialSettings settings{.young_modulus = now.young_modulus,
+                              .poisson_ratio = now.poisson_ratio,
+                              .density = now.constants.density,
+                              .friction = now.surface.dynamic_friction,
+                              .restitution = now.surface.restitution,
+                              .damping = now.damping,
+                              .loss_factor = now.constants.loss_factor,
+                              .bulk_viscosity = now.constants.bulk_viscosity,
+                              .model = now.constants.model};
+    if (now.surface.static_friction != now.surface.dynamic_friction) {
+        settings.static_friction = now.surface.static_friction;
+        settings.dynamic_friction = now.surface.dynamic_friction;
+    }
+    return settings;
+}
+
+void World::set_material(MaterialHandle material, const MaterialSettings& settings) {
+    state_->require_between_steps("set_material");
+    Model& model = state_->model;
+    const Index row = model.row(material, "set_material");
+    validate(settings, model.settings);
+    const MaterialRow now = MaterialRow::of(model.materials, static_cast<std::size_t>(row)),
+                      next = MaterialRow::of(settings);
+    require_changeable(model.settings, now, next);
+    if (now.same_elements(next) && now.same_rest(next)) return;
+    state_->settle();
+    const std::vector<std::size_t> bodies = bodies_of(model, row);
+    next.write(model.materials, static_cast<std::size_t>(row));
+    if (!now.same_elements(next)) {
+        std::vector<KeptBody> kept;
+        try {
+            for (const std::size_t body : bodies) {
+                kept.emplace_back(model, body);
+                restart(*state_, body);
+            }
+        } catch (const SceneError&) {
+            for (KeptBody& body : kept) body.put_back(model);
+            now.write(model.materials, static_cast<std::size_t>(row));
+            throw;
+        }
+        for (const std::size_t body : bodies) weigh(model, body);
+        model.clusters_open |= !bodies.empty();
+        settle_clusters(model, state_->scratch.stiffness_sum);
+    }
+    state_->record.balance.close();
+    for (const std::size_t body : bodies) model.wake(body);
+}
+
+void World::set_surface_properties(BodyHandle body, const SurfaceSettings& surface) {
+    state_->require_between_steps("set_surface_properties");
+    Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "set_surface_properties"));
+    validate(surface, "body '" + model.body_records[row].name + "'", model.settings);
+    const SurfaceProperties next = surface_properties(surface);
+    if (model.bodies.surface[row] == next) return;
+    model.bodies.surface[row] = next;
+    model.wake(row);
+}
+
+void World::set_surface_properties(ColliderHandle collider, const SurfaceSettings& surface) {
+    state_->require_between_steps("set_surface_properties");
+    Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(collider, "set_surface_properties"));
+    validate(surface, "collider '" + model.collider_records[row].name + "'", model.settings);
+    const SurfaceProperties next = surface_properties(surface);
+    if (model.colliders.surface[row] == next) return;
+    model.colliders.surface[row] = next;
+    model.wake_all();  // of what rests on it
+}
+
+}  // namespace skerry

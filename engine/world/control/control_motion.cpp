@@ -1,0 +1,263 @@
+// How colliders and attachments move from now on. Both have a script: constant velocities since a time, or keys.
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "engine/world/control/control.h"
+#include "engine/world/validate.h"
+#include "systems/dynamics/motion/move_colliders.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+namespace {
+
+/// A row of ColliderTable or AttachmentTable.
+template <class Table>
+struct Scripted {
+    Table& table;
+    std::size_t row;
+
+    RigidPose pose(Real now) const { return pose_at(script(), table.keyframe, table.initial[row], now); }
+    MotionScript& script() const { return table.script[row]; }
+    bool has_keys() const { return script().key_begin != script().key_end; }
+    std::span<const Keyframe> keys() const {
+        return table.keyframe.span().subspan(static_cast<std::size_t>(script().key_begin),
+                                             static_cast<std::size_t>(script().key_end - script().key_begin));
+    }
+
+    void erase_keys() const {
+        const Index begin = script().key_begin, count = script().key_end - begin;
+        table.keyframe.erase(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+        for (MotionScript& other : table.script)
+            if (other.key_begin > begin) {
+                other.key_begin -= count;
+                other.key_end -= count;
+            }
+        script().key_begin = script().key_end = static_cast<Index>(table.keyframe.size());
+    }
+    /// From a pose on, by constant velocities.
+    void start(const RigidPose& pose, const Vec3& velocity, const Vec3& angular_velocity, Real now) const {
+        if (has_keys()) erase_keys();
+        script().velocity = velocity;
+        script().angular_velocity = angular_velocity;
+        script().start = now;
+        table.initial[row] = {pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
+    }
+    void start_keys(const Keyframe& from, const Keyframe& to) const {
+        constexpr Index two = 2;
+        if (script().key_end - script().key_begin != two) {
+            erase_keys();
+            for (Index k = 0; k < two; ++k) table.keyframe.push_back({});
+            script().key_end = static_cast<Index>(table.keyframe.size());
+        }
+        script().velocity = script().angular_velocity = Vec3::Zero();
+        script().start = 0;
+        table.keyframe[static_cast<std::size_t>(script().key_begin)] = from;
+        table.keyframe[static_cast<std::size_t>(script().key_begin) + 1] = to;
+    }
+};
+
+template <class Table>
+Scripted(Table&, std::size_t) -> Scripted<Table>;
+
+/// A product of many rotations is one only to rounding, which would add up.
+RigidPose without_rounding(const RigidPose& pose) {
+    return {pose.position, Eigen::Quaternion<Real>(pose.rotation).normalized().toRotationMatrix()};
+}
+
+bool is_at(const RigidPose& pose, const Pose& target) {
+    return pose.position == target.position &&
+           (rotation_vector(pose.rotation) == target.rotation || pose.rotation == rotation_matrix(target.rotation));
+}
+
+/// Of the vectors of a rotation the one nearest to another: keys turn by their difference where both have one axis.
+Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
+    const Real angle = rotation.norm();
+    if (angle == 0) {
+        const Real length = to.norm();  // no turn, or whole ones about the other's axis
+        return length > std::numbers::pi ? Vec3(2 * std::numbers::pi / length * to) : rotation;
+    }
+    const Vec3 axis = rotation / angle;
+    constexpr Real turn = 2 * std::numbers::pi;
+    return (angle + turn * std::round((axis.dot(to) - angle) / turn)) * axis;
+}
+
+/// Returns false where that is how it moves already.
+template <class Table>
+bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const Vec3& angular_velocity, Real now) {
+    const MotionScript& script = scripted.script();
+    if (!scripted.has_keys() && script.velocity == velocity && script.angular_velocity == angular_velocity)
+        return false;
+    scripted.start(without_rounding(scripted.pose(now)), velocity, angular_velocity, now);
+    return true;
+}
+
+template <class Table>
+void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, Real now) {
+    const RigidPose from = scripted.pose(now);
+    const MotionScript& script = scripted.script();
+    const bool stands = scripted.has_keys()
+                            ? !(now < scripted.keys().back().time)
+                            : script.velocity == Vec3::Zero() && script.angular_velocity == Vec3::Zero();
+    if (stands && is_at(from, pose)) return;
+    const Real end = now + duration;
+    const bool has_target = script.key_end - script.key_begin == 2;
+    if (has_target && scripted.keys().back().time == end && scripted.keys().front().time <= now &&
+        is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, pose))
+        return;
+    const Vec3 rotation = rotation_vector(from.rotation);
+    scripted.start_keys({now, from.position, rotation}, {end, pose.position, nearest_turn(pose.rotation, rotation)});
+}
+
+/// Returns the pose where it was not there.
+template <class Table>
+std::optional<RigidPose> set_pose(const Scripted<Table>& scripted, const Pose& pose, Real now) {
+    if (is_at(scripted.pose(now), pose)) return std::nullopt;
+    const RigidPose there{pose.position, rotation_matrix(pose.rotation)};
+    const Vec3 velocity = scripted.script().velocity, angular_velocity = scripted.script().angular_velocity;
+    scripted.start(there, velocity, angular_velocity, now);
+    return there;
+}
+
+/// The attachment that moves the nodes of a mesh collider; no_index for an analytic one.
+Index attachment_of(const Model& model, Index collider) {
+    const Index body = model.colliders.body[static_cast<std::size_t>(collider)];
+    if (body == no_index) return no_index;
+    for (std::size_t a = 0; a < model.attachments.slot.size(); ++a)
+        if (model.attachments.slot[a] == no_slot && model.attachments.body[a] == body) return static_cast<Index>(a);
+    return no_index;
+}
+
+/// "collider 'finger'"
+std::string title_of(const Model& model, Index collider) {
+    return "collider '" + model.collider_records[static_cast<std::size_t>(collider)].name + "'";
+}
+std::string title_of_attachment(const Model& model, std::size_t attachment) {
+    const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
+    return "attachment of body '" + model.body_records[body].name + "'";
+}
+
+/// What moves with a collider, and the collider itself.
+void for_each_script(Model& model, Index collider, auto&& change) {
+    change(Scripted{model.colliders, static_cast<std::size_t>(collider)});
+    if (const Index a = attachment_of(model, collider); a != no_index)
+        change(Scripted{model.attachments, static_cast<std::size_t>(a)});
+}
+
+/// Where the nodes of a body are once an attachment is at a pose.
+std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& pose) {
+    const AttachmentTable& table = model.attachments;
+    const Range nodes = model.bodies.nodes[static_cast<std::size_t>(table.body[attachment])];
+    const std::span<const Vec3> now = model.nodes.position.span().subspan(static_cast<std::size_t>(nodes.begin),
+                                                                          static_cast<std::size_t>(nodes.size()));
+    std::vector<Vec3> position(now.begin(), now.end());
+    for (Index i = table.nodes[attachment].begin; i < table.nodes[attachment].end; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        position[static_cast<std::size_t>(table.node[at] - nodes.begin)] =
+            pose.position + pose.rotation * table.anchor[at];
+    }
+    return position;
+}
+
+// `object` says what is refused. It is asked only then: a control loop allocates nothing.
+
+void require_velocities(auto&& object, const Vec3& velocity, const Vec3& angular_velocity) {
+    if (velocity.allFinite() && angular_velocity.allFinite()) return;
+    require_finite(object(), "velocity", velocity);
+    require_finite(object(), "angular_velocity", angular_velocity);
+}
+
+void require_pose(auto&& object, const Pose& pose) {
+    if (!pose.position.allFinite() || !pose.rotation.allFinite()) validate(pose, object());
+}
+
+void require_duration(auto&& object, Real duration, Real now) {
+    if (std::isfinite(duration) && duration > 0 && now + duration > now) return;
+    Complaint{.file = {},
+              .object = object(),
+              .field = "duration",
+              .found = std::to_string(duration),
+              .expected = "a time > 0 (s)",
+              .hint = "set_pose is there at once"}
+        .raise();
+}
+
+}  // namespace
+
+void World::set_velocity(ColliderHandle collider, const Vec3& velocity, const Vec3& angular_velocity) {
+    state_->require_between_steps("set_velocity");
+    const Index row = state_->model.row(collider, "set_velocity");
+    require_velocities([&] { return title_of(state_->model, row); }, velocity, angular_velocity);
+    for_each_script(state_->model, row,
+                    [&](const auto& scripted) { skerry::set_velocity(scripted, velocity, angular_velocity, time()); });
+}
+
+void World::set_velocity(AttachmentHandle attachment, const Vec3& velocity, const Vec3& angular_velocity) {
+    state_->require_between_steps("set_velocity");
+    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "set_velocity"));
+    require_velocities([&] { return title_of_attachment(state_->model, row); }, velocity, angular_velocity);
+    skerry::set_velocity(Scripted{state_->model.attachments, row}, velocity, angular_velocity, time());
+}
+
+void World::move_to(ColliderHandle collider, const Pose& pose, Real duration) {
+    state_->require_between_steps("move_to");
+    const Index row = state_->model.row(collider, "move_to");
+    const auto object = [&] { return title_of(state_->model, row); };
+    require_pose(object, pose);
+    require_duration(object, duration, time());
+    for_each_script(state_->model, row,
+                    [&](const auto& scripted) { skerry::move_to(scripted, pose, duration, time()); });
+}
+
+void World::move_to(AttachmentHandle attachment, const Pose& pose, Real duration) {
+    state_->require_between_steps("move_to");
+    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "move_to"));
+    const auto object = [&] { return title_of_attachment(state_->model, row); };
+    require_pose(object, pose);
+    require_duration(object, duration, time());
+    skerry::move_to(Scripted{state_->model.attachments, row}, pose, duration, time());
+}
+
+void World::set_pose(ColliderHandle collider, const Pose& pose) {
+    state_->require_between_steps("set_pose");
+    Model& model = state_->model;
+    const Index row = model.row(collider, "set_pose");
+    require_pose([&] { return title_of(model, row); }, pose);
+    const auto c = static_cast<std::size_t>(row);
+    const std::optional<RigidPose> there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
+    if (!there) return;
+    if (const Index a = attachment_of(model, row); a != no_index) {
+        const auto of_mesh = static_cast<std::size_t>(a);
+        skerry::set_pose(Scripted{model.attachments, of_mesh}, pose, time());
+        place_nodes(*state_, static_cast<std::size_t>(model.colliders.body[c]), carried_nodes(model, of_mesh, *there));
+    }
+    model.colliders.motion[c] = {there->position, there->rotation, Vec3::Zero(), Vec3::Zero()};
+    model.collider_records[c].settled = model.settled = false;
+    state_->cache.search_afresh(model);
+    model.wake_all();  // of what it was under, or is in now
+}
+
+void World::set_pose(AttachmentHandle attachment, const Pose& pose) {
+    state_->require_between_steps("set_pose");
+    Model& model = state_->model;
+    const auto a = static_cast<std::size_t>(model.row(attachment, "set_pose"));
+    const auto object = [&] { return title_of_attachment(model, a); };
+    require_pose(object, pose);
+    const Scripted scripted{model.attachments, a};
+    if (is_at(scripted.pose(time()), pose)) return;
+    const auto body = static_cast<std::size_t>(model.attachments.body[a]);
+    const std::vector<Vec3> position = carried_nodes(model, a, {pose.position, rotation_matrix(pose.rotation)});
+    require_upright(model, body, position, object(), "pose");
+    skerry::set_pose(scripted, pose, time());
+    place_nodes(*state_, body, position);
+}
+
+MotionKey World::pose(AttachmentHandle attachment) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "pose"));
+    const RigidPose pose = Scripted{state_->model.attachments, row}.pose(time());
+    return {time(), pose.position, rotation_vector(pose.rotation)};
+}
+
+}  // namespace skerry

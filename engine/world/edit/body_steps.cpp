@@ -1,0 +1,131 @@
+// What a body takes from its materials: masses, how its elements relax, and the step that it stands.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/world/edit/edit_model.h"
+#include "systems/dynamics/elements/build_elements.h"
+#include "systems/dynamics/stability/find_relaxation.h"
+#include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/stiffness_share.h"
+
+namespace skerry {
+
+namespace {
+
+auto rows_of(auto& column, Range rows) {
+    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
+}
+
+/// Row of the material of a tetrahedron.
+Index material_of(const NewBody& body, std::size_t tetrahedron) {
+    return body.tetrahedron_material.empty() ? body.material : body.tetrahedron_material[tetrahedron];
+}
+
+/// m/s, of waves along a thin bar, sqrt(E / rho). Of several materials with their mean density and a modulus halfway,
+/// by factors, between the bounds of all mixtures: one beside the other (Voigt) and one behind the other (Reuss).
+Real bar_speed(const Model& model, const NewBody& body, std::span<const MaterialZone> zones) {
+    Real volume = 0, mass = 0, stiffness = 0, compliance = 0;
+    for (const MaterialZone& zone : zones) {
+        const auto row = static_cast<std::size_t>(zone.material);
+        const Real modulus = model.materials.young_modulus[row], density = model.materials.constants[row].density;
+        if (zones.size() == 1) return std::sqrt(modulus / density);
+        Real of_zone = 0;
+        for (const Index t : zone.tetrahedra)
+            of_zone += six_volumes(body.tetrahedra[static_cast<std::size_t>(t)], body.nodes) / 6;
+        volume += of_zone;
+        mass += of_zone * density;
+        stiffness += of_zone * modulus;
+        compliance += of_zone / modulus;
+    }
+    return std::sqrt(std::sqrt(stiffness / compliance) * volume / mass);
+}
+
+/// How the elements of a body relax, whose stable step would be `step` (s) if they did not. `speed`: bar_speed.
+void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Vec3> position,
+                    std::span<const Real> stiffness_sum, Real speed, Real step) {
+    ElementBlockTable& elements = model.elements;
+    const Real lowest = lowest_frequency_estimate(
+        position.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size())),
+        rows_of(model.nodes.mass, nodes), speed);
+    find_relaxation(model.all_elements(), blocks, model.nodes.rest_position, position, model.nodes.mass, stiffness_sum,
+                    lowest, step_times_frequency / step,
+                    {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
+                     rows_of(elements.relaxing_share, blocks)});
+}
+
+}  // namespace
+
+/// In the order in which the mesh comes to their materials.
+std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
+    std::vector<MaterialZone> zones;
+    for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+        const Index material = material_of(body, t);
+        auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
+        if (zone == zones.end()) {
+            const Real poisson_ratio = model.materials.poisson_ratio[static_cast<std::size_t>(material)];
+            zone = zones.insert(zones.end(),
+                                {material, resolved(body.element, poisson_ratio, model.settings.multirate), {}});
+        }
+        zone->tetrahedra.push_back(static_cast<Index>(t));
+    }
+    return zones;
+}
+
+void set_masses(Model& model, const NewBody& body, Range range) {
+    NodeTable& nodes = model.nodes;
+    std::vector<Real> density(body.tetrahedra.size());
+    for (std::size_t t = 0; t < density.size(); ++t)
+        density[t] = model.materials.constants[static_cast<std::size_t>(material_of(body, t))].density;
+    add_lumped_mass(body.tetrahedra, body.nodes, density, rows_of(nodes.mass, range));
+    for (auto n = static_cast<std::size_t>(range.begin); n < static_cast<std::size_t>(range.end); ++n)
+        nodes.inverse_mass[n] = nodes.mass[n] > 0 ? 1 / nodes.mass[n] : 0;
+}
+
+void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
+                std::span<const Vec3> position, Column<Real>& stiffness_sum) {
+    const auto b = static_cast<std::size_t>(row);
+    BodyTable& bodies = model.bodies;
+    const Range blocks = bodies.blocks[b];
+    const auto step = [&] {
+        return stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
+    };
+    bodies.rest_step[b] = bodies.stable_step[b] = step();
+    if (body.tetrahedra.empty()) return;
+    const auto relaxes = [&](const MaterialZone& zone) {
+        return model.materials.constants[static_cast<std::size_t>(zone.material)].relaxes();
+    };
+    if (std::any_of(zones.begin(), zones.end(), relaxes))
+        set_relaxation(model, bodies.nodes[b], blocks, position, stiffness_sum, bar_speed(model, body, zones),
+                       bodies.rest_step[b]);
+    // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
+    const auto& levels = bodies.level_count[b];
+    if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; }))
+        find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
+                         rows_of(model.elements.mass_share, blocks));
+    bodies.rest_step[b] = bodies.stable_step[b] = step();
+}
+
+void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum) {
+    const auto b = static_cast<std::size_t>(row);
+    const Range nodes = model.bodies.nodes[b], blocks = model.bodies.blocks[b];
+    std::vector<char> held(static_cast<std::size_t>(nodes.size()));
+    for (std::size_t n = 0; n < held.size(); ++n)
+        held[n] = !(model.nodes.inverse_mass[static_cast<std::size_t>(nodes.begin) + n] > 0);
+    std::ranges::fill(rows_of(model.nodes.mass, nodes), Real(0));
+    set_masses(model, body, nodes);
+    for (std::size_t n = 0; n < held.size(); ++n)
+        if (held[n]) model.nodes.inverse_mass[static_cast<std::size_t>(nodes.begin) + n] = 0;
+
+    ElementBlockTable& elements = model.elements;
+    start_mass_shares(model.all_elements(), blocks, rows_of(elements.mass_share, blocks));
+    std::ranges::fill(rows_of(elements.implicit_modulus, blocks), ElementLane{});
+    std::ranges::fill(rows_of(elements.relaxation_rate, blocks), ElementLane{});
+    std::ranges::fill(rows_of(elements.own_frequency, blocks), ElementLane{});
+    std::ranges::fill(rows_of(elements.relaxing_share, blocks), Real(0));
+    stiffness_sum.resize(model.nodes.position.size());
+    find_steps(model, row, body, zones_of(model, body), model.nodes.rest_position, stiffness_sum);
+    model.bodies.stable_step[b] =
+        stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+}
+
+}  // namespace skerry

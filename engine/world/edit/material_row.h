@@ -1,0 +1,45 @@
+// A row of MaterialTable, and what settings make of it.
+#pragma once
+
+#include "components/material_table.h"
+#include "engine/world/edit/edit_model.h"
+#include "systems/material/material_law.h"
+
+namespace skerry {
+
+struct MaterialRow {
+    MaterialConstants constants;
+    SurfaceProperties surface;
+    Real young_modulus, poisson_ratio, damping;
+
+    static MaterialRow of(const MaterialTable& table, std::size_t row) {
+        return {table.constants[row], table.surface[row], table.young_modulus[row], table.poisson_ratio[row],
+                table.damping[row]};
+    }
+    static MaterialRow of(const MaterialSettings& material) {
+        MaterialRow row{
+            material_constants(material.model, material.young_modulus, material.poisson_ratio, material.density),
+            surface_properties(
+                {material.friction, material.static_friction, material.dynamic_friction, material.restitution}),
+            material.young_modulus, material.poisson_ratio, material.damping};
+        row.constants.loss_factor = material.loss_factor;
+        row.constants.bulk_viscosity = material.bulk_viscosity;
+        return row;
+    }
+    void write(MaterialTable& table, std::size_t row) const {
+        table.constants[row] = constants;
+        table.surface[row] = surface;
+        table.young_modulus[row] = young_modulus;
+        table.poisson_ratio[row] = poisson_ratio;
+        table.damping[row] = damping;
+    }
+    /// Whether elements are the same: their forces, masses and losses.
+    bool same_elements(const MaterialRow& other) const {
+        const MaterialConstants &a = constants, &b = other.constants;
+        return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&
+               a.loss_factor == b.loss_factor && a.bulk_viscosity == b.bulk_viscosity;
+    }
+    bool same_rest(const MaterialRow& other) const { return surface == other.surface && damping == other.damping; }
+};
+
+}  // namespace skerry

@@ -1,0 +1,147 @@
+// Materials and surfaces that change while the world runs.
+#include <catch2/catch.hpp>
+
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+/// Two layers of two materials, one of which changes.
+struct LayeredBar {
+    World world;
+    Mesh mesh;
+    MaterialHandle soft, hard;
+    BodyHandle bar;
+
+    LayeredBar(const MaterialSettings& soft_settings, const MaterialSettings& hard_settings)
+        : world({.gravity = {0, 0, -9.81}}), mesh(mesh::box({0.2, 0.04, 0.04}, {10, 2, 2})) {
+        mesh.label.assign(mesh.tetrahedra.size(), 1);
+        for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+            Real z = 0;
+            for (const Index n : mesh.tetrahedra[t]) z += mesh.nodes[static_cast<std::size_t>(n)].z();
+            if (z > 0) mesh.label[t] = 2;
+        }
+        soft = world.add_material(soft_settings);
+        hard = world.add_material(hard_settings);
+        bar = world.add_body(mesh, {.material = soft, .materials = {{2, hard}}, .name = "bar"});
+        std::vector<Index> end;
+        for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+            if (mesh.nodes[n].x() < -0.1 + 1e-9) end.push_back(static_cast<Index>(n));
+        world.attach(bar, end);
+    }
+    Real lowest() const {
+        Real z = 0;
+        for (const Vec3& x : world.positions(bar)) z = std::min(z, x.z());
+        return z;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a material that changes makes of its bodies what they would have been with it", "[scene]") {
+    const MaterialSettings one{.young_modulus = 1e5, .density = 1000, .loss_factor = 0.1},
+        other{.young_modulus = 3e5, .poisson_ratio = 0.3, .density = 700, .loss_factor = 0.02};
+    LayeredBar changed(one, one), added(one, other);
+    changed.world.set_material(changed.hard, other);
+    CHECK(changed.world.mass(changed.bar) == Approx(added.world.mass(added.bar)).epsilon(1e-12));
+    CHECK(changed.world.stable_step() == Approx(added.world.stable_step()).epsilon(0.05));
+    const MaterialSettings now = changed.world.material(changed.hard);
+    CHECK(now.young_modulus == 3e5);
+    CHECK(now.poisson_ratio == 0.3);
+    CHECK(now.density == 700);
+    CHECK(now.loss_factor == 0.02);
+    REQUIRE(changed.world.advance(0.2).ok());
+    REQUIRE(added.world.advance(0.2).ok());
+    CHECK(changed.lowest() == Approx(added.lowest()).epsilon(0.02));
+}
+
+TEST_CASE("a change of material reaches only the bodies that have it, and can be taken back", "[scene]") {
+    World world({.gravity = {0, 0, 0}});
+    const auto soft = world.add_material({.young_modulus = 1e5}), hard = world.add_material({.young_modulus = 4e5});
+    const auto a = world.add_body(mesh::ball(0.05, 4), {.material = soft}),
+               b = world.add_body(mesh::ball(0.05, 4), {.material = hard, .position = {1, 0, 0}});
+    REQUIRE(world.advance(0.01).ok());
+    const std::vector<Real> of_a = world.tetrahedron_steps(a), of_b = world.tetrahedron_steps(b);
+    MaterialSettings softer = world.material(soft);
+    softer.young_modulus /= 4;
+    world.set_material(soft, softer);
+    CHECK(world.tetrahedron_steps(b) == of_b);
+    CHECK(world.tetrahedron_steps(a)[0] == Approx(2 * of_a[0]).epsilon(0.01));
+    softer.young_modulus *= 4;
+    world.set_material(soft, softer);
+    CHECK(world.tetrahedron_steps(a)[0] == Approx(of_a[0]).epsilon(1e-9));
+    softer.young_modulus *= 100;
+    world.set_material(soft, softer);
+    CHECK(world.stable_step() < 0.25 * of_b[0]);
+    REQUIRE(world.advance(0.01).ok());
+}
+
+TEST_CASE("what of a material cannot change is refused by name and changes nothing", "[scene]") {
+    using Catch::Contains;
+    World world;
+    const auto rubber = world.add_material({});
+    world.add_body(mesh::ball(0.05, 4), {.material = rubber});
+    REQUIRE(world.advance(0.01).ok());
+    const std::uint64_t before = world.state_hash();
+    CHECK_THROWS_WITH(world.set_material(rubber, {.young_modulus = -1}), Contains("young_modulus"));
+    CHECK_THROWS_WITH(world.set_material(rubber, {.model = MaterialModel::linear}), Contains("model"));
+    // waves slower than light, and yet no step
+    CHECK_THROWS_WITH(world.set_material(rubber, {.young_modulus = 1e-290, .density = 1e-306}), Contains("step"));
+    CHECK(world.state_hash() == before);
+
+    Settings settings;
+    settings.multirate = true;
+    World levels(settings);
+    const auto material = levels.add_material({});
+    levels.add_body(mesh::ball(0.05, 4), {.material = material});
+    CHECK_THROWS_WITH(levels.set_material(material, {.young_modulus = 2e5}), Contains("multirate"));
+    levels.set_material(material, {.friction = 0.1, .damping = 3});
+    CHECK(levels.material(material).friction == 0.1);
+    REQUIRE(levels.advance(0.01).ok());
+}
+
+TEST_CASE("a change of material decides anew which elements are implicit", "[scene]") {
+    Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {4, 4, 4});
+    for (Vec3& x : mesh.nodes)
+        if ((x - Vec3(0.025, 0, 0)).norm() < 1e-9) x.x() = 0.0015;  // a few thin elements
+    World world({.gravity = {0, 0, 0}});
+    const auto rubber = world.add_material({});
+    world.add_body(mesh, {.material = rubber});
+    const Real before = world.stable_step();
+    MaterialSettings soft = world.material(rubber);
+    soft.young_modulus /= 100;
+    world.set_material(rubber, soft);
+    CHECK(world.stable_step() == Approx(10 * before).epsilon(0.05));
+    REQUIRE(world.advance(0.05).ok());
+}
+
+TEST_CASE("friction of a material, a body and a collider can change while a block slides", "[scene]") {
+    const auto acceleration = [](auto&& change) {
+        Settings settings = accurate(tilted_gravity(20));
+        BlockOnPlane scene(settings, {.young_modulus = 1e6, .friction = 0, .damping = 50}, {0.2, 0.2, 0.05}, {3, 3, 1});
+        scene.world.advance(0.3);
+        change(scene.world, scene.block);
+        scene.world.advance(0.2);
+        const Real before = scene.velocity().x();
+        scene.world.advance(0.2);
+        return (scene.velocity().x() - before) / 0.2;
+    };
+    const Real g = standard_gravity, a = 20 * std::numbers::pi / 180;
+    const auto slides = [&](Real mu) { return Approx(g * (std::sin(a) - mu * std::cos(a))).epsilon(0.02); };
+    const auto nothing = [](World&, BodyHandle) {};
+    CHECK(acceleration(nothing) == slides(0));
+    CHECK(acceleration([](World& world, BodyHandle block) {
+              world.set_surface_properties(block, {.friction = 0.1});
+              world.set_surface_properties(world.colliders()[0], {.friction = 0.1});
+          }) == slides(0.1));
+    // by the geometric mean; the collider's own is left to the body
+    CHECK(acceleration([](World& world, BodyHandle block) {
+              world.set_surface_properties(block, {.friction = 0.2});
+          }) == slides(0.2));
+    CHECK(acceleration([](World& world, BodyHandle block) {
+              world.set_surface_properties(block, {.friction = 0.4});
+              world.set_surface_properties(world.colliders()[0], {.friction = 0.1});
+          }) == slides(0.2));
+}
