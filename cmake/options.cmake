@@ -8,6 +8,7 @@ option(SKERRY_WARNINGS_AS_ERRORS "Stop at warnings" OFF)
 set(SKERRY_ARCH "native" CACHE STRING "Instruction set for -march; empty: the compiler's default")
 set(SKERRY_BACKENDS "tbb;openmp;threads" CACHE STRING "Threading backends to build, the default first")
 option(SKERRY_PRECOMPILE "Read package headers once for the library; a missing include of theirs goes unseen" OFF)
+option(SKERRY_UNITY "Compile up to eight sources of a folder as one: faster, and a missing include goes unseen" OFF)
 option(SKERRY_FUZZERS "Build the fuzzers of the readers (clang only)" OFF)
 set(SKERRY_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
 
