@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/world/kernels.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
-#include "systems/dynamics/stability/stable_step.h"
 
 namespace skerry {
 
@@ -62,7 +62,7 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     const Range blocks = model.bodies.blocks[row];
     std::vector<Real> stiffness_sum(model.nodes.position.size());
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
-    element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
+    kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
     const RaggedView<Index> covered = model.body_records[row].element_tetrahedra.view();
     std::vector<Real> of_tetrahedra(static_cast<std::size_t>(model.bodies.tetrahedron_count[row]),
                                     std::numeric_limits<Real>::infinity());

@@ -7,6 +7,7 @@
 
 #include "skerry/scene.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (velocity, speed, stress, strain, body number) and
@@ -47,3 +48,4 @@ private:
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

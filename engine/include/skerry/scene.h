@@ -8,6 +8,7 @@
 
 #include "skerry/world.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// Changes that the caller makes to the settings of a scene.
@@ -54,3 +55,4 @@ Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overri
 std::string scene_schema();
 
 }  // namespace skerry
+#pragma GCC visibility pop

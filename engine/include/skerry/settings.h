@@ -13,6 +13,7 @@
 #include "components/types.h"
 #include "skerry/mesh.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 inline constexpr Real largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
@@ -151,3 +152,4 @@ struct Settings {
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -16,6 +16,7 @@
 #include "skerry/report.h"
 #include "skerry/settings.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 struct StepProblem;  // problem.h
@@ -155,3 +156,4 @@ private:
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/kernels.h"
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/element_levels.h"
@@ -152,7 +153,8 @@ void sort_by_level(Model& model, const ElementList& list, std::span<Real> stiffn
     const Range blocks = rows.elements.blocks;
     std::vector<std::uint8_t> at_place(rows.elements.element.size()), level(list.size());
     const ElementInputs elements = model.all_elements();
-    const Real step = stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+    const Real step =
+        kernels().stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     find_element_levels(elements, blocks, model.nodes.position, model.nodes.mass, step, stiffness_sum, at_place);
     for (std::size_t place = 0; place < at_place.size(); ++place)
         if (const Index e = rows.elements.element[place]; e != no_index)
@@ -347,7 +349,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);
     const auto step = [&] {
-        return stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+        return kernels()
+            .stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum)
+            .step;
     };
     bodies.rest_step[b] = bodies.stable_step[b] = step();
     if (body.tetrahedra.empty()) return row;
@@ -359,8 +363,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
     const auto& levels = bodies.level_count[b];
     if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; }))
-        find_mass_shares(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum,
-                         rows_of(model.elements.mass_share, blocks));
+        kernels().find_mass_shares(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum,
+                                   rows_of(model.elements.mass_share, blocks));
     bodies.rest_step[b] = bodies.stable_step[b] = step();
     return row;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
@@ -33,7 +34,7 @@ Real watch_stable_steps(Model& model, Column<Real>& stiffness_sum) {
     const auto now = [&](std::size_t b) {
         const ElementInputs elements = model.all_elements();
         const Range blocks = bodies.blocks[b];
-        Real step = stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+        Real step = kernels().stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
         if (bodies.cluster_step[b] > 0) {
             const Real stiffening =
                 worst_stiffening(elements, blocks, model.nodes.position,
