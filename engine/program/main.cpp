@@ -4,9 +4,11 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/program/commands.h"
+#include "skerry/instruction_set.h"
 
 namespace {
 
@@ -205,10 +207,18 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     command.add_flag("--overwrite", options.overwrite, "--repair may replace the file that is read")->needs(repair);
 }
 
+/// The version, and the instructions that kernels use here.
+std::string version_text() {
+    std::string sets;
+    for (const std::string_view set : instruction_sets()) sets += (sets.empty() ? "" : ", ") + std::string(set);
+    return std::string("skerry ") + SKERRY_VERSION + "\ninstruction set: " + std::string(instruction_set()) +
+           " (here: " + sets + "; SKERRY_INSTRUCTION_SET chooses)";
+}
+
 int run_command_line(int argc, char** argv) {
     CLI::App app("Deformable bodies that touch each other with friction", "skerry");
     app.footer(general_examples);
-    app.set_version_flag("--version", std::string("skerry ") + SKERRY_VERSION);
+    app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
     RunOptions run_options;
     SolveOptions solve_options;

@@ -9,11 +9,6 @@ namespace skerry {
 
 namespace {
 
-template <class T>
-std::span<T> rows_of(Column<T>& column, Range range) {
-    return column.span().subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
-}
-
 void set_nodes(WorldState& world, BodyHandle body, const char* call, const char* field, std::span<const Vec3> values,
                Column<Vec3>& column) {
     const auto row = static_cast<std::size_t>(world.model.row(body, call));

@@ -11,6 +11,7 @@
 #include "systems/dynamics/checks/find_inversions.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/elements/recover_fields.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
@@ -31,6 +32,11 @@ struct Kernels {
     decltype(&skerry::compute_element_forces) compute_element_forces;
     decltype(&skerry::elastic_energy) elastic_energy;
     decltype(&skerry::elastic_power) elastic_power;
+    decltype(&skerry::cauchy_stress) cauchy_stress;
+    decltype(&skerry::green_strain) green_strain;
+    decltype(&skerry::stress_of_tetrahedra) stress_of_tetrahedra;
+    decltype(&skerry::strain_of_tetrahedra) strain_of_tetrahedra;
+    decltype(&skerry::means_of_nodes) means_of_nodes;
     decltype(&skerry::advance_positions) advance_positions;
     decltype(&skerry::damp_velocity) damp_velocity;
     decltype(&skerry::measure_displacement) measure_displacement;

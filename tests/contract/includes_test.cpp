@@ -29,6 +29,7 @@ std::optional<Place> place_of(const std::string& path) {
         {"systems/dynamics/", 40},
         {"systems/contact/", 40},
         {"systems/solver/", 50},
+        {"systems/kernels/", 55},
         {"engine/", 60},
         {"tests/support/", 70},
         {"examples/", 71},

@@ -135,10 +135,6 @@ struct BodyRows {
     AppendedElements elements;
 };
 
-auto rows_of(auto& column, Range rows) {
-    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-}
-
 /// Appends the elements of a body; `level` of each, or none: all 0.
 AppendedElements append_elements_of(Model& model, const ElementList& list, std::span<const std::uint8_t> level,
                                     const BodyRows& rows) {

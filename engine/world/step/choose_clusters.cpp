@@ -29,11 +29,6 @@ constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, a second to inver
 constexpr Real headroom = 4;
 constexpr Real most_lengthening = 16;  // of steps
 
-template <class T>
-std::span<T> rows_of(Column<T>& column, Range rows) {
-    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-}
-
 bool has_elements(const Model& model, std::size_t b) {
     return model.bodies.tetrahedron_count[b] > 0;
 }

@@ -85,13 +85,13 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     constexpr Real well_shaped =
         1e-6;  // of the cube of the mean moment: then the inverse loses at most ten digits, and most bodies lose none
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
-    const Eigen::JacobiSVD<Mat3> parts(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Real least = 1e-12 * parts.singularValues()[0];  // below it the moment is rounding
+    const Eigen::JacobiSVD<Mat3> turned(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Real least = 1e-12 * turned.singularValues()[0];  // below it the moment is rounding
     Vec3 omega = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
-        if (parts.singularValues()[i] > least)
-            omega += parts.matrixV().col(i) *
-                     (parts.matrixU().col(i).dot(total.angular_momentum) / parts.singularValues()[i]);
+        if (turned.singularValues()[i] > least)
+            omega += turned.matrixV().col(i) *
+                     (turned.matrixU().col(i).dot(total.angular_momentum) / turned.singularValues()[i]);
     return omega;
 }
 
