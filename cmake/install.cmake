@@ -64,6 +64,8 @@ foreach(library IN LISTS skerry_used)
         string(APPEND SKERRY_PC_PRIVATE " ${files}")
     endif()
 endforeach()
+# From where it lies, so that an installation can be moved.
+file(RELATIVE_PATH skerry_prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/skerry.pc.in skerry.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/skerry.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

@@ -16,6 +16,10 @@
 #include "skerry/report.h"
 #include "skerry/settings.h"
 
+namespace skerry {
+struct WorldState;  // named here, where it is not public
+}
+
 #pragma GCC visibility push(default)
 namespace skerry {
 
@@ -142,7 +146,7 @@ private:
     /// Refuses use after the world was moved from.
     class StateOwner {
     public:
-        explicit StateOwner(std::unique_ptr<struct WorldState> owned);
+        explicit StateOwner(std::unique_ptr<WorldState> owned);
         ~StateOwner();
         StateOwner(StateOwner&&) noexcept;
         StateOwner& operator=(StateOwner&&) noexcept;
