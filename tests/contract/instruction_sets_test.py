@@ -37,7 +37,8 @@ def state_of(scene, seconds, settings, wanted):
     with tempfile.TemporaryDirectory() as folder:
         stats = pathlib.Path(folder) / "stats.json"
         changes = [argument for setting in settings for argument in ("--set", setting)]
-        result = run(["run", str(ROOT / scene), "--seconds", seconds, "--quiet", "--stats", str(stats), *changes], wanted)
+        arguments = ["run", str(ROOT / scene), "--seconds", seconds, "--quiet", "--stats", str(stats), *changes]
+        result = run(arguments, wanted)
         assert result.returncode == 0, f"{scene} {settings} {wanted}: {result.stderr}"
         figures = json.loads(stats.read_text())
         assert figures["instruction_set"] == wanted, f"{wanted} was asked for, {figures['instruction_set']} ran"
