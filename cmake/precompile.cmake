@@ -1,6 +1,6 @@
 # The headers of packages that nearly all sources read are read once for the tests, and with SKERRY_PRECOMPILE once for
-# the library. The presets of the sanitizers and release have it; the preset dev does not, and there a source of the
-# library finds only what it includes itself.
+# the library. The presets of the sanitizers, release and portable have it; the preset dev does not, and there a source
+# of the library finds only what it includes itself.
 set(skerry_common_headers
     <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <optional> <span> <string> <vector>
     <Eigen/Geometry>)
