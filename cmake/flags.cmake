@@ -33,9 +33,8 @@ endif()
 target_compile_options(skerry_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fvisibility=hidden -fvisibility-inlines-hidden>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Else variables of inline functions stay one for a whole process, whoever has them. Classes that are public have
-    # members that are not.
-    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fno-gnu-unique -Wno-attributes>)
+    # Else variables of inline functions stay one for a whole process, whoever has them.
+    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fno-gnu-unique>)
 endif()
 if(SKERRY_WARNINGS_AS_ERRORS)
     target_compile_options(skerry_flags INTERFACE -Werror)
