@@ -1,3 +1,5 @@
+include(CheckCXXCompilerFlag)
+
 # The one place for flags that change layout or rounding. Everything links skerry_flags.
 add_library(skerry_flags INTERFACE)
 target_compile_features(skerry_flags INTERFACE cxx_std_20)
@@ -17,18 +19,22 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
 endif()
 if(SKERRY_ARCH)
-    include(CheckCXXCompilerFlag)
-    target_compile_options(skerry_flags INTERFACE -march=${SKERRY_ARCH})
-    check_cxx_compiler_flag("-march=${SKERRY_ARCH} -mprefer-vector-width=512" SKERRY_WIDE_VECTORS)
-    if(SKERRY_WIDE_VECTORS)
-        target_compile_options(skerry_flags INTERFACE -mprefer-vector-width=512)
-    endif()
-    # Copies in full registers: a load of 32 bytes waits for stores of 16 bytes, as GCC copies by default. Where
-    # registers have 256 bits element forces take half as long again with those.
-    check_cxx_compiler_flag("-march=${SKERRY_ARCH} -mmove-max=512 -mstore-max=512" SKERRY_WIDE_MOVES)
-    if(SKERRY_WIDE_MOVES)
-        target_compile_options(skerry_flags INTERFACE -mmove-max=512 -mstore-max=512)
-    endif()
+    skerry_arch_options(skerry_arch_flags ${SKERRY_ARCH})
+    target_compile_options(skerry_flags INTERFACE ${skerry_arch_flags})
+endif()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+    # Eigen adds up in packets as wide as registers are, and multiplies and adds in one rounding where it can. Hidden
+    # from it that there is more than SSE, packets are two doubles and sums the same bits on every instruction set.
+    # Kernels use vector types of the compiler, whose lanes do not care.
+    target_compile_options(skerry_flags INTERFACE
+        $<$<COMPILE_LANGUAGE:CXX>:-U__AVX__ -U__AVX2__ -U__FMA__ -U__AVX512F__>)
+endif()
+# Only what public headers declare leaves the library.
+target_compile_options(skerry_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fvisibility=hidden -fvisibility-inlines-hidden>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Else variables of inline functions stay one for a whole process, whoever has them.
+    target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fno-gnu-unique>)
 endif()
 if(SKERRY_WARNINGS_AS_ERRORS)
     target_compile_options(skerry_flags INTERFACE -Werror)

@@ -33,7 +33,7 @@ typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(al
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
 
 /// What the kernel of the element forces works on: as many reals as a register has.
-#ifdef __AVX512F__
+#ifdef __AVX512VL__  // not __AVX512F__, which cmake/flags.cmake hides from Eigen
 using KernelReal = Real8;
 #else
 using KernelReal = Real4;

@@ -9,10 +9,6 @@ namespace skerry {
 
 namespace {
 
-std::string percent(double share) {
-    return short_number(100 * share) + " %";
-}
-
 /// How it began. Returns whether that explains what is wrong later.
 bool doubt_start(const RunResult& result, std::vector<std::string>& doubts) {
     const WorldReport& r = result.report;

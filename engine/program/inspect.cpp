@@ -24,10 +24,6 @@ constexpr Real hardly_longer = 1.03;      // times a step
 constexpr int timed_steps = 20;
 constexpr std::size_t longest_list = 300;  // characters of names in a message
 
-Json vector_json(const Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
 Problems problems_of(const MeshReport& r) {
     Problems problems;
     if (r.tetrahedra == 0) problems.push_back("no tetrahedron");

@@ -5,10 +5,12 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/program/commands.h"
 #include "engine/scene/place.h"
+#include "skerry/instruction_set.h"
 
 namespace {
 
@@ -225,10 +227,18 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
         .raise();
 }
 
+/// The version, and the instructions that kernels use here.
+std::string version_text() {
+    std::string sets;
+    for (const std::string_view set : instruction_sets()) sets += (sets.empty() ? "" : ", ") + std::string(set);
+    return std::string("skerry ") + SKERRY_VERSION + "\ninstruction set: " + std::string(instruction_set()) +
+           " (here: " + sets + "; SKERRY_INSTRUCTION_SET chooses)";
+}
+
 int run_command_line(int argc, char** argv) {
     CLI::App app("Deformable bodies that touch each other with friction", "skerry");
     app.footer(general_examples);
-    app.set_version_flag("--version", std::string("skerry ") + SKERRY_VERSION);
+    app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
     RunOptions run_options;
     SolveOptions solve_options;

@@ -14,6 +14,10 @@ inline std::string short_number(double value, int digits = 3) {
     return text;
 }
 
+inline std::string percent(double share) {
+    return short_number(100 * share) + " %";
+}
+
 /// 1,234,567
 inline std::string grouped(std::uint64_t value) {
     std::string digits = std::to_string(value);

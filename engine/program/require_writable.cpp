@@ -12,7 +12,8 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& place, const std::string& found, const std::string& expected) {
+[[noreturn]] void refuse_output(const std::filesystem::path& place, const std::string& found,
+                                const std::string& expected) {
     Complaint{.file = place.string(), .object = "output", .field = {}, .found = found, .expected = expected, .hint = {}}
         .raise();
 }
@@ -25,16 +26,16 @@ void require_writable_folder(const std::filesystem::path& folder) {
     if (!existing.has_filename()) existing = existing.parent_path();  // of a trailing slash
     while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
     if (!std::filesystem::is_directory(existing, error))
-        refuse(folder, existing.string() + ", which is no folder", "a folder");
+        refuse_output(folder, existing.string() + ", which is no folder", "a folder");
     if (access(existing.c_str(), W_OK | X_OK) != 0)
-        refuse(folder, "\"" + std::generic_category().message(errno) + "\" for " + existing.string(),
-               "a folder that can be written");
+        refuse_output(folder, "\"" + std::generic_category().message(errno) + "\" for " + existing.string(),
+                      "a folder that can be written");
 }
 
 void require_writable_file(const std::filesystem::path& file) {
     std::error_code error;
     if (file.filename().empty() || std::filesystem::is_directory(file, error))
-        refuse(file, "a folder", "a file to write");
+        refuse_output(file, "a folder", "a file to write");
     require_replaceable(file);
     require_writable_folder(std::filesystem::absolute(file).parent_path());
 }

@@ -7,13 +7,13 @@
 
 namespace skerry {
 
+inline Json vector_json(const Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
 inline Json overlap_json(const StartOverlap& overlap) {
-    return {{"first", overlap.first_name},
-            {"second", overlap.second_name},
-            {"kind", name_of(overlap.kind)},
-            {"depth", overlap.depth},
-            {"place", {overlap.place.x(), overlap.place.y(), overlap.place.z()}},
-            {"resolved", overlap.resolved}};
+    return {{"first", overlap.first_name}, {"second", overlap.second_name},       {"kind", name_of(overlap.kind)},
+            {"depth", overlap.depth},      {"place", vector_json(overlap.place)}, {"resolved", overlap.resolved}};
 }
 
 inline Json overlaps_json(const WorldReport& report) {

@@ -4,14 +4,11 @@
 
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
+#include "skerry/instruction_set.h"
 
 namespace skerry {
 
 namespace {
-
-Json vector_json(const Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
 
 std::string hash_text(std::uint64_t hash) {
     char text[24];
@@ -86,6 +83,7 @@ Json statistics_of(const RunResult& result) {
         {"checkpoints", {{"written", result.checkpoints}, {"failed", result.checkpoints_failed}}},
         {"threads", result.threads},
         {"backend", name_of(result.settings.backend)},
+        {"instruction_set", instruction_set()},
         {"start",
          {{"overlaps", overlaps_json(r)},
           {"moves", moves},

@@ -18,10 +18,6 @@ std::string line(const std::string& label, const std::string& text) {
     return "  " + label + std::string(label.size() < label_width ? label_width - label.size() : 1, ' ') + text + "\n";
 }
 
-std::string percent(double share) {
-    return short_number(100 * share) + " %";
-}
-
 std::string solver_lines(const RunResult& result) {
     const WorldReport& r = result.report;
     const std::string method = std::string(name_of(result.settings.method)) + ", " +

@@ -29,7 +29,7 @@ std::string expected_number(const KeyDoc& doc, const std::string& kind) {
     add("above", doc.limits.above);
     add("of at most", doc.limits.at_most);
     add("below", doc.limits.below);
-    return text + (doc.unit.empty() ? "" : " [" + doc.unit + "]");
+    return text + (doc.unit.empty() ? "" : " [" + std::string(doc.unit) + "]");
 }
 
 void check_limits(Real number, const Json& json, const Place& place, const KeyDoc& doc, const std::string& kind) {
@@ -184,47 +184,6 @@ void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& d
 
 Json Value<Rotation>::schema(SchemaBook& book, const KeyDoc& doc) {
     return {{"oneOf", {Value<AxisAngle>::schema(book, doc), Value<RotationRows>::schema(book, doc)}}};
-}
-
-void check_group(const KeyGroup& group, const Json& json, const Place& place) {
-    std::vector<std::string> present;
-    for (const std::string& key : group.keys)
-        if (json.contains(key)) present.push_back(key);
-    const std::string all = listed(group.keys);
-    switch (group.kind) {
-        case KeyGroup::Kind::exactly_one:
-            if (present.size() == 1) return;
-            place.refuse(present.empty() ? "none of these keys" : "the keys " + listed(present),
-                         "exactly one of " + all);
-        case KeyGroup::Kind::at_most_one:
-            if (present.size() <= 1) return;
-            place.refuse("the keys " + listed(present), "at most one of " + all);
-        case KeyGroup::Kind::together:
-            if (present.empty() || present.size() == group.keys.size()) return;
-            place.refuse("only " + listed(present), "all of " + all + ", or none");
-    }
-}
-
-Json group_schema(const KeyGroup& group) {
-    Json one_each = Json::array(), pairs = Json::array(), needs = Json::object();
-    for (const std::string& key : group.keys) {
-        one_each.push_back({{"required", Json::array({key})}});
-        Json others = Json::array();
-        for (const std::string& other : group.keys)
-            if (other != key) others.push_back(other);
-        needs[key] = others;
-        for (const std::string& other : group.keys)
-            if (key < other) pairs.push_back({{"required", Json::array({key, other})}});
-    }
-    switch (group.kind) {
-        case KeyGroup::Kind::exactly_one:
-            return {{"oneOf", one_each}};
-        case KeyGroup::Kind::at_most_one:
-            return {{"not", {{"anyOf", pairs}}}};
-        case KeyGroup::Kind::together:
-            return {{"dependentRequired", needs}};
-    }
-    return {};
 }
 
 }  // namespace skerry

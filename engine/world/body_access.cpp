@@ -5,15 +5,6 @@
 
 namespace skerry {
 
-namespace {
-
-template <class T>
-std::span<T> rows_of(Column<T>& column, Range range) {
-    return column.span().subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
-}
-
-}  // namespace
-
 std::span<const Vec3> World::positions(BodyHandle body) const {
     return rows_of(state_->model.nodes.position,
                    state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "positions"))]);

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/world/kernels.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
-#include "systems/dynamics/stability/stable_step.h"
 
 namespace skerry {
 
@@ -30,20 +30,20 @@ std::vector<Mat3> node_field(const Model& model, std::size_t row, std::span<cons
     std::vector<Real> volume(of_tetrahedra.size());
     for (std::size_t t = 0; t < volume.size(); ++t)
         volume[t] = model.tetrahedra.volume[first + t / element_lanes][t % element_lanes];
-    return means_of_nodes(model.body_records[row].tetrahedra, volume, of_tetrahedra,
-                          static_cast<std::size_t>(model.bodies.nodes[row].size()));
+    return kernels().means_of_nodes(model.body_records[row].tetrahedra, volume, of_tetrahedra,
+                                    static_cast<std::size_t>(model.bodies.nodes[row].size()));
 }
 
 }  // namespace
 
 std::vector<Mat3> World::stress(BodyHandle body) const {
-    return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "stress")), cauchy_stress,
-                             stress_of_tetrahedra);
+    return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "stress")),
+                             kernels().cauchy_stress, kernels().stress_of_tetrahedra);
 }
 
 std::vector<Mat3> World::strain(BodyHandle body) const {
-    return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "strain")), green_strain,
-                             strain_of_tetrahedra);
+    return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "strain")),
+                             kernels().green_strain, kernels().strain_of_tetrahedra);
 }
 
 std::vector<Mat3> World::node_stress(BodyHandle body) const {
@@ -62,7 +62,7 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     const Range blocks = model.bodies.blocks[row];
     std::vector<Real> stiffness_sum(model.nodes.position.size());
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
-    element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
+    kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
     const RaggedView<Index> covered = model.body_records[row].element_tetrahedra.view();
     std::vector<Real> of_tetrahedra(static_cast<std::size_t>(model.bodies.tetrahedron_count[row]),
                                     std::numeric_limits<Real>::infinity());

@@ -16,14 +16,14 @@ namespace skerry {
 
 namespace {
 
-std::string text(Real value) {
+std::string shown(Real value) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%g", value);
     return buffer;
 }
 
-std::string text(const Vec3& value) {
-    return "(" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + ")";
+std::string shown(const Vec3& value) {
+    return "(" + shown(value.x()) + ", " + shown(value.y()) + ", " + shown(value.z()) + ")";
 }
 
 [[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
@@ -32,7 +32,7 @@ std::string text(const Vec3& value) {
 }
 
 void require(bool good, const std::string& object, const char* field, Real found, const char* expected) {
-    if (!good || !std::isfinite(found)) refuse(object, field, text(found), expected);
+    if (!good || !std::isfinite(found)) refuse(object, field, shown(found), expected);
 }
 
 std::string titled(const char* kind, const std::string& name) {
@@ -45,14 +45,14 @@ struct ShapeCheck {
     void operator()(const Plane& plane) const {
         require_finite(object, "point", plane.point);
         if (!plane.normal.allFinite() || plane.normal.norm() == 0)
-            refuse(object, "normal", text(plane.normal), "a vector that is not zero");
+            refuse(object, "normal", shown(plane.normal), "a vector that is not zero");
     }
     void operator()(const Sphere& sphere) const {
         require(sphere.radius > 0, object, "radius", sphere.radius, "a length > 0 (m)");
     }
     void operator()(const Box& box) const {
         if (!box.size.allFinite() || box.size.minCoeff() <= 0)
-            refuse(object, "size", text(box.size), "three lengths > 0 (m)");
+            refuse(object, "size", shown(box.size), "three lengths > 0 (m)");
     }
     void operator()(const Capsule& capsule) const {
         require(capsule.radius > 0, object, "radius", capsule.radius, "a length > 0 (m)");
@@ -105,7 +105,7 @@ void require_surface(const std::optional<Real>& friction, const std::optional<Re
 }  // namespace
 
 void require_finite(const std::string& object, const char* field, const Vec3& found) {
-    if (!found.allFinite()) refuse(object, field, text(found), "three finite numbers");
+    if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }
 
 void validate(const Settings& settings) {
@@ -143,8 +143,8 @@ void validate(const MaterialSettings& material, const Settings& settings) {
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))
         refuse(object, "young_modulus, density",
-               text(material.young_modulus) + " Pa and " + text(material.density) + " kg/m^3: waves of " +
-                   text(wave_speed) + " m/s",
+               shown(material.young_modulus) + " Pa and " + shown(material.density) + " kg/m^3: waves of " +
+                   shown(wave_speed) + " m/s",
                "a material whose waves are slower than light (3e8 m/s)");
     require(material.friction >= 0, object, "friction", material.friction, "a number >= 0");
     const Real dynamic = material.dynamic_friction.value_or(material.friction);
@@ -210,7 +210,7 @@ void validate(const Mesh& mesh, const BodySettings& body) {
     if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (!mesh.nodes[n].allFinite())
-            refuse(object, "mesh", "node " + std::to_string(n) + " at " + text(mesh.nodes[n]), "finite coordinates");
+            refuse(object, "mesh", "node " + std::to_string(n) + " at " + shown(mesh.nodes[n]), "finite coordinates");
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
         for (Index corner : mesh.tetrahedra[e])
             if (corner < 0 || corner >= static_cast<Index>(mesh.nodes.size()))
@@ -247,9 +247,9 @@ void validate_step(const Model& model, Index body, const std::string& name) {
     if (step > 0 && std::isfinite(step)) return;
     const auto material = static_cast<std::size_t>(model.bodies.material[b]);
     refuse(titled("body", name), "mesh, material",
-           "edges of " + text(model.bodies.mean_edge[b]) + " m, " + text(model.materials.young_modulus[material]) +
-               " Pa and " + text(model.materials.constants[material].density) + " kg/m^3",
-           "sizes and a material whose stable step can be calculated: it is " + text(step) + " s");
+           "edges of " + shown(model.bodies.mean_edge[b]) + " m, " + shown(model.materials.young_modulus[material]) +
+               " Pa and " + shown(model.materials.constants[material].density) + " kg/m^3",
+           "sizes and a material whose stable step can be calculated: it is " + shown(step) + " s");
 }
 
 void validate(const Motion& motion, const Vec3& pivot) {

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <limits>
 
+#include "engine/world/kernels.h"
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/checks/volume_ratios.h"
-#include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
 
@@ -19,7 +19,7 @@ Energy energy_of(const Model& model, Real dissipated) {
         energy.kinetic += nodes.mass[n] * nodes.velocity[n].squaredNorm() / 2;
         energy.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
     }
-    energy.elastic = elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
+    energy.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
     energy.dissipated = dissipated;
     return energy;
 }

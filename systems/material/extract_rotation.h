@@ -70,15 +70,30 @@ void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& s
 extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);
 extern template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
-/// The rotations nearest to F in all lanes, started from q. Lanes without volume keep theirs.
+/// The rotations nearest to F in all lanes of all parts, started from q. Lanes without volume keep theirs. As many
+/// passes as the slowest of them all takes.
+template <class T, std::size_t N>
+[[gnu::always_inline]] inline void extract_rotations(const std::array<LaneMat3<T>, N>& F,
+                                                     const std::array<T, N>& volume,
+                                                     std::array<LaneQuaternion<T>, N>& q) {
+    constexpr int max_passes = 4;  // from a warm start two are enough; what needs more is solved lane by lane
+    const std::array<LaneQuaternion<T>, N> start = q;
+    for (int pass = 0; pass < max_passes; ++pass) {
+        bool settled = true;
+        for (std::size_t part = 0; part < N; ++part)
+            settled = all(turn_towards(F[part], q[part]) | (volume[part] == 0.0)) && settled;
+        if (settled) return;
+    }
+    q = start;
+    for (std::size_t part = 0; part < N; ++part) solve_rotations(F[part], volume[part], q[part]);
+}
+
+/// The same of one part.
 template <class T>
 [[gnu::always_inline]] inline void extract_rotation(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& q) {
-    constexpr int max_passes = 4;  // from a warm start two are enough; what needs more is solved lane by lane
-    const LaneQuaternion<T> start = q;
-    for (int pass = 0; pass < max_passes; ++pass)
-        if (all(turn_towards(F, q) | (volume == 0.0))) return;
-    q = start;
-    solve_rotations(F, volume, q);
+    std::array<LaneQuaternion<T>, 1> of_part{q};
+    extract_rotations(std::array<LaneMat3<T>, 1>{F}, std::array<T, 1>{volume}, of_part);
+    q = of_part[0];
 }
 
 template <class T>

@@ -63,6 +63,10 @@ template <class T>
 [[gnu::always_inline]] inline T inner_product(const LaneMat3<T>& a, const LaneMat3<T>& b) {
     return dot(a.c0, b.c0) + dot(a.c1, b.c1) + dot(a.c2, b.c2);
 }
+template <class T>
+[[gnu::always_inline]] inline T determinant(const LaneMat3<T>& a) {
+    return dot(a.c0, cross(a.c1, a.c2));
+}
 /// det(a) a^-T, defined for every a.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> cofactor(const LaneMat3<T>& a) {

@@ -1,5 +1,6 @@
 // Includes all that Skerry gives, and drops a ball.
 #include <skerry/error.h>
+#include <skerry/instruction_set.h>
 #include <skerry/mesh.h>
 #include <skerry/output.h>
 #include <skerry/problem.h>

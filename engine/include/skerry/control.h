@@ -5,6 +5,7 @@
 
 #include "components/types.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// Where a collider or an attachment is.
@@ -23,3 +24,4 @@ struct SurfaceSettings {
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

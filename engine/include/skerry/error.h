@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// Bad input while building or reading: names the file, the object, the field, what was found and what was expected.
@@ -22,3 +23,4 @@ struct Complaint {
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

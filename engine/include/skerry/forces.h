@@ -8,8 +8,11 @@
 #include "components/types.h"
 
 namespace skerry {
+struct WorldState;  // named here, where it is not public
+}
 
-struct WorldState;
+#pragma GCC visibility push(default)
+namespace skerry {
 
 /// What a body or a collider got over the last call of advance: sums over all its steps, each taken once however many
 /// tries it took.
@@ -73,3 +76,4 @@ private:
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 
 #include "components/types.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// A tetrahedral mesh in its own frame. Tetrahedra index `nodes`; a positive tetrahedron has det(n1 - n0, n2 - n0, n3 -
@@ -109,3 +110,4 @@ struct MeshReport {
 MeshReport inspect(const Mesh& mesh);
 
 }  // namespace skerry
+#pragma GCC visibility pop

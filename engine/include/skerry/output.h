@@ -7,6 +7,7 @@
 
 #include "skerry/scene.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// Writes frames for ParaView: NAME.pvd with one .vtu of all bodies (displacement, velocity, speed, stress, strain,
@@ -52,3 +53,4 @@ private:
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "components/options.h"
 #include "components/types.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// A local problem: u = W r + q, per contact (normal, tangent 1, tangent 2), K_mu containing r orthogonal to (u_N + mu
@@ -119,3 +120,4 @@ struct StepProblem {
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

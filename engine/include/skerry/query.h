@@ -8,6 +8,7 @@
 #include "components/handle.h"
 #include "components/types.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// What a query looks at.
@@ -32,3 +33,4 @@ struct SurfaceHit {
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -12,6 +12,7 @@
 
 #include "skerry/world.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// Position, displacement and velocity of a point of a body that moves with its material: with nodes, by weights that
@@ -110,3 +111,4 @@ private:
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "components/options.h"
 #include "components/types.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff, stopped };
@@ -221,3 +222,4 @@ struct WorldReport : RunCounters {
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include "skerry/recorder.h"
 #include "skerry/world.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 /// Changes that the caller makes to the settings of a scene.
@@ -57,3 +58,4 @@ Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overri
 std::string scene_schema();
 
 }  // namespace skerry
+#pragma GCC visibility pop

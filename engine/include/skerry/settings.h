@@ -14,6 +14,7 @@
 #include "components/types.h"
 #include "skerry/mesh.h"
 
+#pragma GCC visibility push(default)
 namespace skerry {
 
 inline constexpr Real largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
@@ -157,3 +158,4 @@ struct Settings {
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

@@ -20,6 +20,11 @@
 #include "skerry/settings.h"
 
 namespace skerry {
+struct WorldState;  // named here, where it is not public
+}
+
+#pragma GCC visibility push(default)
+namespace skerry {
 
 struct StepProblem;  // problem.h
 
@@ -206,7 +211,7 @@ private:
     /// Refuses use after the world was moved from.
     class StateOwner {
     public:
-        explicit StateOwner(std::unique_ptr<struct WorldState> owned);
+        explicit StateOwner(std::unique_ptr<WorldState> owned);
         ~StateOwner();
         StateOwner(StateOwner&&) noexcept;
         StateOwner& operator=(StateOwner&&) noexcept;
@@ -220,3 +225,4 @@ private:
 };
 
 }  // namespace skerry
+#pragma GCC visibility pop

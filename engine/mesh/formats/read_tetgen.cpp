@@ -7,7 +7,7 @@ namespace skerry::mesh {
 namespace {
 
 /// Words of the next line that holds something besides a comment; empty at the end of the file.
-const std::vector<std::string_view>& row_words(FileReader& reader, const char* expected) {
+const std::vector<std::string_view>& node_row_words(FileReader& reader, const char* expected) {
     while (!reader.at_end()) {
         const std::string_view text = reader.line();
         const std::vector<std::string_view>& words = reader.words_of(text.substr(0, text.find('#')));
@@ -19,7 +19,7 @@ const std::vector<std::string_view>& row_words(FileReader& reader, const char* e
 /// The header: as many integers as the line has, at least one, `most` at most; those that lack are 0.
 std::array<std::int64_t, 4> read_header(FileReader& reader, std::size_t most, const char* meaning) {
     reader.set_section("header");
-    const std::vector<std::string_view>& words = row_words(reader, meaning);
+    const std::vector<std::string_view>& words = node_row_words(reader, meaning);
     if (words.size() > most) reader.complain({}, std::to_string(words.size()) + " numbers", meaning);
     std::array<std::int64_t, 4> numbers{};
     for (std::size_t i = 0; i < words.size(); ++i) numbers[i] = reader.parse_integer(words[i], meaning);
@@ -56,7 +56,7 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     mesh.nodes.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("node", i + 1, count);
-        const std::vector<std::string_view>& words = row_words(reader, "number x y z");
+        const std::vector<std::string_view>& words = node_row_words(reader, "number x y z");
         require_words(reader, words.size(), 4, most, "number x y z attributes marker");
         const std::int64_t number = reader.parse_integer(words[0], "number");
         // TetGen counts from 0 or from 1, in order; any other numbers of the file's own are as good.
@@ -83,7 +83,7 @@ void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& me
     bool labelled = attributes > 0;
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("tetrahedron", i + 1, count);
-        const std::vector<std::string_view>& words = row_words(reader, "number and four nodes");
+        const std::vector<std::string_view>& words = node_row_words(reader, "number and four nodes");
         require_words(reader, words.size(), 5, 5 + static_cast<std::size_t>(attributes),
                       "number, four nodes, attributes");
         std::array<Index, 4> nodes;

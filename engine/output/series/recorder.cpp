@@ -11,7 +11,6 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/hdf5/hdf5_image.h"
 #include "engine/output/series/follow_point.h"
 #include "engine/output/series/probe_columns.h"
 #include "engine/output/vtk/vtk_file.h"
@@ -243,21 +242,6 @@ void Recorder::write_csv(const std::filesystem::path& file) const {
         out << csv_head(impl_->columns);
         for (std::size_t i = 0; i < impl_->rows(); ++i) out << csv_row(impl_->row(i));
     });
-}
-
-void Recorder::write_hdf5(const std::filesystem::path& file) const {
-    const Impl& r = *impl_;
-    Hdf5Image image(file.string());
-    std::vector<Real> values(r.rows());
-    for (std::size_t c = 0; c < r.columns.size(); ++c) {
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = r.row(i)[c];
-        const SeriesColumn& column = r.columns[c];
-        const std::string path = (column.probe.empty() ? "" : "/" + column.probe) + "/" + column.quantity;
-        image.put(path, std::span<const Real>(values));
-        image.put_attribute(path, "unit", column.unit);
-    }
-    const std::vector<char> bytes = image.bytes();
-    write_file(file, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
 }
 
 }  // namespace skerry

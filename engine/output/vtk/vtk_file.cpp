@@ -50,7 +50,7 @@ void VtkFile::begin_array(std::string_view type, std::string_view name, int comp
     tags_.append("\" format=\"appended\" offset=\"").append(std::to_string(data_.size())).append("\"/>\n");
 }
 
-void VtkFile::check_size(std::size_t expected) const {
+void VtkFile::check_size([[maybe_unused]] std::size_t expected) const {
     SKERRY_CHECK(data_.size() == expected);
 }
 

@@ -11,10 +11,6 @@ namespace skerry {
 
 namespace {
 
-std::span<Vec3> rows_of(Column<Vec3>& column, Range range) {
-    return column.span().subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
-}
-
 std::string title_of_body(const Model& model, std::size_t body) {
     return "body '" + model.body_records[body].name + "'";
 }

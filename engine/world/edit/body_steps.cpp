@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/kernels.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/find_relaxation.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -11,10 +12,6 @@
 namespace skerry {
 
 namespace {
-
-auto rows_of(auto& column, Range rows) {
-    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-}
 
 /// Row of the material of a tetrahedron.
 Index material_of(const NewBody& body, std::size_t tetrahedron) {
@@ -87,7 +84,7 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
     BodyTable& bodies = model.bodies;
     const Range blocks = bodies.blocks[b];
     const auto step = [&] {
-        return stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
+        return kernels().stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
     };
     bodies.rest_step[b] = bodies.stable_step[b] = step();
     if (body.tetrahedra.empty()) return;
@@ -100,8 +97,8 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
     // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
     const auto& levels = bodies.level_count[b];
     if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; }))
-        find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
-                         rows_of(model.elements.mass_share, blocks));
+        kernels().find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
+                                   rows_of(model.elements.mass_share, blocks));
     bodies.rest_step[b] = bodies.stable_step[b] = step();
 }
 
@@ -125,7 +122,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     stiffness_sum.resize(model.nodes.position.size());
     find_steps(model, row, body, zones_of(model, body), model.nodes.rest_position, stiffness_sum);
     model.bodies.stable_step[b] =
-        stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+        kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
 }
 
 }  // namespace skerry

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/kernels.h"
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/element_levels.h"
@@ -107,10 +108,6 @@ struct BodyRows {
     AppendedElements elements;
 };
 
-auto rows_of(auto& column, Range rows) {
-    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-}
-
 /// Appends the elements of a body; `level` of each, or none: all 0.
 AppendedElements append_elements_of(Model& model, const ElementList& list, std::span<const std::uint8_t> level,
                                     const BodyRows& rows) {
@@ -125,7 +122,8 @@ void sort_by_level(Model& model, const ElementList& list, std::span<Real> stiffn
     const Range blocks = rows.elements.blocks;
     std::vector<std::uint8_t> at_place(rows.elements.element.size()), level(list.size());
     const ElementInputs elements = model.all_elements();
-    const Real step = stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+    const Real step =
+        kernels().stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     find_element_levels(elements, blocks, model.nodes.position, model.nodes.mass, step, stiffness_sum, at_place);
     for (std::size_t place = 0; place < at_place.size(); ++place)
         if (const Index e = rows.elements.element[place]; e != no_index)

@@ -16,8 +16,8 @@ namespace {
 constexpr const char* title = "Skerry world, version ";
 constexpr const char* expected_file = "a world that Skerry saved, version 2";
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected,
-                         const std::string& hint = {}) {
+[[noreturn]] void refuse_file(const std::filesystem::path& file, const std::string& found, const std::string& expected,
+                              const std::string& hint = {}) {
     Complaint{.file = file.string(), .object = {}, .field = {}, .found = found, .expected = expected, .hint = hint}
         .raise();
 }
@@ -41,41 +41,41 @@ std::string head_of(std::span<const char> body) {
 void check_head(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) refuse(file, "no such file", expected_file);
-    if (!std::filesystem::is_regular_file(status)) refuse(file, "something that is no file", expected_file);
+    if (!std::filesystem::exists(status)) refuse_file(file, "no such file", expected_file);
+    if (!std::filesystem::is_regular_file(status)) refuse_file(file, "something that is no file", expected_file);
     std::ifstream in(file, std::ios::binary);
-    if (!in) refuse(file, "a file that cannot be read", expected_file);
+    if (!in) refuse_file(file, "a file that cannot be read", expected_file);
     std::string head(head_bytes, '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(in.gcount()));
-    if (!head.starts_with(title)) refuse(file, "a file of another kind", expected_file);
+    if (!head.starts_with(title)) refuse_file(file, "a file of another kind", expected_file);
     int version = 0;
     std::uint64_t bytes = 0;
     const std::string behind_title = head.substr(std::string(title).size());
     if (std::sscanf(behind_title.c_str(), "%d", &version) == 1 && version != world_file_version)
-        refuse(file, "version " + std::to_string(version), "version " + std::to_string(world_file_version),
-               "another version of Skerry wrote it");
+        refuse_file(file, "version " + std::to_string(version), "version " + std::to_string(world_file_version),
+                    "another version of Skerry wrote it");
     const std::size_t second_line = head.find('\n');
     if (head.size() != head_bytes || second_line == std::string::npos ||
         std::sscanf(head.c_str() + second_line + 1, "An HDF5 file of %" SCNu64, &bytes) != 1)
-        refuse(file, "a head that is damaged", expected_file);
+        refuse_file(file, "a head that is damaged", expected_file);
     const std::uint64_t size = std::filesystem::file_size(file, error);
     if (error || size != head_bytes + bytes)
-        refuse(file, std::to_string(size) + " bytes", std::to_string(head_bytes + bytes),
-               size < head_bytes + bytes ? "the end is missing" : "something follows");
+        refuse_file(file, std::to_string(size) + " bytes", std::to_string(head_bytes + bytes),
+                    size < head_bytes + bytes ? "the end is missing" : "something follows");
 
     Hash hash;
     std::vector<char> part(1 << 20);
     for (std::uint64_t left = bytes; left > 0;) {
         const auto count = static_cast<std::streamsize>(std::min<std::uint64_t>(left, part.size()));
         in.read(part.data(), count);
-        if (in.gcount() != count) refuse(file, "bytes that cannot be read", expected_file);
+        if (in.gcount() != count) refuse_file(file, "bytes that cannot be read", expected_file);
         hash.add(part.data(), static_cast<std::size_t>(count));
         left -= static_cast<std::uint64_t>(count);
     }
     if (head != text_of(bytes, hash.value()))
-        refuse(file, "bytes that do not have the checksum in its head", "the bytes that were written",
-               "the file is damaged");
+        refuse_file(file, "bytes that do not have the checksum in its head", "the bytes that were written",
+                    "the file is damaged");
 }
 
 }  // namespace skerry

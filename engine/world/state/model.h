@@ -17,6 +17,7 @@
 #include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/ragged.h"
+#include "components/range.h"
 #include "components/surface_table.h"
 #include "skerry/mesh.h"
 #include "skerry/settings.h"
@@ -24,6 +25,11 @@
 #include "systems/dynamics/elements/compute_element_forces.h"
 
 namespace skerry {
+
+/// A range of the rows of a column, to be written or not as the column is.
+auto rows_of(auto& column, Range rows) {
+    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
+}
 
 /// Slot of an attachment that belongs to a mesh collider: no user has a handle to it.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "engine/world/kernels.h"
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
 #include "engine/world/step/step.h"
-#include "systems/dynamics/elements/element_energy.h"
 
 namespace skerry {
 
@@ -32,14 +32,14 @@ Present measure(const Model& model, Real lag) {
     // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies
     // keep m v.v' / 2 and their elastic energy together, as leapfrog does.
     if (lag > 0) {
-        Real power = -elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
+        Real power = -kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         power += now.momentum.dot(model.settings.gravity);
         if (model.loaded)
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
                 if (nodes.inverse_mass[n] > 0) power += nodes.load[n].dot(nodes.velocity[n]);
         now.kinetic += lag * power;
     }
-    now.elastic = elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
+    now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
     return now;
 }
 

@@ -1,6 +1,7 @@
 // The step: one list of stages. Each is named folder/function; the graph takes the order from what they read and write,
 // so the force and the contact branch run side by side (docs/step_graph.dot shows the result). What a struct of inputs
 // takes of the tables is said by its bind(), where it is defined.
+#include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "systems/collision/find_candidates.h"
 #include "systems/collision/find_contacts.h"
@@ -42,16 +43,16 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     BodyTable& b = m.bodies;
     NodeBlockTable& k = m.node_blocks;
     const StepParameters& p = w.scratch.parameters;
-    g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, compute_element_forces,
+    g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
                         read(n.position), read(n.velocity), value(p.h), read(e.rotation), outputs<ElementMemory>(e),
                         outputs<PatchForces>(m.patches, m.element_nodes));
-    g.stage("dynamics/predict_velocity", predict_velocity,
+    g.stage("dynamics/predict_velocity", kernels().predict_velocity,
             inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
             write(n.force), write(n.velocity_next));
     g.stage("dynamics/kick_clusters", kick_clusters, inputs<ClusterKickInputs>(m.clusters, n, b, m.any_asleep),
             read(n.velocity), make(w.scratch.cluster_kick), write(n.velocity_next));
-    g.stage("dynamics/damp_velocity", damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
+    g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
 }
 
@@ -64,9 +65,9 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
-    g.stage("collision/find_candidates", find_candidates, collision_inputs(m), value(p.collision), value(p.h),
+    g.stage("collision/find_candidates", kernels().find_candidates, collision_inputs(m), value(p.collision), value(p.h),
             write(m.bvh.box), write(m.bvh_leaves.box), make(w.cache.search), make(w.cache.pairs));
-    g.stage("collision/find_contacts", find_contacts, collision_inputs(m), value(p.collision), value(p.h),
+    g.stage("collision/find_contacts", kernels().find_contacts, collision_inputs(m), value(p.collision), value(p.h),
             make(w.cache.pairs), make(w.cache.crossings), make(c));
     const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.cache.warm_start),
@@ -86,7 +87,7 @@ void list_solve(WorldState& w, TaskGraph& g) {
     const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.problem_wanted));
     g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next),
             make(w.scratch.kept_velocities), if_wanted);
-    g.stage("solver/solve_regions", solve_regions,
+    g.stage("solver/solve_regions", kernels().solve_regions,
             inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity, w.model.clusters, w.scratch.cluster_kick),
             value(p.solver), value(p.h), make(w.scratch.solver_memory), make(w.scratch.regions),
             outputs<RegionOutputs>(c, n));
@@ -119,12 +120,12 @@ void list_checks(WorldState& w, TaskGraph& g) {
     const bool& pushed = w.scratch.regions.pushed;
     StepFindings& found = w.scratch.findings;
     const StepParameters& p = w.scratch.parameters;
-    g.stage_with_result("dynamics/check_state", found.verdict, check_state,
+    g.stage_with_result("dynamics/check_state", found.verdict, kernels().check_state,
                         inputs<CheckInputs>(k, b, n, m.tetrahedra, m.elements, m.element_nodes, pushed), value(p.h),
                         value(p.max_strain_step), outputs<SpeedOutputs>(k, b));
     const auto if_possible =
         only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; }, read(found.verdict));
-    g.stage_with_result("dynamics/find_inversions", found.inversions, find_inversions,
+    g.stage_with_result("dynamics/find_inversions", found.inversions, kernels().find_inversions,
                         inputs<InversionInputs>(m.tetrahedra, b, n, pushed), value(p.h),
                         make(w.scratch.inversion_parts), outputs<InversionBudgets>(m.tetrahedra, b), if_possible);
     const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
@@ -132,7 +133,7 @@ void list_checks(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
                         inputs<WorkInputs>(n, m.attachments, b, m.loaded, m.any_asleep), value(p.h),
                         make(w.scratch.work_parts), if_any);
-    g.stage_with_result("collision/find_crossings", found.crossings, find_crossings, collision_inputs(m),
+    g.stage_with_result("collision/find_crossings", found.crossings, kernels().find_crossings, collision_inputs(m),
                         value(p.collision), value(p.h), read(n.velocity_next), read(n.push_out), make(w.cache.pairs),
                         make(w.cache.crossings), if_possible);
 }
@@ -151,11 +152,11 @@ void list_commit(WorldState& w, TaskGraph& g) {
     const auto if_sleepy = only_if([](const SleepSettings& sleep) { return sleep.speed > 0; }, value(p.sleep));
     g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(c), read(w.scratch.pressed), read(a.body),
             read(a.motion), write(b.asleep), write(b.still_time), if_taken, if_sleepy);
-    g.stage("dynamics/advance_positions", advance_positions,
+    g.stage("dynamics/advance_positions", kernels().advance_positions,
             inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h), value(p.integrator),
             outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
-    g.stage("dynamics/measure_displacement", measure_displacement, inputs<DisplacementInputs>(k, b, n), value(p.h),
-            outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
+    g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
+            value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
                         inputs<RestInputs>(b, n), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
                         write(b.asleep), write(b.still_time), write(n.velocity), write(n.velocity_next), if_taken,

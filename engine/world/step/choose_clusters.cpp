@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
@@ -28,17 +29,14 @@ constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, a second to inver
 constexpr Real headroom = 4;
 constexpr Real most_lengthening = 16;  // of steps
 
-template <class T>
-std::span<T> rows_of(Column<T>& column, Range rows) {
-    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-}
-
 bool has_elements(const Model& model, std::size_t b) {
     return model.bodies.tetrahedron_count[b] > 0;
 }
 
 Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, std::span<Real> stiffness_sum) {
-    return stable_step(model.all_elements(), model.bodies.blocks[b], position, model.nodes.mass, stiffness_sum).step;
+    return kernels()
+        .stable_step(model.all_elements(), model.bodies.blocks[b], position, model.nodes.mass, stiffness_sum)
+        .step;
 }
 
 /// Shares and moduli of a body, to be put back.
@@ -98,7 +96,8 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     std::ranges::fill(rows_of(model.elements.implicit_modulus, blocks), ElementLane{});
     model.bodies.cluster_step[b] = 0;
     note_leeway(model, b);
-    find_mass_shares(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.mass, stiffness_sum, share);
+    kernels().find_mass_shares(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.mass, stiffness_sum,
+                               share);
     model.bodies.rest_step[b] = step_of(model, b, model.nodes.rest_position, stiffness_sum);
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
@@ -30,7 +31,7 @@ Real look_at_stable_step(const Model& model, std::size_t body, std::span<const V
     stiffness_sum.resize(position.size());
     const ElementInputs elements = model.all_elements();
     const Range blocks = model.bodies.blocks[body];
-    const Real step = stable_step(elements, blocks, position, model.nodes.mass, stiffness_sum).step;
+    const Real step = kernels().stable_step(elements, blocks, position, model.nodes.mass, stiffness_sum).step;
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
     const Real stiffening =

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "components/check.h"
+#include "systems/collision/tree/box.h"
 
 namespace skerry {
 
@@ -13,8 +13,6 @@ namespace {
 
 // m: below it the direction from the nearest point is rounding noise, and a fixed one is taken.
 constexpr Real min_length = 1e-14;
-
-constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
 Vec3 direction_or(const Vec3& v, Real length, const Vec3& otherwise) {
     return length > min_length ? Vec3(v / length) : otherwise;

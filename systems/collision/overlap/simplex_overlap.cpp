@@ -2,14 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 #include <utility>
+
+#include "systems/collision/tree/box.h"
 
 namespace skerry {
 
 namespace {
-
-constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
 constexpr std::array<std::array<std::size_t, 2>, 6> edge_corners{{{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}}};
 constexpr std::array<std::array<std::size_t, 3>, 4> face_corners{{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};

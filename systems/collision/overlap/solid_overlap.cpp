@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "systems/collision/tree/box.h"
@@ -10,8 +9,6 @@
 namespace skerry {
 
 namespace {
-
-constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
 /// Two simplices that overlap, and where.
 struct Meeting {
@@ -147,7 +144,7 @@ Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second
 }
 
 /// How far apart the meetings lie along a direction, m.
-Real spread(std::span<const Meeting> meetings, const Vec3& direction) {
+Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     Real lowest = infinite, highest = -infinite;
     for (const Meeting& m : meetings) {
         lowest = std::min(lowest, direction.dot(m.place));
@@ -166,7 +163,7 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
     Vec3 best = Vec3::UnitZ();
     Real least = infinite;
     for (std::size_t d = 0; d < way.size(); ++d)
-        if (const Real length = way[d] + spread(meetings, directions.span()[d]); length < shorter * least) {
+        if (const Real length = way[d] + extent(meetings, directions.span()[d]); length < shorter * least) {
             least = length;
             best = directions.span()[d];
         }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "components/check.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/search/leaf_features.h"
+#include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
 #include "systems/geometry/closest_lanes.h"
 #include "systems/geometry/closest_points.h"
@@ -16,8 +16,6 @@
 namespace skerry {
 
 namespace {
-
-constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
 // Two trees over at most 2^31 triangles are at most 2 * 32 levels deep together, and a level leaves at most two waiting
 // pairs.

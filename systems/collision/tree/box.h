@@ -11,8 +11,9 @@
 
 namespace skerry {
 
+inline constexpr Real infinite = std::numeric_limits<Real>::infinity();
+
 inline Aabb empty_box() {
-    constexpr Real infinite = std::numeric_limits<Real>::infinity();
     return {Vec3::Constant(infinite), Vec3::Constant(-infinite)};
 }
 

@@ -17,10 +17,6 @@ constexpr Index blocks_per_part = 256;
 // Blocks whose budgets are tested together, without a branch for each.
 constexpr std::size_t blocks_at_once = 32;
 
-Real8 determinant(const LaneMat3<Real8>& edges) {
-    return dot(edges.c0, cross(edges.c1, edges.c2));
-}
-
 Real8 squared(const LaneVec3<Real8>& v) {
     return dot(v, v);
 }

@@ -5,12 +5,12 @@
 namespace skerry {
 
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Column<ExternalWork>& partial) {
-    constexpr std::size_t nodes_per_block = 4096;
+    constexpr std::size_t nodes_per_part = 4096;
     const auto join = [](const ExternalWork& a, const ExternalWork& b) {
         return ExternalWork{a.impulse + b.impulse, a.work + b.work};
     };
     ExternalWork sum = reduce(
-        executor, nodes.load.size(), nodes_per_block, partial, ExternalWork{},
+        executor, nodes.load.size(), nodes_per_part, partial, ExternalWork{},
         [&](std::size_t begin, std::size_t end) {
             ExternalWork part;
             for (std::size_t n = begin; n < end; ++n) {

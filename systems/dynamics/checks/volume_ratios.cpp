@@ -27,10 +27,6 @@ VolumeRatios worst_of(std::span<const ElementLane> volume, Range blocks, Real ne
     return worst;
 }
 
-Real8 determinant(const LaneMat3<Real8>& F) {
-    return dot(F.c0, cross(F.c1, F.c2));
-}
-
 }  // namespace
 
 VolumeRatios tetrahedron_volume_ratios(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,

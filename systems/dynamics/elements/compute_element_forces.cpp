@@ -78,29 +78,49 @@ struct Block {
         return multiply(F, stress(moduli, after));
     }
 
-    [[gnu::always_inline]] void forces_of_part(std::size_t part, std::span<const Vec3> velocity,
-                                               std::span<const ElementRotation> rotation, const ElementMemory& next,
-                                               ElementLane& dissipated) const {
+    /// Elastic stress, Pa. Frames are extracted from all parts at once: how often their steps are repeated does not
+    /// depend on the width of a part.
+    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> elastic_stress(const Parts<LaneMat3<KernelReal>>& F,
+                                                                      std::span<const ElementRotation> rotation,
+                                                                      const ElementMemory& next) const {
         using T = KernelReal;
-        const LaneMat3<T> F = deformation_gradient(nodes, part, position);
-        const T volume = part_of<T>(elements.volume, part);
-        LaneMat3<T> P = with_law(material.model, [&](auto law) {
+        return with_law(material.model, [&](auto law) {
+            Parts<LaneMat3<T>> P;
             if constexpr (law.has_frame) {
-                LaneQuaternion<T> q = load_part<T>(rotation[block], part);
-                extract_rotation(F, volume, q);
-                store_part(q, next.rotation[block], part);
-                return law.stress(material, F, rotation_of(q));
+                Parts<LaneQuaternion<T>> q;
+                Parts<T> volume;
+                for (std::size_t part = 0; part < kernel_parts; ++part) {
+                    q[part] = load_part<T>(rotation[block], part);
+                    volume[part] = part_of<T>(elements.volume, part);
+                }
+                extract_rotations(F, volume, q);
+                for (std::size_t part = 0; part < kernel_parts; ++part) {
+                    store_part(q[part], next.rotation[block], part);
+                    P[part] = law.stress(material, F[part], rotation_of(q[part]));
+                }
             } else {
-                return law.stress(material, F);
+                for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = law.stress(material, F[part]);
             }
+            return P;
         });
-        if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0)
-            P = P + viscous_stress(material, elements.viscous_time[block], F,
-                                   deformation_gradient(elements.nodes_of(block), part, velocity));
-        if (material.relaxes() && !next.viscous_strain.empty())
-            P = P + relax(F, part, next.viscous_strain[block], dissipated);
-        for_each_force(P, nodes, part, duration * volume, [&](Index k, const LaneVec3<T>& f) {
-            add_lanes(f, nodes.node[k].lane + lanes_of<T> * part, force);
+    }
+
+    [[gnu::always_inline]] void add_forces(std::span<const Vec3> velocity, std::span<const ElementRotation> rotation,
+                                           const ElementMemory& next, ElementLane& dissipated) const {
+        Parts<LaneMat3<KernelReal>> F;
+        for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
+        Parts<LaneMat3<KernelReal>> P = elastic_stress(F, rotation, next);
+        Parts<KernelReal> volume;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0)
+                P[part] = P[part] + viscous_stress(material, elements.viscous_time[block], F[part],
+                                                   deformation_gradient(elements.nodes_of(block), part, velocity));
+            if (material.relaxes() && !next.viscous_strain.empty())
+                P[part] = P[part] + relax(F[part], part, next.viscous_strain[block], dissipated);
+            volume[part] = duration * part_of<KernelReal>(elements.volume, part);
+        }
+        for_each_force(P, nodes, volume, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
+            add_lanes(f, nodes.node[k].lane + lanes_of<KernelReal> * part, force);
         });
     }
 };
@@ -144,8 +164,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 nodes.node = patches.slot.data() + static_cast<std::size_t>(elements.first[b]);
                 const Block block{elements, b, nodes, x, force, elements.material_of(b), duration, h};
                 ElementLane dissipated{};
-                for (std::size_t part = 0; part < kernel_parts; ++part)
-                    block.forces_of_part(part, velocity, rotation, next, dissipated);
+                block.add_forces(velocity, rotation, next, dissipated);
                 if (!next.relaxed.empty()) next.relaxed[b] = sum_of(dissipated);
             }
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "components/element_table.h"
@@ -19,7 +20,7 @@ namespace skerry {
 
 /// One node of as many lanes as the kernel takes at once, in the order in which the transposes below want them. A
 /// full-width load per node and a few shuffles, in place of three gathers, which cost a load per lane each.
-#ifdef __AVX512F__
+#ifdef __AVX512VL__
 /// (x, y, z, next node's x) of lanes 0 4, 1 5, 2 6, 3 7
 struct Corner {
     Real8 pair[4];
@@ -187,21 +188,32 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...) of a part of a block: take(k, f_k), lanes side by side.
+/// One for each part of a block.
+template <class T>
+using Parts = std::array<T, kernel_parts>;
+
+/// f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...): take(k, part, f_k), lanes side by side. All parts of a node come before
+/// the next node, so that sums have one order, whatever the width of a part.
 template <class Take>
-[[gnu::always_inline]] inline void for_each_force(const LaneMat3<KernelReal>& P, const BlockNodes& block,
-                                                  std::size_t part, const KernelReal& volume, Take&& take) {
-    const LaneMat3<KernelReal> Q = (-volume) * P;
-    const auto on_node = [&](Index k) {
+[[gnu::always_inline]] inline void for_each_force(const Parts<LaneMat3<KernelReal>>& P, const BlockNodes& block,
+                                                  const Parts<KernelReal>& volume, Take&& take) {
+    Parts<LaneMat3<KernelReal>> Q;
+    for (std::size_t part = 0; part < kernel_parts; ++part) Q[part] = (-volume[part]) * P[part];
+    Parts<LaneVec3<KernelReal>> sum;
+    const auto on_node = [&](Index k, std::size_t part) {
         const LaneVec3<KernelReal> g = load_gradient<KernelReal>(block.gradient[k], part);
-        return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
+        return g.x * Q[part].c0 + g.y * Q[part].c1 + g.z * Q[part].c2;
     };
-    LaneVec3<KernelReal> sum = on_node(1);
-    take(Index{1}, sum);
+    for (std::size_t part = 0; part < kernel_parts; ++part) {
+        sum[part] = on_node(1, part);
+        take(Index{1}, part, sum[part]);
+    }
     const auto add = [&](Index k) {
-        const LaneVec3<KernelReal> f = on_node(k);
-        take(k, f);
-        sum = sum + f;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const LaneVec3<KernelReal> f = on_node(k, part);
+            take(k, part, f);
+            sum[part] = sum[part] + f;
+        }
     };
     if (block.count == 4) {
         add(2);
@@ -209,7 +221,8 @@ template <class Take>
     } else {
         for (Index k = 2; k < block.count; ++k) add(k);
     }
-    take(Index{0}, LaneVec3<KernelReal>{-sum.x, -sum.y, -sum.z});
+    for (std::size_t part = 0; part < kernel_parts; ++part)
+        take(Index{0}, part, LaneVec3<KernelReal>{-sum[part].x, -sum[part].y, -sum[part].z});
 }
 
 /// Adds f of lane l to force[node[l]], one lane after the other: two may have the same node.

@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t node_blocks_per_job = 8;
+constexpr std::size_t moved_blocks_per_job = 8;
 
 /// Most steps: no node is pushed, and rows are flat lists of reals.
 void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
@@ -35,7 +35,7 @@ void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, I
     SKERRY_CHECK(nodes.velocity_next.size() == out.position.size() && out.velocity.size() == out.position.size());
     SKERRY_CHECK(out.push_out.empty() || out.push_out.size() == out.position.size());
     const bool forward = integrator == Integrator::forward_euler;
-    parallel_for(executor, nodes.block_begin.size(), node_blocks_per_job, [&](std::size_t first, std::size_t last) {
+    parallel_for(executor, nodes.block_begin.size(), moved_blocks_per_job, [&](std::size_t first, std::size_t last) {
         for (std::size_t b = first; b < last; ++b) {
             const auto begin = static_cast<std::size_t>(nodes.block_begin[b]);
             const std::size_t count = static_cast<std::size_t>(nodes.block_end[b]) - begin;

@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t node_blocks_per_job = 8;
+constexpr std::size_t damped_blocks_per_job = 8;
 
 Real damping_of(const DampingInputs& bodies, std::size_t body) {
     const Index material = bodies.body_material[body];
@@ -85,13 +85,13 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     constexpr Real well_shaped =
         1e-6;  // of the cube of the mean moment: then the inverse loses at most ten digits, and most bodies lose none
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
-    const Eigen::JacobiSVD<Mat3> parts(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Real least = 1e-12 * parts.singularValues()[0];  // below it the moment is rounding
+    const Eigen::JacobiSVD<Mat3> turned(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Real least = 1e-12 * turned.singularValues()[0];  // below it the moment is rounding
     Vec3 omega = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
-        if (parts.singularValues()[i] > least)
-            omega += parts.matrixV().col(i) *
-                     (parts.matrixU().col(i).dot(total.angular_momentum) / parts.singularValues()[i]);
+        if (turned.singularValues()[i] > least)
+            omega += turned.matrixV().col(i) *
+                     (turned.matrixU().col(i).dot(total.angular_momentum) / turned.singularValues()[i]);
     return omega;
 }
 
@@ -131,7 +131,7 @@ bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<co
     for (std::size_t body = 0; body < body_count && !any; ++body) any = is_damped(bodies, body);
     if (!any) return false;
 
-    parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
+    parallel_for(executor, block_count, damped_blocks_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);
             if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) sums[b] = sum_block(bodies, b, velocity);
@@ -139,7 +139,7 @@ bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<co
     });
     for (std::size_t body = 0; body < body_count; ++body)
         if (is_damped(bodies, body) && keeps_rigid_motion(bodies, body)) add_up_body(bodies, body, velocity, sums);
-    parallel_for(executor, block_count, node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
+    parallel_for(executor, block_count, damped_blocks_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             sums[b].dissipated = 0;
             const std::size_t body = static_cast<std::size_t>(bodies.block_body[b]);

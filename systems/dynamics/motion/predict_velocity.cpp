@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t node_blocks_per_job = 4;
+constexpr std::size_t kicked_blocks_per_job = 4;
 
 struct Kick {
     const KickInputs& nodes;
@@ -111,7 +111,7 @@ void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<con
     SKERRY_CHECK(velocity.size() == count && force.size() == count &&
                  (nodes.load.empty() || nodes.load.size() == count));
     const Kick kick{nodes, velocity, h, force, velocity_next};
-    parallel_for(executor, nodes.block_begin.size(), node_blocks_per_job, [&](std::size_t first, std::size_t last) {
+    parallel_for(executor, nodes.block_begin.size(), kicked_blocks_per_job, [&](std::size_t first, std::size_t last) {
         for (std::size_t b = first; b < last; ++b) kick.block(b);
     });
 }

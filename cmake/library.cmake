@@ -1,0 +1,51 @@
+# The libraries: skerry_parts for what is built here and looks inside, tests before all; for hosts skerry::static and
+# skerry::shared, which show nothing but what public headers declare. skerry::skerry is the one that BUILD_SHARED_LIBS
+# asks for.
+get_property(skerry_all_objects GLOBAL PROPERTY skerry_objects)
+get_property(skerry_used GLOBAL PROPERTY skerry_uses)
+list(REMOVE_DUPLICATES skerry_used)
+
+# The kernels of a set keep one name, that of their table.
+foreach(set IN LISTS skerry_kernel_sets)
+    string(MAKE_C_IDENTIFIER ${set} id)
+    get_property(objects GLOBAL PROPERTY skerry_objects_${id})
+    set(closed ${CMAKE_CURRENT_BINARY_DIR}/kernels_${id}.o)
+    skerry_close(${closed} OBJECTS ${objects} KEEP --keep-global-symbol=skerry_kernels_${id})
+    list(APPEND skerry_all_objects ${closed})
+endforeach()
+
+function(skerry_library target type)
+    add_library(${target} ${type} ${ARGN})
+    set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
+    target_link_libraries(${target} PUBLIC Eigen3::Eigen PRIVATE Threads::Threads ${skerry_used})
+    target_include_directories(${target} PUBLIC
+        $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/engine/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+endfunction()
+
+skerry_library(skerry_parts STATIC ${skerry_all_objects})
+
+set(skerry_public_objects ${skerry_all_objects})
+if(skerry_can_close)
+    set(skerry_public_objects ${CMAKE_CURRENT_BINARY_DIR}/skerry.o)
+    # What is hidden goes, and of the rest what is not ours: std's templates, those of other packages' headers.
+    skerry_close(${skerry_public_objects} OBJECTS ${skerry_all_objects} KEEP --localize-hidden --wildcard
+        --keep-global-symbol=_ZN6skerry* --keep-global-symbol=_ZNK6skerry* --keep-global-symbol=_ZT[ISV]N6skerry*)
+else()
+    message(STATUS "Inline functions of Eigen can be mixed with a host's: ${skerry_cannot_close}")
+endif()
+skerry_library(skerry_static STATIC ${skerry_public_objects})
+skerry_library(skerry_shared SHARED ${skerry_public_objects})
+# Before 1.0 a minor version may change what hosts see.
+set_target_properties(skerry_shared PROPERTIES
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+foreach(type IN ITEMS static shared)
+    set_target_properties(skerry_${type} PROPERTIES OUTPUT_NAME skerry EXPORT_NAME ${type})
+    add_library(skerry::${type} ALIAS skerry_${type})
+endforeach()
+if(BUILD_SHARED_LIBS)
+    set(skerry_default shared)
+else()
+    set(skerry_default static)
+endif()
+add_library(skerry::skerry ALIAS skerry_${skerry_default})

@@ -1,0 +1,16 @@
+// Instead of engine/output/page with SKERRY_PAGES=OFF.
+#include "engine/absent/refuse_absent.h"
+#include "skerry/output.h"
+
+namespace skerry {
+
+struct PageWriter::Impl {};
+
+PageWriter::PageWriter(const std::filesystem::path&, const std::string&) {
+    refuse_absent("PageWriter", "SKERRY_PAGES");
+}
+PageWriter::~PageWriter() = default;
+void PageWriter::add_frame(const World&) {}
+void PageWriter::close(const World&) {}
+
+}  // namespace skerry

@@ -1,0 +1,14 @@
+// Instead of engine/scene with SKERRY_SCENES=OFF.
+#include "engine/absent/refuse_absent.h"
+#include "skerry/scene.h"
+
+namespace skerry {
+
+Scene load_scene(const std::filesystem::path&, const SceneOverrides&) {
+    refuse_absent("load_scene", "SKERRY_SCENES");
+}
+std::string scene_schema() {
+    refuse_absent("scene_schema", "SKERRY_SCENES");
+}
+
+}  // namespace skerry

@@ -1,0 +1,134 @@
+#include "engine/scene/rules.h"
+
+#include <algorithm>
+
+namespace skerry {
+
+namespace {
+
+void check_group(const KeyGroup& group, const Json& json, const Place& place) {
+    std::vector<std::string> present;
+    for (const std::string& key : group.keys)
+        if (json.contains(key)) present.push_back(key);
+    const std::string all = listed(group.keys);
+    switch (group.kind) {
+        case KeyGroup::Kind::exactly_one:
+            if (present.size() == 1) return;
+            place.refuse(present.empty() ? "none of these keys" : "the keys " + listed(present),
+                         "exactly one of " + all);
+        case KeyGroup::Kind::at_most_one:
+            if (present.size() <= 1) return;
+            place.refuse("the keys " + listed(present), "at most one of " + all);
+        case KeyGroup::Kind::together:
+            if (present.empty() || present.size() == group.keys.size()) return;
+            place.refuse("only " + listed(present), "all of " + all + ", or none");
+    }
+}
+
+Json group_schema(const KeyGroup& group) {
+    Json one_each = Json::array(), pairs = Json::array(), needs = Json::object();
+    for (const std::string& key : group.keys) {
+        one_each.push_back({{"required", Json::array({key})}});
+        Json others = Json::array();
+        for (const std::string& other : group.keys)
+            if (other != key) others.push_back(other);
+        needs[key] = others;
+        for (const std::string& other : group.keys)
+            if (key < other) pairs.push_back({{"required", Json::array({key, other})}});
+    }
+    switch (group.kind) {
+        case KeyGroup::Kind::exactly_one:
+            return {{"oneOf", one_each}};
+        case KeyGroup::Kind::at_most_one:
+            return {{"not", {{"anyOf", pairs}}}};
+        case KeyGroup::Kind::together:
+            return {{"dependentRequired", needs}};
+    }
+    return {};
+}
+
+}  // namespace
+
+void RuleTable::add_key(std::string_view name, const KeyDoc& doc,
+                        std::function<void(const Json&, const Place&, const KeyDoc&, void* object)> read,
+                        Json (*describe)(SchemaBook&, const KeyDoc&)) {
+    keys_.push_back({std::string(name), doc, std::move(read), describe});
+}
+
+void RuleTable::add_group(KeyGroup::Kind kind, std::vector<std::string> keys) {
+    groups_.push_back({kind, std::move(keys)});
+}
+
+const RuleTable::Key* RuleTable::find(const std::string& name) const {
+    const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const Key& k) {
+        return k.name == name || (!k.doc.alias.empty() && k.doc.alias == name);
+    });
+    return key == keys_.end() ? nullptr : &*key;
+}
+
+std::vector<std::string> RuleTable::known_names() const {
+    std::vector<std::string> names;
+    for (const Key& key : keys_) {
+        names.push_back(key.name);
+        if (!key.doc.alias.empty()) names.emplace_back(key.doc.alias);
+    }
+    return names;
+}
+
+Place RuleTable::place_of(const Json& json, const Place& outer) const {
+    if (!json.is_object()) outer.refuse(described(json), "an object: " + name_);
+    if (const auto own = json.find("name"); own != json.end() && own->is_string())
+        return outer.of(name_ + " " + in_quotes(own->get_ref<const std::string&>()));
+    return outer;
+}
+
+void RuleTable::read_keys(const Json& json, const Place& place, void* object) const {
+    std::vector<std::string> seen;
+    for (const auto& [name, value] : json.items()) {
+        const Key* key = find(name);
+        if (key == nullptr) {
+            const std::vector<std::string> names = known_names();
+            place.key(name).refuse("an unknown key", "one of " + listed(names), nearest_hint(name, names));
+        }
+        if (std::find(seen.begin(), seen.end(), key->name) != seen.end())
+            place.key(name).refuse("both " + in_quotes(key->name) + " and " + in_quotes(key->doc.alias),
+                                   "one of them: they mean the same");
+        seen.push_back(key->name);
+    }
+    for (const Key& key : keys_)
+        if (key.doc.required && std::find(seen.begin(), seen.end(), key.name) == seen.end())
+            place.refuse("no key " + in_quotes(key.name), in_quotes(key.name) + ": " + std::string(key.doc.meaning));
+    for (const KeyGroup& group : groups_) check_group(group, json, place);
+    // Table order, not file order, so that of several mistakes the same one is named whatever the order of keys.
+    for (const Key& key : keys_)
+        for (const auto& [name, value] : json.items())
+            if (find(name) == &key) key.read(value, place.key(name), key.doc, object);
+}
+
+Json RuleTable::schema(SchemaBook& book) const {
+    Json schema = {{"type", "object"}, {"description", meaning_}, {"additionalProperties", false}};
+    Json properties = Json::object(), required = Json::array(), all = Json::array();
+    for (const Key& key : keys_) {
+        Json property = key.describe(book, key.doc);
+        std::string description(key.doc.meaning);
+        if (!key.doc.unit.empty()) description.append(" [").append(key.doc.unit).append("]");
+        property["description"] = std::move(description);
+        properties[key.name] = property;
+        if (!key.doc.alias.empty()) {
+            const std::string alias(key.doc.alias);
+            property["description"] = "The same as " + key.name + ".";
+            properties[alias] = property;
+            all.push_back(group_schema(
+                {key.doc.required ? KeyGroup::Kind::exactly_one : KeyGroup::Kind::at_most_one, {key.name, alias}}));
+        } else if (key.doc.required) {
+            required.push_back(key.name);
+        }
+    }
+    schema["properties"] = properties;
+    if (!required.empty()) schema["required"] = required;
+    for (const KeyGroup& group : groups_) all.push_back(group_schema(group));
+    if (!all.empty()) schema["allOf"] = all;
+    return schema;
+}
+
+}  // namespace skerry

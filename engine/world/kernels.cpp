@@ -1,0 +1,60 @@
+#include "engine/world/kernels.h"
+
+#include <cstdlib>
+#include <string>
+
+#include "skerry/error.h"
+#include "skerry/instruction_set.h"
+
+namespace skerry {
+
+namespace {
+
+std::string listed(std::span<const KernelSet> sets) {
+    std::string names;
+    for (const KernelSet& set : sets)
+        if (set.runs) names += (names.empty() ? "" : ", ") + std::string(set.kernels->instruction_set);
+    return names;
+}
+
+}  // namespace
+
+const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view wanted) {
+    const Kernels* last = nullptr;
+    std::string hint;
+    for (const KernelSet& set : sets) {
+        if (set.runs) last = set.kernels;
+        if (wanted != set.kernels->instruction_set) continue;
+        if (set.runs) return *set.kernels;
+        hint = "this build has it, this processor or its system does not";
+    }
+    if (wanted.empty()) return *last;
+    Complaint{.file = {},
+              .object = "environment",
+              .field = "SKERRY_INSTRUCTION_SET",
+              .found = "\"" + std::string(wanted) + "\"",
+              .expected = "one of " + listed(sets),
+              .hint = hint}
+        .raise();
+}
+
+const Kernels& kernels() {
+    static const Kernels& chosen = []() -> const Kernels& {
+        const char* const wanted = std::getenv("SKERRY_INSTRUCTION_SET");
+        return choose_kernels(kernel_sets(), wanted != nullptr ? wanted : "");
+    }();
+    return chosen;
+}
+
+std::string_view instruction_set() {
+    return kernels().instruction_set;
+}
+
+std::vector<std::string_view> instruction_sets() {
+    std::vector<std::string_view> names;
+    for (const KernelSet& set : kernel_sets())
+        if (set.runs) names.emplace_back(set.kernels->instruction_set);
+    return names;
+}
+
+}  // namespace skerry

@@ -1,0 +1,61 @@
+// The functions that take nearly all of a step's time, compiled once for each instruction set that a build is for
+// (docs/decisions/0018-instruction-sets.md). The engine calls them through one table, chosen once.
+#pragma once
+
+#include <span>
+
+#include "systems/collision/find_candidates.h"
+#include "systems/collision/find_contacts.h"
+#include "systems/collision/find_crossings.h"
+#include "systems/dynamics/checks/check_state.h"
+#include "systems/dynamics/checks/find_inversions.h"
+#include "systems/dynamics/elements/compute_element_forces.h"
+#include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/elements/recover_fields.h"
+#include "systems/dynamics/motion/advance_positions.h"
+#include "systems/dynamics/motion/damp_velocity.h"
+#include "systems/dynamics/motion/measure_displacement.h"
+#include "systems/dynamics/motion/predict_velocity.h"
+#include "systems/dynamics/stability/stable_step.h"
+#include "systems/solver/solve_regions.h"
+
+namespace skerry {
+
+/// One such set of functions. What each does stands in the header that declares it; all sets give the same bits.
+struct Kernels {
+    const char* instruction_set;  // as the compiler calls it: x86-64-v3
+    decltype(&skerry::find_candidates) find_candidates;
+    decltype(&skerry::find_contacts) find_contacts;
+    decltype(&skerry::find_crossings) find_crossings;
+    decltype(&skerry::check_state) check_state;
+    decltype(&skerry::find_inversions) find_inversions;
+    decltype(&skerry::compute_element_forces) compute_element_forces;
+    decltype(&skerry::elastic_energy) elastic_energy;
+    decltype(&skerry::elastic_power) elastic_power;
+    decltype(&skerry::cauchy_stress) cauchy_stress;
+    decltype(&skerry::green_strain) green_strain;
+    decltype(&skerry::stress_of_tetrahedra) stress_of_tetrahedra;
+    decltype(&skerry::strain_of_tetrahedra) strain_of_tetrahedra;
+    decltype(&skerry::means_of_nodes) means_of_nodes;
+    decltype(&skerry::advance_positions) advance_positions;
+    decltype(&skerry::damp_velocity) damp_velocity;
+    decltype(&skerry::measure_displacement) measure_displacement;
+    decltype(&skerry::predict_velocity) predict_velocity;
+    StableStep (*stable_step)(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                              std::span<const Real> mass, std::span<Real> stiffness_sum);
+    decltype(&skerry::element_steps) element_steps;
+    decltype(&skerry::find_mass_shares) find_mass_shares;
+    decltype(&skerry::solve_regions) solve_regions;
+};
+
+/// A set that was compiled, and whether this processor and its system can run it.
+struct KernelSet {
+    const Kernels* kernels;
+    bool runs;
+};
+
+/// All that were compiled, the most demanding last. The first always runs: it is for what all other code is compiled
+/// for.
+std::span<const KernelSet> kernel_sets();
+
+}  // namespace skerry

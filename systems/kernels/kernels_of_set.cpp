@@ -1,0 +1,32 @@
+// Compiled once for each instruction set: SKERRY_KERNELS is the name of its table, SKERRY_KERNELS_FOR its own.
+#include "systems/kernels/kernels.h"
+
+// A name that is not mangled: the only one that the objects of a set show to the others (cmake/close.cmake).
+extern "C" {
+extern const skerry::Kernels SKERRY_KERNELS;
+
+const skerry::Kernels SKERRY_KERNELS = {
+    .instruction_set = SKERRY_KERNELS_FOR,
+    .find_candidates = &skerry::find_candidates,
+    .find_contacts = &skerry::find_contacts,
+    .find_crossings = &skerry::find_crossings,
+    .check_state = &skerry::check_state,
+    .find_inversions = &skerry::find_inversions,
+    .compute_element_forces = &skerry::compute_element_forces,
+    .elastic_energy = &skerry::elastic_energy,
+    .elastic_power = &skerry::elastic_power,
+    .cauchy_stress = &skerry::cauchy_stress,
+    .green_strain = &skerry::green_strain,
+    .stress_of_tetrahedra = &skerry::stress_of_tetrahedra,
+    .strain_of_tetrahedra = &skerry::strain_of_tetrahedra,
+    .means_of_nodes = &skerry::means_of_nodes,
+    .advance_positions = &skerry::advance_positions,
+    .damp_velocity = &skerry::damp_velocity,
+    .measure_displacement = &skerry::measure_displacement,
+    .predict_velocity = &skerry::predict_velocity,
+    .stable_step = &skerry::stable_step,
+    .element_steps = &skerry::element_steps,
+    .find_mass_shares = &skerry::find_mass_shares,
+    .solve_regions = &skerry::solve_regions,
+};
+}

@@ -1,0 +1,53 @@
+#include "engine/world/kernels.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "skerry/error.h"
+#include "skerry/instruction_set.h"
+
+using namespace skerry;
+
+namespace {
+
+Kernels called(const char* name) {
+    Kernels kernels = *kernel_sets().front().kernels;
+    kernels.instruction_set = name;
+    return kernels;
+}
+
+std::string refusal(std::span<const KernelSet> sets, std::string_view wanted) {
+    try {
+        choose_kernels(sets, wanted);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "taken";
+}
+
+}  // namespace
+
+TEST_CASE("without a wish the last set of kernels that runs here is taken", "[unit]") {
+    const Kernels base = called("base"), wide = called("wide"), widest = called("widest");
+    const std::vector<KernelSet> sets{{&base, true}, {&wide, true}, {&widest, false}};
+    CHECK(&choose_kernels(sets, "") == &wide);
+    CHECK(&choose_kernels(sets, "base") == &base);
+    CHECK(&choose_kernels(sets, "wide") == &wide);
+}
+
+TEST_CASE("an instruction set that is not there is refused with those that are", "[unit]") {
+    const Kernels base = called("base"), wide = called("wide"), widest = called("widest");
+    const std::vector<KernelSet> sets{{&base, true}, {&wide, true}, {&widest, false}};
+    CHECK(refusal(sets, "avx") == "environment: SKERRY_INSTRUCTION_SET: found \"avx\", expected one of base, wide");
+    CHECK(refusal(sets, "widest") ==
+          "environment: SKERRY_INSTRUCTION_SET: found \"widest\", expected one of base, wide (this build has it, this "
+          "processor or its system does not)");
+}
+
+TEST_CASE("the kernels of this process are among those that it lists", "[unit]") {
+    const std::vector<std::string_view> sets = instruction_sets();
+    CHECK(std::count(sets.begin(), sets.end(), instruction_set()) == 1);
+    CHECK(kernel_sets().front().runs);
+}
