@@ -1,7 +1,10 @@
 #include "systems/collision/colliders/edge_contact.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "systems/collision/inputs/contact_key.h"
 
 namespace skerry {
 
@@ -11,10 +14,13 @@ namespace {
 // of the contact distance that bodies have by default, 0.02 of an edge.
 constexpr Real flat_slope = 2e-4;
 
-// The end of a flat stretch, and a minimum, are found to this fraction of the edge.
-constexpr Real place_tolerance = 1e-12;
+// Beyond places where the slope becomes greater than this the edge is out of reach unless it turns.
+constexpr Real steep_slope = 0.05;
 
-// Flat stretches shorter than this fraction of the edge are one point.
+// The end of a flat stretch, and a minimum, are found to this fraction of the edge.
+constexpr Real place_tolerance = 1e-10;
+
+// Points nearer to each other than this fraction of the edge are one.
 constexpr Real shortest_stretch = 0.1;
 
 // The wall of a bucket is not convex: an edge across its rim has two minima. They are looked for between this many
@@ -35,7 +41,7 @@ public:
 
     /// The minimum of a stretch, whose normal has no part along the edge: of a kink the one between those of its sides.
     EdgePoint minimum(Real low, Real high) const {
-        EdgePoint found{0.5 * (low + high), at(0.5 * (low + high))};
+        EdgePoint found{0, 0.5 * (low + high), at(0.5 * (low + high))};
         const SurfacePoint before = at(low), after = at(high);
         const Real falls = slope(before), rises = slope(after);
         if (std::abs(slope(found.on)) <= flat_slope || !(falls < 0 && rises > 0)) return found;
@@ -65,31 +71,72 @@ Bracket close_in(Bracket on, auto&& is_low) {
     return on;
 }
 
-/// The distance falls at `low` and rises at `high`: adds its minimum in between.
-void add_minimum(const Along& along, Real low, Real high, EdgeContact& contact) {
-    while (high - low > place_tolerance) {
-        const Real middle = 0.5 * (low + high), slope = along.slope(middle);
-        if (slope < -flat_slope) {
-            low = middle;
-        } else if (slope > flat_slope) {
-            high = middle;
+/// The points of one interval in which the slope rises.
+class Stretch {
+public:
+    Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
+        : along_(along), interval_(interval), first_number_(first_number), contact_(contact) {}
+
+    void add_points() {
+        const bool falls = passes(-flat_slope), rises = passes(flat_slope);
+        const std::size_t none = contact_.count;
+        if (falls && rises)
+            add_minimum();
+        else if (falls)
+            add(0, first_place(flat_slope));
+        else if (rises)
+            add(1, last_place(flat_slope));
+        const Real low = contact_.count > none ? contact_.point[none].s : 1,
+                   high = contact_.count > none ? contact_.point[contact_.count - 1].s : 0;
+        if (passes(-steep_slope)) add_before(low, first_place(steep_slope));
+        if (passes(steep_slope)) add_behind(high, last_place(steep_slope));
+    }
+
+private:
+    bool passes(Real slope) const {
+        return along_.slope(interval_.low) < slope && along_.slope(interval_.high) > slope;
+    }
+
+    /// Where the distance no longer falls by more than `slope`, and where it begins to rise by more; on the flatter
+    /// side of a kink, whose normal holds along the stretch.
+    Real first_place(Real slope) const {
+        return close_in(interval_, [&](Real s) { return along_.slope(s) < -slope; }).high;
+    }
+    Real last_place(Real slope) const {
+        return close_in(interval_, [&](Real s) { return !(along_.slope(s) > slope); }).low;
+    }
+
+    void add_minimum() {
+        const Real first = first_place(flat_slope), last = last_place(flat_slope);
+        if (!(first < last)) {
+            const EdgePoint kink = along_.minimum(last, first);
+            push(0, kink.s, kink.on);
+        } else if (last - first < shortest_stretch) {
+            add(0, 0.5 * (first + last));
         } else {
-            // both within the stretch, where the normal is the one that holds along it
-            const Real first = close_in({low, middle}, [&](Real s) { return along.slope(s) < -flat_slope; }).high;
-            const Real last = close_in({middle, high}, [&](Real s) { return !(along.slope(s) > flat_slope); }).low;
-            if (last - first < shortest_stretch) {
-                contact.point[contact.count++] = {0.5 * (first + last), along.at(0.5 * (first + last))};
-            } else {
-                contact.point[contact.count++] = {first, along.at(first)};
-                contact.point[contact.count++] = {last, along.at(last)};
-            }
-            return;
+            add(0, first);
+            add(1, last);
         }
     }
-    contact.point[contact.count++] = along.minimum(low, high);
-}
+    void add_before(Real other, Real s) {
+        if (other - s > shortest_stretch) add(2, s);
+    }
+    void add_behind(Real other, Real s) {
+        if (s - other > shortest_stretch) add(3, s);
+    }
+    void add(Index number, Real s) { push(number, s, along_.at(s)); }
+    void push(Index number, Real s, const SurfacePoint& on) {
+        contact_.point[contact_.count++] = {first_number_ + number, s, on};
+    }
 
-/// Calls `visit(low, high)` for each interval in which the distance falls first and then rises. Returns edge_distance.
+    const Along& along_;
+    const Bracket interval_;
+    const Index first_number_;
+    EdgeContact& contact_;
+};
+
+/// Calls `visit(low, high)` for each interval in which the slope rises past one of those that count. Returns
+/// edge_distance.
 Real scan(const Along& along, bool convex, auto&& visit) {
     const int intervals = convex ? 1 : wall_intervals;
     Real nearest = std::numeric_limits<Real>::infinity(), low = 0;
@@ -103,7 +150,8 @@ Real scan(const Along& along, bool convex, auto&& visit) {
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);
         nearest = std::min(nearest, bound);
-        if (falls < -flat_slope && rises > flat_slope) visit(low, high);
+        const auto passes = [&](Real slope) { return falls < slope && rises > slope; };
+        if (passes(-steep_slope) || passes(-flat_slope) || passes(flat_slope) || passes(steep_slope)) visit(low, high);
         low = high;
         before = after;
     }
@@ -123,8 +171,11 @@ Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, 
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
     const Along along(geometry, part, a, b);
     EdgeContact contact;
+    Index next = 0;
     contact.nearest = scan(along, is_convex(geometry, part), [&](Real low, Real high) {
-        if (contact.count + 2 <= contact.point.size()) add_minimum(along, low, high, contact);
+        constexpr Index numbers = contacts_of_edge / 2;
+        if (next < contacts_of_edge) Stretch(along, {low, high}, next, contact).add_points();
+        next += numbers;
     });
     return contact;
 }

@@ -63,7 +63,7 @@ private:
             const Vec3 point = world(touch.on.point), velocity = velocity_at(point);
             if (!within_reach(touch.on.distance, speed_against(velocity, node))) continue;
             Candidate numbered = candidate;
-            numbered.feature += i;
+            numbered.feature += static_cast<std::uint64_t>(touch.number);
             add(numbered, ContactKind::edge_collider,
                 {{node[0], node[1], node[0], node[0]}, {1 - touch.s, touch.s, 0, 0}}, point,
                 motion_.rotation * touch.on.normal, touch.on.distance, scale_.contact_distance, velocity);

@@ -43,7 +43,7 @@ inline std::uint64_t face_collider_feature(Index k, Index triangle) {
 }
 
 /// Contacts of one edge with a part take the numbers from this on.
-inline constexpr Index contacts_of_edge = 4;
+inline constexpr Index contacts_of_edge = 8;
 
 inline std::uint64_t edge_collider_feature(Index edge, Index part) {
     return edge_edge_bit | static_cast<std::uint64_t>(edge) << local_bits |
