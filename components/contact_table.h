@@ -10,13 +10,14 @@
 
 namespace skerry {
 
-enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider };
+/// The last three are of a body's node, edge and face with an analytic collider.
+enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider, edge_collider, face_collider };
 enum class ContactState : std::uint8_t { open, stick, slide };
 
 /// Names the features that touch, across steps. `pair` holds what touches: bits 63..62 the kind of pair (0 two bodies,
 /// 1 body and collider), then the two handle slots (31 bits each). `feature` holds which parts: bit 63 set for
 /// edge-edge, bit 62 says which of the two bodies the point or first edge belongs to, then the two local feature
-/// numbers (31 bits each). Both are unique in a world and survive the removal of other bodies.
+/// numbers (31 bits each). With an analytic collider bit 63 says an edge, bit 62 a face of the body (contact_key.h). Both are unique in a world and survive the removal of other bodies.
 struct ContactKey {
     std::uint64_t pair;
     std::uint64_t feature;

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "engine/world/save/checks.h"
+#include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/collider_distance.h"
 
@@ -76,16 +77,30 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
         expect_size(file, "/search/collider_extent", search.memory.collider_extent.size(), colliders);
 }
 
+bool inside(Index row, Range range) {
+    return row >= range.begin && row < range.end;
+}
+
+/// Whether a candidate is a feature of body a with a part or a point of a collider.
+bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a, ColliderShape shape) {
+    const Index parts = collider_part_count(shape), second = second_local(candidate.feature);
+    if (is_edge_edge(candidate.feature))
+        return inside(candidate.first, bodies.edges[a]) && second < contacts_of_edge * parts &&
+               second % contacts_of_edge == 0;
+    if (is_face_collider(candidate.feature))
+        return inside(candidate.first, bodies.triangles[a]) &&
+               first_local(candidate.feature) < collider_point_count(shape);
+    return inside(candidate.first, bodies.vertices[a]) && second < parts;
+}
+
 void check_candidates(const Hdf5File& file, const Model& model, const PairTable& pairs) {
     const BodyTable& bodies = model.bodies;
-    const auto inside = [](Index row, Range range) { return row >= range.begin && row < range.end; };
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const Index a = pairs.first[p], b = pairs.second[p];
         for (const Candidate& candidate : pairs.candidates[p]) {
             bool good = false;
             if (pairs.kind[p] == PairKind::collider) {
-                good = inside(candidate.first, bodies.vertices[a]) && candidate.second == b &&
-                       second_local(candidate.feature) < collider_part_count(model.colliders.geometry[b].shape);
+                good = candidate.second == b && is_of_collider(candidate, bodies, a, model.colliders.geometry[b].shape);
             } else if (is_edge_edge(candidate.feature)) {
                 good = inside(candidate.first, bodies.edges[a]) && inside(candidate.second, bodies.edges[b]);
             } else if (is_point_of_second(candidate.feature)) {

@@ -110,7 +110,7 @@ inline constexpr std::uint64_t value_count<PairKind> = 3;
 template <>
 inline constexpr std::uint64_t value_count<PairState> = 3;
 template <>
-inline constexpr std::uint64_t value_count<ContactKind> = 3;
+inline constexpr std::uint64_t value_count<ContactKind> = 5;
 template <>
 inline constexpr std::uint64_t value_count<ContactState> = 3;
 

@@ -48,11 +48,31 @@ inline std::uint64_t point_collider_feature(Index point, Index part) {
     return static_cast<std::uint64_t>(point) << local_bits | static_cast<std::uint64_t>(part);
 }
 
+/// Point k of the collider, see collider_point, and a triangle: the point comes first, as in point_triangle_feature.
+inline std::uint64_t face_collider_feature(Index k, Index triangle) {
+    return second_side_bit | static_cast<std::uint64_t>(k) << local_bits | static_cast<std::uint64_t>(triangle);
+}
+
+/// Contacts of one edge with a part take the numbers from this on.
+inline constexpr Index contacts_of_edge = 8;
+
+inline std::uint64_t edge_collider_feature(Index edge, Index part) {
+    return edge_edge_bit | static_cast<std::uint64_t>(edge) << local_bits |
+           static_cast<std::uint64_t>(contacts_of_edge * part);
+}
+
+/// Or an edge and a collider.
 inline bool is_edge_edge(std::uint64_t feature) {
     return (feature & edge_edge_bit) != 0;
 }
+inline bool is_face_collider(std::uint64_t feature) {
+    return (feature & (edge_edge_bit | second_side_bit)) == second_side_bit;
+}
 inline bool is_point_of_second(std::uint64_t feature) {
     return (feature & second_side_bit) != 0;
+}
+inline Index first_local(std::uint64_t feature) {
+    return static_cast<Index>(feature >> local_bits & local_mask);
 }
 inline Index second_local(std::uint64_t feature) {
     return static_cast<Index>(feature & local_mask);

@@ -27,9 +27,10 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
     const Real own_distance = body.contact_distance[first];
     const Real own_edge = body.mean_edge[first];
     if (kind == PairKind::collider) {
-        // The distance to a shape is signed at any depth, so nothing behind its surface needs a zone.
+        // The distance to a shape is signed at any depth, so nothing behind its surface needs a zone. Its points may be
+        // behind a face.
         const Real half = own_distance / 2;
-        return {half, own_edge, 0, 0, half};
+        return {half, own_edge, face_depth_fraction * own_edge, 0, half};
     }
     scale.contact_distance = (own_distance + body.contact_distance[second]) / 2;
     scale.edge = std::min(own_edge, body.mean_edge[second]);

@@ -23,6 +23,8 @@
 // constant part of reach is larger than their rounding by many orders.
 #pragma once
 
+#include <algorithm>
+
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
 
@@ -47,13 +49,18 @@ struct PairScale {
     Real edge;              // the smaller of the mean surface edges
     Real face_depth;        // a point this deep behind a face is pushed out of it
     Real edge_depth;        // the same behind an edge or vertex, and for two edges
-    Real zone;              // features nearer than this, on either side, are looked at in each step
+    Real zone;  // features nearer than this, on either side, are looked at in each step; of a collider see face_zone
 };
 
 // Overlap is rare, the contact distance keeps surfaces apart. Deeper points may belong to the other side of a thin
 // body.
 inline constexpr Real face_depth_fraction = 0.25;  // of the edge
 inline constexpr Real edge_depth_fraction = 0.02;  // of the edge, or the contact distance
+
+/// A point of a collider that is nearer to a face than this, on either side, is looked at in each step, m.
+inline Real face_zone(const PairScale& scale) {
+    return std::max(scale.contact_distance, scale.face_depth);
+}
 
 PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second);
 

@@ -119,7 +119,9 @@ FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
     return best;
 }
 
-SurfacePoint local_distance(const ColliderGeometry& geometry, Index part, const Vec3& p) {
+}  // namespace
+
+SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& p, Index part) {
     const Vec3& size = geometry.size;
     switch (geometry.shape) {
         case ColliderShape::plane:
@@ -145,8 +147,6 @@ SurfacePoint local_distance(const ColliderGeometry& geometry, Index part, const 
     check_failed("a mesh collider has no analytic distance", __FILE__, __LINE__);
 }
 
-}  // namespace
-
 SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion,
                                   const Vec3& world_point) {
     return distance_to_collider_part(geometry, motion, no_index, world_point);
@@ -159,7 +159,7 @@ Index collider_part_count(ColliderShape shape) {
 SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
                                        const Vec3& world_point) {
     const Vec3 local = motion.rotation.transpose() * (world_point - motion.position);
-    const SurfacePoint found = local_distance(geometry, part, local);
+    const SurfacePoint found = local_distance(geometry, local, part);
     return {found.distance, motion.rotation * found.normal, motion.position + motion.rotation * found.point};
 }
 

@@ -24,6 +24,9 @@ Index collider_part_count(ColliderShape shape);
 SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
                                        const Vec3& world_point);
 
+/// The same in the frame of the collider. Of a part, or of all of it.
+SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& local_point, Index part = no_index);
+
 /// World box around a collider of finite size; without bounds for a plane.
 Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion);
 

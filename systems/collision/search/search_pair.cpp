@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "components/check.h"
+#include "systems/collision/colliders/search_collider.h"
 #include "systems/collision/inputs/contact_key.h"
-#include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/search/leaf_features.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
@@ -250,26 +250,6 @@ Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, cons
         return a.candidate.feature < b.candidate.feature;
     });
     return pair.travel_base + pair.margin;
-}
-
-Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found) {
-    const ColliderGeometry& geometry = inputs.collider.geometry[pair.second];
-    const RigidMotion& motion = inputs.collider.motion[pair.second];
-    const Index parts = collider_part_count(geometry.shape);
-    const Range vertices = inputs.body.vertices[pair.first];
-    const Real radius = pair.scale.zone + pair.margin;
-    Real nearest = infinite;
-    for (Index v = vertices.begin; v < vertices.end; ++v) {
-        const Vec3& point = inputs.position[inputs.surface.vertices.node[v]];
-        for (Index part = 0; part < parts; ++part) {
-            const Real distance = distance_to_collider_part(geometry, motion, part, point).distance;
-            nearest = distance < nearest ? distance : nearest;
-            if (!(distance < radius)) continue;
-            found.push_back({{point_collider_feature(v - vertices.begin, part), v, pair.second},
-                             pair.travel_base + distance - pair.scale.zone});
-        }
-    }
-    return pair.travel_base + std::max(pair.margin, nearest - pair.scale.zone);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The budgets of contact_reach.h must not change what is found: against the twin that searches everything in each step.
 #include <Eigen/Geometry>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <set>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr Real h = 2e-3;
 
-/// Balls and boxes in a room with a sphere, a bucket and a mesh in it; they drift at random, through each other, too.
+/// Balls and boxes in a room with a collider of every shape in it; they drift at random, through each other, too.
 struct Room {
     CollisionWorld w;
     test::Random random{41};
@@ -30,6 +31,11 @@ struct Room {
         const Index sphere = w.add_collider(ColliderShape::sphere, {0.4, 0, 0}, w.at({1, 0, 0.5}));
         w.collider.motion[sphere].velocity = {-0.5, 0.2, 0.1};
         w.add_collider(ColliderShape::bucket, {1.5, 0.5, 0.1}, w.at({0, 0, 0.2}));
+        w.add_collider(ColliderShape::box, {0.3, 0.2, 0.25}, w.at({-1, 0.5, 1}, random.rotation()));
+        const Index capsule =
+            w.add_collider(ColliderShape::capsule, {0.1, 0.4, 0}, w.at({0, -1, 1}, random.rotation()));
+        w.collider.motion[capsule].velocity = {0.2, 0.3, 0.1};
+        w.add_collider(ColliderShape::cylinder, {0.2, 0.3, 0}, w.at({0.5, 1, 1.4}, random.rotation()));
         const std::vector<Vec3> roof{{-2, -2, 2.2}, {2, -2, 2.2}, {2, 2, 2.2}, {-2, 2, 2.2}};
         w.add_kinematic(roof, {{{0, 2, 1}, no_index}, {{0, 3, 2}, no_index}}, 0.01);
         aim.assign(w.body.slot.size(), Vec3::Zero());
@@ -94,6 +100,7 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
     // Nothing keeps these bodies from going through each other: a pair that was apart once may not be now.
     thrifty.w.settings.continuous = thorough.w.settings.continuous = false;
     std::size_t contacts = 0, pressed = 0, passed = 0, differing_steps = 0;
+    std::array<std::size_t, 5> of_kind{};
     for (int step = 0; step < 600; ++step) {
         thrifty.steer(step);
         thorough.steer(step);
@@ -121,7 +128,8 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
         contacts += thorough.w.contacts.size();
         for (std::size_t i = 0; i < thorough.w.contacts.size(); ++i) {
             pressed += thorough.w.contacts.gap[i] <= 0;
-            passed += thorough.w.contacts.distance[i] < 0 && thorough.w.contacts.kind[i] != ContactKind::point_collider;
+            passed += thorough.w.contacts.distance[i] < 0 && thorough.w.contacts.kind[i] <= ContactKind::edge_edge;
+            ++of_kind[static_cast<std::size_t>(thorough.w.contacts.kind[i])];
         }
         thrifty.w.drift(h);
         thorough.w.drift(h);
@@ -130,6 +138,7 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
     CHECK(contacts > 10000);
     CHECK(pressed > 5000);
     CHECK(passed > 1000);
+    for (const std::size_t count : of_kind) CHECK(count > 500);
     // They must have saved something, too.
     CHECK(thrifty.w.search.broad_searches < 300);
     CHECK(thrifty.w.search.pair_searches * 3 < thorough.w.search.pair_searches);

@@ -1,0 +1,173 @@
+#include "systems/collision/colliders/collider_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "systems/collision/narrow/collider_distance.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
+
+// Points of a rim: the one that follows the face, then four at right angles.
+constexpr Index points_of_rim = 5;
+
+struct Rim {
+    Real radius;  // m
+    Real z;       // m
+};
+
+/// Rims that are convex: the inner one of a bucket touches by edges of bodies alone.
+Rim rim_of(const ColliderGeometry& geometry, Index rim) {
+    const Vec3& size = geometry.size;
+    if (geometry.shape == ColliderShape::bucket) return {size[0] + size[2], rim == 0 ? size[1] : -size[2]};
+    return {size[0], rim == 0 ? size[1] : -size[1]};
+}
+
+Vec3 rim_direction(Index point, const Vec3& normal) {
+    if (point > 0) return {point == 1 ? 1.0 : point == 3 ? -1.0 : 0.0, point == 2 ? 1.0 : point == 4 ? -1.0 : 0.0, 0};
+    const Vec3 flat(-normal[0], -normal[1], 0);
+    const Real length = flat.norm();
+    return length > 0 ? Vec3(flat / length) : Vec3(Vec3::UnitX());
+}
+
+/// How far a point may move and still be nearest to a flat side: `beside` m from where it ends, `above` m over it; the
+/// other side is `thickness` m behind it.
+Real within_side(Real beside, Real above, Real thickness) {
+    return std::min({beside, (beside + above) * std::sqrt(Real(0.5)), above + thickness / 2});
+}
+
+Index flat_place_count(ColliderShape shape) {
+    switch (shape) {
+        case ColliderShape::plane:
+            return 1;
+        case ColliderShape::box:
+            return 6;
+        case ColliderShape::cylinder:
+        case ColliderShape::bucket:
+            return 2;
+        case ColliderShape::sphere:
+        case ColliderShape::capsule:
+        case ColliderShape::mesh:
+            break;
+    }
+    return 0;
+}
+
+/// A convex shape around it.
+ColliderGeometry hull_of(const ColliderGeometry& geometry) {
+    if (geometry.shape != ColliderShape::bucket) return geometry;
+    const Vec3& size = geometry.size;
+    return {ColliderShape::cylinder, {size[0] + size[2], (size[1] + size[2]) / 2, 0}};
+}
+
+Vec3 hull_centre(const ColliderGeometry& geometry) {
+    if (geometry.shape != ColliderShape::bucket) return Vec3::Zero();
+    return {0, 0, (geometry.size[1] - geometry.size[2]) / 2};
+}
+
+}  // namespace
+
+Index collider_point_count(ColliderShape shape) {
+    switch (shape) {
+        case ColliderShape::sphere:
+            return 1;
+        case ColliderShape::capsule:
+            return 2;
+        case ColliderShape::box:
+            return 8;
+        case ColliderShape::cylinder:
+        case ColliderShape::bucket:
+            return 2 * points_of_rim;
+        case ColliderShape::plane:
+        case ColliderShape::mesh:
+            break;
+    }
+    return 0;
+}
+
+ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Vec3& normal) {
+    const Vec3& size = geometry.size;
+    if (geometry.shape == ColliderShape::sphere) return {Vec3::Zero(), size[0]};
+    if (geometry.shape == ColliderShape::capsule) return {Vec3(0, 0, k == 0 ? size[1] : -size[1]), size[0]};
+    if (geometry.shape == ColliderShape::box)
+        return {Vec3(k & 1 ? size[0] : -size[0], k & 2 ? size[1] : -size[1], k & 4 ? size[2] : -size[2]), 0};
+    const Rim rim = rim_of(geometry, k / points_of_rim);
+    return {rim.radius * rim_direction(k % points_of_rim, normal) + Vec3(0, 0, rim.z), 0};
+}
+
+bool collider_point_follows(ColliderShape shape, Index k) {
+    return (shape == ColliderShape::cylinder || shape == ColliderShape::bucket) && k % points_of_rim == 0;
+}
+
+Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& p) {
+    const Vec3& size = geometry.size;
+    switch (geometry.shape) {
+        case ColliderShape::plane:
+            return infinite;
+        case ColliderShape::box: {
+            const int axis = static_cast<int>(place) / 2;
+            const Real above = (place % 2 == 0 ? p[axis] : -p[axis]) - size[axis];
+            Real least = infinite;
+            for (int i = 0; i < 3; ++i)
+                if (i != axis) least = std::min(least, within_side(size[i] - std::abs(p[i]), above, 2 * size[axis]));
+            return least;
+        }
+        case ColliderShape::cylinder: {
+            const Real above = (place == 0 ? p[2] : -p[2]) - size[1];
+            return within_side(size[0] - std::sqrt(p[0] * p[0] + p[1] * p[1]), above, 2 * size[1]);
+        }
+        case ColliderShape::bucket: {
+            const Real r = std::sqrt(p[0] * p[0] + p[1] * p[1]), half = size[2] / 2;
+            if (place == 1) return within_side(size[0] + size[2] - r, -size[2] - p[2], size[2]);
+            const Real below_rim = size[1] - p[2];
+            return std::min(within_side(below_rim, size[0] - r, size[2]), p[2] + half);
+        }
+        case ColliderShape::sphere:
+        case ColliderShape::capsule:
+        case ColliderShape::mesh:
+            break;
+    }
+    return -infinite;
+}
+
+Index flat_place(const ColliderGeometry& geometry, const Vec3& point) {
+    Index best = no_index;
+    Real furthest = -infinite;
+    for (Index place = 0; place < flat_place_count(geometry.shape); ++place) {
+        const Real reach = flat_reach(geometry, place, point);
+        if (!(reach > furthest)) continue;
+        furthest = reach;
+        best = place;
+    }
+    return best;
+}
+
+Real flat_reach(const ColliderGeometry& geometry, std::span<const Vec3> points) {
+    Real best = -infinite;
+    for (Index place = 0; place < flat_place_count(geometry.shape); ++place) {
+        Real least = infinite;
+        for (const Vec3& p : points) least = std::min(least, flat_reach(geometry, place, p));
+        best = std::max(best, least);
+    }
+    return best;
+}
+
+HullTangent hull_tangent(const ColliderGeometry& geometry, const Vec3& at) {
+    const SurfacePoint found = local_distance(hull_of(geometry), at - hull_centre(geometry));
+    return {at, found.normal, found.distance};
+}
+
+Real hull_distance(const ColliderGeometry& geometry, std::span<const Vec3> points) {
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& p : points) middle += p / static_cast<Real>(points.size());
+    const HullTangent tangent = hull_tangent(geometry, middle);
+    Real least = infinite;
+    for (const Vec3& p : points) least = std::min(least, tangent.bound(p));
+    return least;
+}
+
+}  // namespace skerry

@@ -1,0 +1,183 @@
+#include "systems/collision/colliders/edge_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "systems/collision/inputs/contact_key.h"
+
+namespace skerry {
+
+namespace {
+
+// A slope of the distance along the edge below this is none: over the whole edge it changes the distance by a hundredth
+// of the contact distance that bodies have by default, 0.02 of an edge.
+constexpr Real flat_slope = 2e-4;
+
+// Beyond places where the slope becomes greater than this the edge is out of reach unless it turns.
+constexpr Real steep_slope = 0.05;
+
+// The end of a flat stretch, and a minimum, are found to this fraction of the edge.
+constexpr Real place_tolerance = 1e-10;
+
+// Points nearer to each other than this fraction of the edge are one.
+constexpr Real shortest_stretch = 0.1;
+
+// The wall of a bucket is not convex: an edge across its rim has two minima. They are looked for between this many
+// places.
+constexpr int wall_intervals = 16;
+
+/// The distance to the part at the places of an edge.
+class Along {
+public:
+    Along(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b)
+        : geometry_(geometry), part_(part), a_(a), edge_(b - a), length_(edge_.norm()) {}
+
+    Real length() const { return length_; }
+    SurfacePoint at(Real s) const { return local_distance(geometry_, a_ + s * edge_, part_); }
+    /// Change of the distance by way along the edge; -1 to 1.
+    Real slope(const SurfacePoint& found) const { return found.normal.dot(edge_) / length_; }
+    Real slope(Real s) const { return slope(at(s)); }
+
+    /// The minimum of a stretch, whose normal has no part along the edge: of a kink the one between those of its sides.
+    EdgePoint minimum(Real low, Real high) const {
+        EdgePoint found{0, 0.5 * (low + high), at(0.5 * (low + high))};
+        const SurfacePoint before = at(low), after = at(high);
+        const Real falls = slope(before), rises = slope(after);
+        if (std::abs(slope(found.on)) <= flat_slope || !(falls < 0 && rises > 0)) return found;
+        const Vec3 normal = (rises * before.normal - falls * after.normal) / (rises - falls);
+        const Real length = normal.norm();
+        if (length > 0) found.on.normal = normal / length;
+        return found;
+    }
+
+private:
+    const ColliderGeometry& geometry_;
+    const Index part_;
+    const Vec3 a_, edge_;
+    const Real length_;
+};
+
+/// `is_low` holds at `low` and below some place, and not at `high`: what is on both sides of that place.
+struct Bracket {
+    Real low, high;
+};
+
+Bracket close_in(Bracket on, auto&& is_low) {
+    while (on.high - on.low > place_tolerance) {
+        const Real middle = 0.5 * (on.low + on.high);
+        (is_low(middle) ? on.low : on.high) = middle;
+    }
+    return on;
+}
+
+/// The points of one interval in which the slope rises.
+class Stretch {
+public:
+    Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
+        : along_(along), interval_(interval), first_number_(first_number), contact_(contact) {}
+
+    void add_points() {
+        const bool falls = passes(-flat_slope), rises = passes(flat_slope);
+        const std::size_t none = contact_.count;
+        if (falls && rises)
+            add_minimum();
+        else if (falls)
+            add(0, first_place(flat_slope));
+        else if (rises)
+            add(1, last_place(flat_slope));
+        const Real low = contact_.count > none ? contact_.point[none].s : 1,
+                   high = contact_.count > none ? contact_.point[contact_.count - 1].s : 0;
+        if (passes(-steep_slope)) add_before(low, first_place(steep_slope));
+        if (passes(steep_slope)) add_behind(high, last_place(steep_slope));
+    }
+
+private:
+    bool passes(Real slope) const {
+        return along_.slope(interval_.low) < slope && along_.slope(interval_.high) > slope;
+    }
+
+    /// Where the distance no longer falls by more than `slope`, and where it begins to rise by more; on the flatter
+    /// side of a kink, whose normal holds along the stretch.
+    Real first_place(Real slope) const {
+        return close_in(interval_, [&](Real s) { return along_.slope(s) < -slope; }).high;
+    }
+    Real last_place(Real slope) const {
+        return close_in(interval_, [&](Real s) { return !(along_.slope(s) > slope); }).low;
+    }
+
+    void add_minimum() {
+        const Real first = first_place(flat_slope), last = last_place(flat_slope);
+        if (!(first < last)) {
+            const EdgePoint kink = along_.minimum(last, first);
+            push(0, kink.s, kink.on);
+        } else if (last - first < shortest_stretch) {
+            add(0, 0.5 * (first + last));
+        } else {
+            add(0, first);
+            add(1, last);
+        }
+    }
+    void add_before(Real other, Real s) {
+        if (other - s > shortest_stretch) add(2, s);
+    }
+    void add_behind(Real other, Real s) {
+        if (s - other > shortest_stretch) add(3, s);
+    }
+    void add(Index number, Real s) { push(number, s, along_.at(s)); }
+    void push(Index number, Real s, const SurfacePoint& on) {
+        contact_.point[contact_.count++] = {first_number_ + number, s, on};
+    }
+
+    const Along& along_;
+    const Bracket interval_;
+    const Index first_number_;
+    EdgeContact& contact_;
+};
+
+/// Calls `visit(low, high)` for each interval in which the slope rises past one of those that count. Returns
+/// edge_distance.
+Real scan(const Along& along, bool convex, auto&& visit) {
+    const int intervals = convex ? 1 : wall_intervals;
+    Real nearest = std::numeric_limits<Real>::infinity(), low = 0;
+    SurfacePoint before = along.at(0);
+    for (int i = 1; i <= intervals; ++i) {
+        const Real high = static_cast<Real>(i) / intervals;
+        const SurfacePoint after = along.at(high);
+        const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
+        // Of a convex part by the tangents at both ends, of any by the length in between.
+        const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
+                                             after.distance - std::max(Real(0), rises) * length)
+                                  : 0.5 * (before.distance + after.distance - length);
+        nearest = std::min(nearest, bound);
+        const auto passes = [&](Real slope) { return falls < slope && rises > slope; };
+        if (passes(-steep_slope) || passes(-flat_slope) || passes(flat_slope) || passes(steep_slope)) visit(low, high);
+        low = high;
+        before = after;
+    }
+    return nearest;
+}
+
+bool is_convex(const ColliderGeometry& geometry, Index part) {
+    return geometry.shape != ColliderShape::bucket || part == 0;
+}
+
+}  // namespace
+
+Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
+    return scan(Along(geometry, part, a, b), is_convex(geometry, part), [](Real, Real) {});
+}
+
+EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
+    const Along along(geometry, part, a, b);
+    EdgeContact contact;
+    Index next = 0;
+    contact.nearest = scan(along, is_convex(geometry, part), [&](Real low, Real high) {
+        constexpr Index numbers = contacts_of_edge / 2;
+        if (next < contacts_of_edge) Stretch(along, {low, high}, next, contact).add_points();
+        next += numbers;
+    });
+    return contact;
+}
+
+}  // namespace skerry

@@ -1,0 +1,16 @@
+// Which candidates of a body and an analytic collider are contacts of this step.
+#pragma once
+
+#include "components/contact_table.h"
+#include "components/pair_table.h"
+#include "components/range.h"
+#include "systems/collision/inputs/collision_inputs.h"
+
+namespace skerry {
+
+/// look_at_candidates of a pair with a collider. Returns infinity: its features are left out of find_crossings by
+/// distance.
+Real look_at_collider(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
+                      PairTable& pairs, Column<ContactRow>& found);
+
+}  // namespace skerry

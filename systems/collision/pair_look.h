@@ -1,0 +1,120 @@
+// What looking at candidates needs of their pair, whatever its kind.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "systems/collision/contact_rows.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/inputs/contact_reach.h"
+
+namespace skerry {
+
+// Candidates whose sleep is tested together, without a branch for each.
+inline constexpr Index candidates_at_once = 16;
+
+// Another triangle is nearer to a point only if it is by more than rounding.
+inline constexpr Real nearer_fraction = 1e-9;
+
+/// One pair in one step; contacts are appended to a list.
+class PairLook {
+public:
+    PairLook(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs, Index p,
+             Column<ContactRow>& found)
+        : inputs_(inputs),
+          settings_(settings),
+          h_(h),
+          key_(pairs.key[p]),
+          kind_(pairs.kind[p]),
+          first_(pairs.first[p]),
+          second_(pairs.second[p]),
+          closing_(pairs.closing[p]),
+          travel_bound_(pairs.travel_bound[p]),
+          travel_base_(pair_travel_base(inputs, pairs, p)),
+          candidates_(pairs.candidates[p].span()),
+          asleep_until_(pairs.asleep_until[p].span()),
+          found_(found) {}
+
+protected:
+    /// Calls `wake` for each candidate of a range that is awake; without budgets for all.
+    void for_each_awake(Range range, auto&& wake) const {
+        for (Index i = range.begin; i < range.end; i += candidates_at_once) {
+            const Index stop = std::min(i + candidates_at_once, range.end);
+            if (settings_.use_budgets && all_asleep(i, stop)) continue;
+            for (Index c = i; c < stop; ++c)
+                if (!settings_.use_budgets || !(travel_bound_ < asleep_until_[c])) wake(c);
+        }
+    }
+
+    /// What all candidates of the pair share, once one is awake. Returns whether it was not there yet.
+    bool prepare() {
+        if (prepared_) return false;
+        scale_ = pair_scale(inputs_, kind_, first_, second_);
+        surface_ = pair_surface(inputs_, kind_, first_, second_);
+        near_ = scale_.contact_distance + (closing_ >= 0 ? closing_ : 0);
+        return prepared_ = true;
+    }
+
+    bool within_reach(Real distance, Real relative_speed) const {
+        const Real gap = distance - scale_.contact_distance;
+        return gap <= reach(h_, relative_speed, settings_.gravity, scale_.contact_distance);
+    }
+
+    void add(const Candidate& candidate, ContactKind kind, const Stencil& stencil, const Vec3& point,
+             const Vec3& normal, Real distance, Real contact_distance, const Vec3& surface_velocity) {
+        if (!moves(stencil)) return;
+        ContactRow row = contact_row(inputs_, {key_, kind_, first_, second_}, candidate, kind, stencil, point, normal,
+                                     distance, contact_distance, surface_);
+        row.surface_velocity = surface_velocity;
+        found_.push_back(row);
+    }
+
+    /// Whether no other triangle among the candidates of the same point is nearer than `depth`: all that are as near
+    /// are candidates, in one row. `squared(i)`: distance of the point of candidate c to the triangle of candidate i.
+    bool is_nearest(Index c, Real depth, auto&& squared) const {
+        const std::uint64_t group = point_of_feature(candidates_[c].feature);
+        const Index count = static_cast<Index>(candidates_.size());
+        const Real limit = depth - nearer_fraction * (depth + scale_.edge);
+        const auto nearer = [&](Index i) { return limit > 0 && squared(i) < limit * limit; };
+        for (Index i = c - 1; i >= 0 && point_of_feature(candidates_[i].feature) == group; --i)
+            if (nearer(i)) return false;
+        for (Index i = c + 1; i < count && point_of_feature(candidates_[i].feature) == group; ++i)
+            if (nearer(i)) return false;
+        return true;
+    }
+
+    const CollisionInputs& inputs_;
+    const CollisionSettings& settings_;
+    const Real h_;
+    const std::uint64_t key_;
+    const PairKind kind_;
+    const Index first_, second_;
+    const Real closing_, travel_bound_, travel_base_;
+    std::span<const Candidate> candidates_;
+    std::span<Real> asleep_until_;
+    PairScale scale_;
+    Real near_ = 0;
+
+private:
+    bool all_asleep(Index begin, Index end) const {
+        const Real* const until = asleep_until_.data();
+        bool awake = false;
+#pragma omp simd reduction(| : awake)
+        for (Index i = begin; i < end; ++i) awake |= !(travel_bound_ < until[i]);
+        return !awake;
+    }
+
+    bool moves(const Stencil& stencil) const {
+        for (std::size_t a = 0; a < 4; ++a)
+            if (stencil.weight[a] != 0 && inputs_.inverse_mass[stencil.node[a]] > 0) return true;
+        return false;
+    }
+
+    Column<ContactRow>& found_;
+    SurfaceProperties surface_;
+    bool prepared_ = false;
+};
+
+}  // namespace skerry
