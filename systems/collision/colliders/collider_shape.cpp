@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/tree/box.h"
 
 namespace skerry {
 
 namespace {
-
-constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
 // Points of a rim: the one that follows the face, then four at right angles.
 constexpr Index points_of_rim = 5;

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/tree/box.h"
 
 namespace skerry {
 
 namespace {
-
-constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
 class ColliderSearch {
 public:
