@@ -18,8 +18,8 @@ struct PairToSearch {
 };
 
 /// Lists the near features of a pair in feature order, each once: points against triangles both ways and edges against
-/// edges (by two trees whose boxes fit the present positions), or against a collider (search_collider). In a body's pair
-/// with itself features that share a node are left out, and those that are nearer than the contact distance at
+/// edges (by two trees whose boxes fit the present positions), or against a collider (search_collider). In a body's
+/// pair with itself features that share a node are left out, and those that are nearer than the contact distance at
 /// rest. Returns until which travel_bound the list is complete.
 Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
                  Column<FoundCandidate>& found);
