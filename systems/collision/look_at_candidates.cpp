@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "systems/collision/colliders/look_at_collider.h"
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/look_at_collider.h"
 #include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/edge_edge_contact.h"
 #include "systems/collision/narrow/point_triangle_contact.h"

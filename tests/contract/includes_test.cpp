@@ -37,12 +37,13 @@ std::optional<Place> place_of(const std::string& path) {
 /// Folders within a folder stand on floors of their own; what lies beside them, not in one, uses them all.
 int inner_floor(const std::string& path) {
     static const std::vector<Place> places{
-        {"systems/collision/inputs/", 1},  {"systems/collision/tree/", 1},     {"systems/collision/narrow/", 2},
-        {"systems/collision/overlap/", 3}, {"systems/collision/search/", 3},   {"systems/dynamics/kinds/", 1},
-        {"systems/dynamics/elements/", 2}, {"systems/dynamics/stability/", 3}, {"systems/dynamics/motion/", 4},
-        {"systems/dynamics/checks/", 5},   {"systems/dynamics/clusters/", 4},  {"systems/solver/inputs/", 1},
-        {"systems/solver/local/", 2},      {"systems/solver/operators/", 3},   {"systems/solver/methods/", 4},
-        {"systems/solver/lanes/", 5},      {"systems/solver/coloured/", 5},    {"systems/solver/regions/", 6},
+        {"systems/collision/inputs/", 1},    {"systems/collision/tree/", 1},    {"systems/collision/narrow/", 2},
+        {"systems/collision/colliders/", 3}, {"systems/collision/overlap/", 4}, {"systems/collision/search/", 4},
+        {"systems/dynamics/kinds/", 1},      {"systems/dynamics/elements/", 2}, {"systems/dynamics/stability/", 3},
+        {"systems/dynamics/motion/", 4},     {"systems/dynamics/checks/", 5},   {"systems/dynamics/clusters/", 4},
+        {"systems/solver/inputs/", 1},       {"systems/solver/local/", 2},      {"systems/solver/operators/", 3},
+        {"systems/solver/methods/", 4},      {"systems/solver/lanes/", 5},      {"systems/solver/coloured/", 5},
+        {"systems/solver/regions/", 6},
     };
     constexpr int top = 100;
     for (const Place& place : places)

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "components/check.h"
-#include "systems/collision/colliders/search_collider.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/search/leaf_features.h"
+#include "systems/collision/search/search_collider.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
 #include "systems/geometry/closest_lanes.h"

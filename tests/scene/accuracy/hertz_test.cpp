@@ -85,11 +85,16 @@ Pressed press(int fine, ElementKind element) {
         const Real sunk = start - world.pose(world.colliders()[0]).position.z();
         Real force = 0, moment = 0, middle = 0;
         for (const Contact& contact : world.contacts()) {
-            const std::size_t n = static_cast<std::size_t>(contact.node[0]);
             const Real push = contact.impulse.norm() / step;
+            Vec3 place = Vec3::Zero();  // on a node, an edge or a face
+            for (std::size_t part = 0; part < 4; ++part) {
+                if (contact.weight[part] == 0) continue;
+                const std::size_t n = static_cast<std::size_t>(contact.node[part]);
+                place += contact.weight[part] * mesh.nodes[n];
+                if (mesh.nodes[n].norm() < a / fine / 2) middle += contact.weight[part] * push / areas[n];
+            }
             force += push;
-            moment += push * mesh.nodes[n].squaredNorm();
-            if (mesh.nodes[n].norm() < a / fine / 2) middle = push / areas[n];
+            moment += push * place.squaredNorm();
         }
         // The approach of a half space: what lies beyond the anchor gives way as under a force at a point (Boussinesq).
         const Real moved = world.positions(ground)[anchor].z() - mesh.nodes[anchor].z();

@@ -1,4 +1,4 @@
-#include "systems/collision/colliders/look_at_collider.h"
+#include "systems/collision/look_at_collider.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
