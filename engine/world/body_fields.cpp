@@ -43,7 +43,7 @@ std::vector<Mat3> World::stress(BodyHandle body) const {
 
 std::vector<Mat3> World::strain(BodyHandle body) const {
     return tetrahedron_field(state_->model, static_cast<std::size_t>(state_->model.row(body, "strain")),
-                             kernels().green_strain, kernels().strain_of_tetrahedra);
+                             kernels().element_strains, kernels().strain_of_tetrahedra);
 }
 
 std::vector<Mat3> World::node_stress(BodyHandle body) const {

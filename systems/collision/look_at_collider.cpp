@@ -72,7 +72,7 @@ private:
 
     void face(Index c, const Candidate& candidate) {
         const auto& node = inputs_.surface.triangles.node[candidate.first];
-        const Face corner = face_of(candidate.first);
+        const LocalFace corner = face_of(candidate.first);
         const Index k = first_local(candidate.feature);
         const FaceContact contact = face_contact(geometry_, k, corner);
         const Real flat = flat_reach(geometry_, corner);
@@ -92,12 +92,12 @@ private:
     /// As of two bodies: the point may be in front of the far side of a thin part, or nearer to another face.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return depth <= scale_.face_depth && is_nearest(c, depth, [&](Index i) {
-                   const Face other = face_of(candidates_[i].first);
+                   const LocalFace other = face_of(candidates_[i].first);
                    return closest_point_on_triangle(point, other[0], other[1], other[2]).distance_squared;
                });
     }
 
-    Face face_of(Index triangle) const {
+    LocalFace face_of(Index triangle) const {
         const auto& node = inputs_.surface.triangles.node[triangle];
         return {local(node[0]), local(node[1]), local(node[2])};
     }

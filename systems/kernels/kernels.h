@@ -33,7 +33,7 @@ struct Kernels {
     decltype(&skerry::elastic_energy) elastic_energy;
     decltype(&skerry::elastic_power) elastic_power;
     decltype(&skerry::cauchy_stress) cauchy_stress;
-    decltype(&skerry::green_strain) green_strain;
+    decltype(&skerry::element_strains) element_strains;
     decltype(&skerry::stress_of_tetrahedra) stress_of_tetrahedra;
     decltype(&skerry::strain_of_tetrahedra) strain_of_tetrahedra;
     decltype(&skerry::means_of_nodes) means_of_nodes;

@@ -54,7 +54,7 @@ void set_collision(WorldState& world, const RowPair& pair, bool on) {
         look_for_overlaps(model, pair.first);
     } else {
         disabled.push_back(key);
-        std::ranges::rotate(disabled.span().subspan(at), disabled.span().end() - 1);
+        std::rotate(disabled.begin() + static_cast<std::ptrdiff_t>(at), disabled.end() - 1, disabled.end());
     }
     look_afresh(world);
 }

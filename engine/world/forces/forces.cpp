@@ -19,17 +19,17 @@ ForceReport report_of(const ForceLedger& ledger, const ForceLedger::Peak& peak) 
     return report;
 }
 
-enum class Side { first, second };
+enum class PairSide { first, second };
 
-void add(const ContactSums& sums, Side side, ForceReport& report) {
-    const Real sign = side == Side::first ? 1 : -1;
+void add(const ContactSums& sums, PairSide side, ForceReport& report) {
+    const Real sign = side == PairSide::first ? 1 : -1;
     report.impulse += sign * sums.impulse;
-    report.moment_impulse += side == Side::first ? sums.first_moment : sums.second_moment;
+    report.moment_impulse += side == PairSide::first ? sums.first_moment : sums.second_moment;
     report.friction_impulse += sign * sums.friction;
     report.pressing_impulse += sums.pressing;
 }
 
-ForceReport pair_report(const ForceLedger& ledger, const PairKey& key, Side side) {
+ForceReport pair_report(const ForceLedger& ledger, const PairKey& key, PairSide side) {
     for (const ForceLedger::PairRow& row : ledger.pairs())
         if (row.key == key) {
             ForceReport report = report_of(ledger, row.peak);
@@ -95,7 +95,7 @@ ForceReport Forces::on(BodyHandle body) const {
         if (is_first && is_second)
             report.pressing_impulse += pair.sums.pressing;
         else if (is_first || is_second)
-            add(pair.sums, is_first ? Side::first : Side::second, report);
+            add(pair.sums, is_first ? PairSide::first : PairSide::second, report);
     }
     return report;
 }
@@ -106,7 +106,7 @@ ForceReport Forces::on(ColliderHandle collider) const {
     ForceReport report = report_of(ledger, ledger.collider(collider.slot));
     for (const ForceLedger::PairRow& pair : ledger.pairs())
         if (!pair.key.bodies && pair.key.second == collider.slot) {
-            add(pair.sums, Side::second, report);
+            add(pair.sums, PairSide::second, report);
             report.unknown_seconds = std::max(report.unknown_seconds, unknown(ledger, pair.key));
         }
     return report;
@@ -117,7 +117,7 @@ ForceReport Forces::on(BodyHandle body, BodyHandle by) const {
     (void)world_->model.row(by, "forces");
     const bool is_first = body.slot <= by.slot;
     const PairKey key{true, is_first ? body.slot : by.slot, is_first ? by.slot : body.slot};
-    ForceReport report = pair_report(world_->record.forces, key, is_first ? Side::first : Side::second);
+    ForceReport report = pair_report(world_->record.forces, key, is_first ? PairSide::first : PairSide::second);
     report.unknown_seconds = unknown(world_->record.forces, key);
     if (body == by) {
         report.impulse = report.moment_impulse = report.friction_impulse = Vec3::Zero();
@@ -130,7 +130,7 @@ ForceReport Forces::on(BodyHandle body, ColliderHandle by) const {
     (void)world_->model.row(body, "forces");
     (void)world_->model.row(by, "forces");
     const PairKey key{false, body.slot, by.slot};
-    ForceReport report = pair_report(world_->record.forces, key, Side::first);
+    ForceReport report = pair_report(world_->record.forces, key, PairSide::first);
     report.unknown_seconds = unknown(world_->record.forces, key);
     return report;
 }
@@ -139,7 +139,7 @@ ForceReport Forces::on(ColliderHandle collider, BodyHandle by) const {
     (void)world_->model.row(by, "forces");
     (void)world_->model.row(collider, "forces");
     const PairKey key{false, by.slot, collider.slot};
-    ForceReport report = pair_report(world_->record.forces, key, Side::second);
+    ForceReport report = pair_report(world_->record.forces, key, PairSide::second);
     report.unknown_seconds = unknown(world_->record.forces, key);
     return report;
 }

@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-FaceContact face_contact(const ColliderGeometry& geometry, Index k, const Face& face) {
+FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalFace& face) {
     const Vec3 area = (face[1] - face[0]).cross(face[2] - face[0]);
     const Real length = area.norm();
     FaceContact contact;

@@ -10,7 +10,7 @@
 namespace skerry {
 
 /// The corners of a triangle in the frame of the collider, counter-clockwise seen from outside of the body.
-using Face = std::array<Vec3, 3>;
+using LocalFace = std::array<Vec3, 3>;
 
 struct FaceContact {
     Real nearest;           // m: no point of the face is nearer to the collider's point than this, nor to what moves it
@@ -21,6 +21,6 @@ struct FaceContact {
     PointTriangle closest;  // to the point's middle
 };
 
-FaceContact face_contact(const ColliderGeometry& geometry, Index k, const Face& face);
+FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalFace& face);
 
 }  // namespace skerry

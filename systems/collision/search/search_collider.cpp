@@ -82,7 +82,7 @@ private:
         const std::size_t first = found_.size();
         for (Index t = triangles.begin; t < triangles.end; ++t) {
             const auto& node = table.node[t];
-            const Face face{local(node[0]), local(node[1]), local(node[2])};
+            const LocalFace face{local(node[0]), local(node[1]), local(node[2])};
             if (!(hull_distance(geometry_, face) < radius)) continue;
             const Real flat = flat_reach(geometry_, face);
             if (!(flat < pair_.margin)) continue;

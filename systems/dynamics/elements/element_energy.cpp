@@ -101,7 +101,8 @@ void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const 
                    });
 }
 
-void green_strain(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<Mat3> strain) {
+void element_strains(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                     std::span<Mat3> strain) {
     SKERRY_CHECK(strain.size() >= static_cast<std::size_t>(blocks.size()) * element_lanes);
     for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
         const LaneMat3<Real8> F = deformation_gradient(elements.nodes_of(b), position);

@@ -21,7 +21,8 @@ Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const 
 void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<Mat3> stress);
 
 /// Green's strain (F^T F - I) / 2 of each element, in the same order. What is left over has none.
-void green_strain(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<Mat3> strain);
+void element_strains(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                     std::span<Mat3> strain);
 
 /// Pa, of a Cauchy stress.
 Real von_mises(const Mat3& cauchy);

@@ -40,7 +40,7 @@ Sampled sample_edge(const ColliderGeometry& geometry, Index part, const Vec3& a,
     return sampled;
 }
 
-Real sample_face(const ColliderGeometry& geometry, const Face& face) {
+Real sample_face(const ColliderGeometry& geometry, const LocalFace& face) {
     constexpr int cuts = 40;
     Real least = std::numeric_limits<Real>::infinity();
     for (int i = 0; i <= cuts; ++i)
@@ -98,8 +98,8 @@ TEST_CASE("where a collider is flat no place of a segment or triangle is nearer 
         std::size_t flat = 0;
         for (int trial = 0; trial < 20000; ++trial) {
             const Vec3 middle = 0.9 * random.vector();
-            const Face face{middle + 0.2 * random.vector(), middle + 0.2 * random.vector(),
-                            middle + 0.2 * random.vector()};
+            const LocalFace face{middle + 0.2 * random.vector(), middle + 0.2 * random.vector(),
+                                 middle + 0.2 * random.vector()};
             const Real reach = flat_reach(shape.geometry, face);
             if (!(reach >= 0)) continue;
             ++flat;
@@ -109,7 +109,7 @@ TEST_CASE("where a collider is flat no place of a segment or triangle is nearer 
             if (corners > -0.02) CHECK(sample_face(shape.geometry, face) >= corners - 1e-12);
 
             // and stays so while no corner moves further
-            Face moved = face;
+            LocalFace moved = face;
             for (Vec3& p : moved) p += 0.999 * reach * random.vector().normalized();
             CHECK(flat_reach(shape.geometry, moved) >= 0);
         }
@@ -118,7 +118,8 @@ TEST_CASE("where a collider is flat no place of a segment or triangle is nearer 
         CHECK((flat == 0) == round);
     }
     const ColliderGeometry plane{ColliderShape::plane, Vec3::Zero()};
-    CHECK(flat_reach(plane, Face{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitZ()}) == std::numeric_limits<Real>::infinity());
+    CHECK(flat_reach(plane, LocalFace{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitZ()}) ==
+          std::numeric_limits<Real>::infinity());
 }
 
 TEST_CASE("the distance of a hull is a bound of that of each of its places", "[unit]") {
@@ -128,8 +129,8 @@ TEST_CASE("the distance of a hull is a bound of that of each of its places", "[u
         Real tightest = std::numeric_limits<Real>::infinity();
         for (int trial = 0; trial < 2000; ++trial) {
             const Vec3 middle = 1.5 * random.vector();
-            const Face face{middle + 0.3 * random.vector(), middle + 0.3 * random.vector(),
-                            middle + 0.3 * random.vector()};
+            const LocalFace face{middle + 0.3 * random.vector(), middle + 0.3 * random.vector(),
+                                 middle + 0.3 * random.vector()};
             const Real bound = hull_distance(shape.geometry, face), least = sample_face(shape.geometry, face);
             CHECK(bound <= least + 1e-12);
             tightest = std::min(tightest, least - bound);
@@ -147,8 +148,8 @@ TEST_CASE("a face meets the deepest point of a collider behind it, or an edge or
         std::size_t faces = 0;
         for (int trial = 0; trial < 3000; ++trial) {
             const Vec3 middle = 1.5 * random.vector();
-            const Face face{middle + 0.5 * random.vector(), middle + 0.5 * random.vector(),
-                            middle + 0.5 * random.vector()};
+            const LocalFace face{middle + 0.5 * random.vector(), middle + 0.5 * random.vector(),
+                                 middle + 0.5 * random.vector()};
             const Real truth = sample_face(shape.geometry, face);
             if (truth < 0.01) continue;  // overlap: other rules
             Real found = std::numeric_limits<Real>::infinity(), of_faces = found;
