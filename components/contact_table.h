@@ -17,7 +17,8 @@ enum class ContactState : std::uint8_t { open, stick, slide };
 /// Names the features that touch, across steps. `pair` holds what touches: bits 63..62 the kind of pair (0 two bodies,
 /// 1 body and collider), then the two handle slots (31 bits each). `feature` holds which parts: bit 63 set for
 /// edge-edge, bit 62 says which of the two bodies the point or first edge belongs to, then the two local feature
-/// numbers (31 bits each); with an analytic collider bit 63 an edge, bit 62 a face. Unique for a body's life.
+/// numbers (31 bits each); with an analytic collider bit 63 says an edge, bit 62 a face of the body (contact_key.h).
+/// Both are unique in a world and survive the removal of other bodies.
 struct ContactKey {
     std::uint64_t pair;
     std::uint64_t feature;

@@ -75,7 +75,12 @@ Bracket close_in(Bracket on, auto&& is_low) {
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
-        : along_(along), interval_(interval), first_number_(first_number), contact_(contact) {}
+        : along_(along),
+          interval_(interval),
+          slope_low_(along.slope(interval.low)),
+          slope_high_(along.slope(interval.high)),
+          first_number_(first_number),
+          contact_(contact) {}
 
     void add_points() {
         const bool falls = passes(-flat_slope), rises = passes(flat_slope);
@@ -93,9 +98,7 @@ public:
     }
 
 private:
-    bool passes(Real slope) const {
-        return along_.slope(interval_.low) < slope && along_.slope(interval_.high) > slope;
-    }
+    bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
     /// Where the distance no longer falls by more than `slope`, and where it begins to rise by more; on the flatter
     /// side of a kink, whose normal holds along the stretch.
@@ -131,6 +134,7 @@ private:
 
     const Along& along_;
     const Bracket interval_;
+    const Real slope_low_, slope_high_;
     const Index first_number_;
     EdgeContact& contact_;
 };

@@ -91,6 +91,32 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
     }
 }
 
+TEST_CASE("an edge that lies along a side and reaches beyond it is held where it leaves the side", "[unit]") {
+    const ColliderGeometry box{ColliderShape::box, {0.5, 0.5, 0.5}};
+    struct Case {
+        Real rise;  // m, of the end beyond the box over the one that is over its face
+        Index number;
+    };
+    for (const Case& c : {Case{0, 1}, Case{0.01, 3}}) {
+        INFO(c.rise);
+        const EdgeContact contact = edge_contact(box, 0, {0, 0, 0.51}, {1, 0, 0.51 + c.rise});
+        REQUIRE(contact.count == 1);
+        CHECK(contact.point[0].number == c.number);
+        // and where it has risen by the slope that counts, just beyond the corner
+        CHECK(contact.point[0].s > 0.499);
+        CHECK(contact.point[0].s < 0.502);
+        CHECK(contact.point[0].on.normal[2] > 0.99);
+    }
+    CHECK(edge_contact(box, 0, {0, 0, 0.51}, {1, 0, 0.71}).count == 0);  // it rises by more than that at once
+    CHECK(edge_contact(box, 0, {-0.4, 0, 0.51}, {0.4, 0, 0.51}).count == 0);
+
+    // over all of the face: both ends of the stretch
+    const EdgeContact across = edge_contact(box, 0, {-1, 0, 0.51}, {1, 0, 0.51});
+    REQUIRE(across.count == 2);
+    CHECK(across.point[0].s == Approx(0.25).margin(1e-3));
+    CHECK(across.point[1].s == Approx(0.75).margin(1e-3));
+}
+
 TEST_CASE("where a collider is flat no place of a segment or triangle is nearer than its corners", "[unit]") {
     test::Random random{11};
     for (const Named& shape : shapes) {
