@@ -68,7 +68,8 @@ private:
     FunctionRef<void(Index)> body_;
     Index count_;
     const AccessWatch* watch_;
-    std::atomic<Index> next_{0};
+    // All workers write it, for each block: on a cache line of its own, away from what they only read.
+    alignas(64) std::atomic<Index> next_{0};
     FirstError error_;
 };
 

@@ -6,6 +6,7 @@
 #include "components/check.h"
 #include "jobs/backends.h"
 #include "jobs/pause.h"
+#include "jobs/phase_runner.h"
 
 namespace skerry {
 
@@ -26,7 +27,16 @@ void Team::wait_until(Ready&& ready) const {
 }
 
 void Team::gather(Executor& executor, FunctionRef<void()> work) {
-    SKERRY_CHECK(!together_);
+    SKERRY_CHECK(!together_ && !runner_);
+    if (auto* const runner = dynamic_cast<PhaseRunner*>(&executor)) {
+        struct Turn {
+            Team& team;
+            ~Turn() { team.runner_ = nullptr; }
+        } const turn{*this};
+        runner_ = runner;
+        work();
+        return;
+    }
     const int workers = executor.worker_count();
     if (workers <= 1) {
         work();
@@ -60,6 +70,10 @@ void Team::run_blocks(Index count, FunctionRef<void(Index)> body) {
 void Team::run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index)> body) {
     const Index count = phase_offset.empty() ? 0 : phase_offset.back();
     if (count == 0) return;
+    if (runner_) {
+        runner_->run_phases(phase_offset, body);
+        return;
+    }
     FirstError error;
     if (!together_ || count == 1) {
         for (Index block = 0; block < count; ++block) {

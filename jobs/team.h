@@ -14,6 +14,7 @@
 namespace skerry {
 
 class FirstError;
+class PhaseRunner;
 
 /// One thread leads and the others wait, spinning, for what it hands out. Nobody is needed: a worker that is busy
 /// elsewhere, or that the system has put aside, comes late or never, and what it would have done is done by those who
@@ -21,7 +22,8 @@ class FirstError;
 /// Memory is kept between calls.
 class Team {
 public:
-    /// Calls work() once; run_phases called in it may use all workers of the executor. Not within itself.
+    /// Calls work() once; run_phases called in it may use all workers of the executor, or is left to it if it is a
+    /// PhaseRunner. Not within itself.
     void gather(Executor& executor, FunctionRef<void()> work);
 
     /// Calls body(block) once for every block 0 .. phase_offset.back() - 1, after all blocks of earlier phases have
@@ -57,6 +59,7 @@ private:
     std::unique_ptr<std::atomic<std::uint64_t>[]> claim_;  // by block: number of the last job in which it was taken
     Index claim_count_ = 0;
     bool together_ = false, may_spin_ = true;
+    PhaseRunner* runner_ = nullptr;  // of this gathering, if it has one
 
     alignas(line) std::atomic<std::uint64_t> open_{0};  // number of the job that may be entered, 0: none
     std::atomic<bool> dismissed_{true};

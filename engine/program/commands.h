@@ -49,6 +49,7 @@ int run(const RunOptions& options);
 
 struct InspectOptions {
     std::filesystem::path file;
+    std::vector<std::string> assignments;  // PLACE=VALUE, of a scene
     bool json = false;
     std::filesystem::path repair;  // where a better mesh goes; empty: none is made
     Real tolerance = 2e-3;         // of the bounding box's diagonal: how far its surface may be from the old one
@@ -63,5 +64,19 @@ struct SolveOptions {
     bool json = false;
 };
 int solve(const SolveOptions& options);
+
+struct SweepOptions {
+    std::filesystem::path cases;
+    std::filesystem::path out;    // folder of the results; empty: out/NAME of the file of cases
+    std::optional<int> jobs;      // cases at a time
+    std::optional<int> rank, of;  // of several processes that share the cases
+    bool probes = false;          // the series of each case, beside its result
+    bool redo = false;            // results of other cases may be replaced
+    bool dry_run = false;         // only lists the cases
+    bool table = false;           // only makes the table of what is there
+    bool strict = false;          // cases that fail, are refused or doubted are a failure
+    bool quiet = false;
+};
+int sweep(const SweepOptions& options);
 
 }  // namespace skerry

@@ -323,7 +323,10 @@ const BodyPlan& body_to_mend(const ScenePlan& plan, const InspectOptions& option
 }
 
 int inspect_scene(const InspectOptions& options) {
-    const ScenePlan plan = plan_scene(options.file);
+    RunOptions run;
+    run.scene = options.file;
+    run.overrides.assignments = options.assignments;
+    const ScenePlan plan = plan_scene(options.file, run.overrides);
     if (!options.repair.empty()) {
         const BodyPlan& body = body_to_mend(plan, options);
         return inspect_repair({.mesh = plan.meshes[body.mesh],
@@ -338,8 +341,6 @@ int inspect_scene(const InspectOptions& options) {
     const std::vector<BodyKindReport> kinds = body_kinds(plan, true);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
-    RunOptions run;
-    run.scene = options.file;
     const double steps = course_of(scene, run).steps(scene.world);
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
@@ -409,7 +410,16 @@ int inspect_scene(const InspectOptions& options) {
 
 int inspect(const InspectOptions& options) {
     if (!options.repair.empty()) check_repair(options);
-    return options.file.extension() == ".json" ? inspect_scene(options) : inspect_mesh(options);
+    if (options.file.extension() == ".json") return inspect_scene(options);
+    if (!options.assignments.empty())
+        Complaint{.file = options.file.string(),
+                  .object = "--set",
+                  .field = {},
+                  .found = "a mesh",
+                  .expected = "a scene (.json) whose values are changed",
+                  .hint = {}}
+            .raise();
+    return inspect_mesh(options);
 }
 
 }  // namespace skerry

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/program/commands.h"
+#include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
 #include "skerry/instruction_set.h"
 
@@ -23,6 +24,7 @@ const char* const general_examples = R"(Examples:
   skerry inspect scenes/table.json                         how large, how long the steps, what looks wrong
   skerry inspect bunny.msh                                 sizes, quality and faults of a mesh
   skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
+  skerry sweep examples/incline_sweep.json                 a scene with many values, a case a core
 
 Exit codes: 0 ok, 1 the simulation failed, a problem did not converge, or a --strict run is doubted, 2 bad input, 3 an
 output of a run could not be written, 128 + n stopped by signal n.
@@ -48,10 +50,41 @@ const char* const inspect_examples = R"(Examples:
   skerry inspect bunny.msh --repair better.msh --tolerance 0      new tetrahedra inside, the surface as it is
   skerry inspect scene.json --repair arm.msh --body arm    the mesh of one body, judged with its own material
   skerry inspect scenes/skittles.json --json
+  skerry inspect scenes/skittles.json --set materials.skittle.young_modulus=6e5
 
 --repair fills the surface anew (Netgen), once as it is and once without its needles and caps, and writes what has the
 longer step. It ends with 1, and writes nothing, when no step is 5 % longer or the surface moves by more than the
 tolerance.)";
+
+const char* const sweep_examples = R"(CASES is JSON: a scene, and the values that it has in turn:
+
+  {"scene": "incline.json",
+   "set": {"seconds": 1},
+   "grid": [{"name": "mu", "set": ["materials.block.friction", "colliders[0].friction"], "values": [0.2, 0.3, 0.4]},
+            {"set": "materials.block.E", "from": 1e4, "to": 1e6, "count": 5, "spacing": "log"}]}
+
+All combinations of a "grid"; or a "list" of cases, each with values by place; or "random" ones:
+
+   "random": {"seed": 1, "count": 100, "parameters": [
+       {"set": "materials.block.E", "distribution": "log_uniform", "from": 1e4, "to": 1e6},
+       {"set": "bodies[0].position[2]", "distribution": "normal", "mean": 0.05, "deviation": 0.01}]}
+
+Places are those of `skerry run --set`. docs/sweep.md says more, `skerry schema --sweep` all.
+
+Examples:
+  skerry sweep cases.json --dry-run                        which cases there are, and which of them are done
+  skerry sweep cases.json --out results                    as many at a time as there are cores
+  skerry sweep cases.json --out results                    again, after Ctrl-C: goes on with those that are left
+  mpirun -n 64 skerry sweep cases.json --out results       process I of N runs cases I, I + N, ...; so do
+  srun -n 64 skerry sweep cases.json --out results         tasks and arrays (sbatch --array=0-63) of SLURM, and
+  skerry sweep cases.json --out results --rank 0 --of 2    processes that were started by hand
+  skerry sweep cases.json --out results --table            the table of what is there
+
+Results: case_000000.json and so on, one for each case, which appear when they are whole; with the last of all cases
+sweep.csv, a table for spreadsheets, and sweep.html, a page with the same table and a plot. A case that is refused or
+fails is a result, too; one that was killed is none, and is run again.
+Exit codes: 0 all cases of this process have a result, 1 one of them has none (--strict: or one failed, was refused or
+is doubted), 2 bad input, 3 a file could not be written, 128 + n stopped by signal n.)";
 
 /// Numbers that make sense as a length, a time or a tolerance.
 const CLI::Validator positive_number(
@@ -96,6 +129,15 @@ CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Re
         ->check(positive_number);
 }
 
+void add_set(CLI::App& command, std::vector<std::string>& assignments) {
+    command
+        .add_option(
+            "--set", assignments,
+            "change a value of the scene: bodies[0].position=[0,0,1], materials.rubber.E=2e5; may be given again")
+        ->type_name("PLACE=VALUE")
+        ->allow_extra_args(false);
+}
+
 void add_run(CLI::App& app, RunOptions& options) {
     CLI::App& command = *app.add_subcommand("run", "Simulate a scene");
     command.footer(run_examples);
@@ -107,12 +149,7 @@ void add_run(CLI::App& app, RunOptions& options) {
             "--threads", [&options](const int& count) { options.overrides.threads = count; },
             "worker threads; 0: as many as there are")
         ->check(CLI::Range(0, 1024));
-    command
-        .add_option(
-            "--set", options.overrides.assignments,
-            "change a value of the scene: bodies[0].position=[0,0,1], materials.rubber.E=2e5; may be given again")
-        ->type_name("PLACE=VALUE")
-        ->allow_extra_args(false);
+    add_set(command, options.overrides.assignments);
     command.add_option("--out", options.out,
                        "folder for ParaView frames (SCENE.pvd), in place of those of an earlier run");
     command.add_option("--page", options.page, "HTML file that plays the run in a browser, offline");
@@ -195,6 +232,7 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     CLI::App& command = *app.add_subcommand("inspect", "Say what is in a mesh or a scene, and what looks wrong");
     command.footer(inspect_examples);
     command.add_option("FILE", options.file, "a mesh (.msh, .vtk, .node, .ele) or a scene (.json)")->required();
+    add_set(command, options.assignments);
     command.add_flag("--json", options.json, "print JSON");
     CLI::Option* repair =
         command.add_option("--repair", options.repair, "write a mesh (.msh) of the same body whose step is longer");
@@ -209,6 +247,33 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
                     "of a scene, the body whose mesh is mended; by default the one that bounds the step")
         ->needs(repair);
     command.add_flag("--overwrite", options.overwrite, "--repair may replace the file that is read")->needs(repair);
+}
+
+/// A whole number that stays unset unless given.
+void add_count(CLI::App& app, const std::string& flag, std::optional<int>& target, int least,
+               const std::string& meaning) {
+    constexpr int most = 2147483647;
+    app.add_option_function<int>(
+           flag, [&target](const int& value) { target = value; }, meaning)
+        ->check(CLI::Range(least, most));
+}
+
+void add_sweep(CLI::App& app, SweepOptions& options) {
+    CLI::App& command = *app.add_subcommand("sweep", "Simulate a scene with many values, a case a core");
+    command.footer(sweep_examples);
+    command.add_option("CASES", options.cases, "a scene and its cases, in JSON")->required();
+    command.add_option("--out", options.out, "folder for the results; by default out/NAME for NAME.json");
+    add_count(command, "--jobs", options.jobs, 1,
+              "cases at a time, each with one thread; by default the cores there are");
+    add_count(command, "--rank", options.rank, 0,
+              "of several processes that share the cases: which one this is, from 0");
+    add_count(command, "--of", options.of, 1, "how many they are");
+    command.add_flag("--probes", options.probes, "write the series of the scene's probes, a CSV file for each case");
+    command.add_flag("--redo", options.redo, "replace results of other cases, or of the scene as it was before");
+    command.add_flag("--dry-run", options.dry_run, "list the cases of this process, and run none");
+    command.add_flag("--table", options.table, "make the table and the page of what is there, and run none");
+    command.add_flag("--strict", options.strict, "end with 1 where a case failed, was refused or is doubted");
+    command.add_flag("--quiet", options.quiet, "no progress, no table");
 }
 
 /// CLI11 asks for a command, but does not say which one it does not know.
@@ -243,10 +308,14 @@ int run_command_line(int argc, char** argv) {
     RunOptions run_options;
     SolveOptions solve_options;
     InspectOptions inspect_options;
+    SweepOptions sweep_options;
     add_run(app, run_options);
     add_solve(app, solve_options);
     add_inspect(app, inspect_options);
-    app.add_subcommand("schema", "Print the JSON schema of scenes");
+    add_sweep(app, sweep_options);
+    bool schema_of_sweeps = false;
+    app.add_subcommand("schema", "Print the JSON schema of scenes")
+        ->add_flag("--sweep", schema_of_sweeps, "that of cases for `skerry sweep` instead");
     require_known_command(app, argc, argv);
     try {
         app.parse(argc, argv);
@@ -256,7 +325,8 @@ int run_command_line(int argc, char** argv) {
     if (app.got_subcommand("run")) return run(run_options);
     if (app.got_subcommand("solve")) return solve(solve_options);
     if (app.got_subcommand("inspect")) return inspect(inspect_options);
-    std::cout << scene_schema();
+    if (app.got_subcommand("sweep")) return sweep(sweep_options);
+    std::cout << (schema_of_sweeps ? sweep_schema() : scene_schema());
     return exit_ok;
 }
 

@@ -22,6 +22,12 @@ double share_of(double time, double seconds) {
 
 }  // namespace
 
+std::string bar_text(double share) {
+    const int filled = static_cast<int>(share * bar_width);
+    return "[" + std::string(static_cast<std::size_t>(filled), '#') +
+           std::string(static_cast<std::size_t>(bar_width - filled), '.') + "]";
+}
+
 void clear_bar() {
     if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
 }
@@ -59,10 +65,7 @@ void Progress::show(double time, std::uint64_t steps) {
 
 void Progress::show_bar(double wall, double time) {
     const double share = share_of(time, seconds_);
-    const int filled = static_cast<int>(share * bar_width);
-    const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
-                            std::string(static_cast<std::size_t>(bar_width - filled), '.');
-    std::fprintf(stderr, "\r\033[K[%s] %s %%  %s of %s s", bar.c_str(), short_number(100 * share).c_str(),
+    std::fprintf(stderr, "\r\033[K%s %s %%  %s of %s s", bar_text(share).c_str(), short_number(100 * share).c_str(),
                  short_number(time).c_str(), short_number(seconds_).c_str());
     if (share > 0)
         std::fprintf(stderr, "  %s x real time  %s left", short_number(time / wall).c_str(),

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 namespace skerry {
 
@@ -14,6 +15,9 @@ public:
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// [######..................]
+std::string bar_text(double share);
 
 /// Takes a bar away for what is to be said; does nothing where there is none.
 void clear_bar();

@@ -164,7 +164,7 @@ std::vector<std::string> bad_boundaries(const ScenePlan& plan) {
 
 }  // namespace
 
-int run(const RunOptions& asked) {
+RunResult simulate(const RunOptions& asked) {
     const Stopwatch loading;
     RunOptions options = asked;
     std::optional<Restart> restart;
@@ -213,14 +213,21 @@ int run(const RunOptions& asked) {
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
     result.seconds_wall -= outputs.seconds_in_steps();
+    result.stopped_by = caught_signal;
     outputs.finish(world, result);
+    result.written = outputs.summary() + checkpoints.summary();
+    return result;
+}
+
+int run(const RunOptions& options) {
+    const RunResult result = simulate(options);
     const std::vector<std::string> doubts = doubts_of(result);
     if (options.quiet)
         for (const std::string& doubt : doubts) std::cerr << "skerry: DOUBT: " << doubt << "\n";
     else
-        std::cout << summary_of(result) << outputs.summary() << checkpoints.summary() << std::flush;
+        std::cout << summary_of(result) << result.written << std::flush;
     if (result.status != "ok") std::cerr << "skerry: " << result.status << "\n";
-    if (caught_signal != 0) return exit_signal + caught_signal;
+    if (result.stopped_by != 0) return exit_signal + result.stopped_by;
     if (!result.outputs_failed.empty()) return exit_output;
     return result.status == "ok" && (doubts.empty() || !options.strict) ? exit_ok : exit_failed;
 }

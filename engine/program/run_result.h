@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/program/commands.h"
 #include "engine/program/probe_recorder.h"
 #include "skerry/scene.h"
 
@@ -15,6 +16,7 @@ struct RunResult {
     std::string scene;
     std::string scene_file;
     std::string status = "ok";  // else what went wrong
+    int stopped_by = 0;         // the signal that did; 0: none
     Settings settings;
     int threads = 0;  // as used
     double seconds_simulated = 0;
@@ -31,7 +33,11 @@ struct RunResult {
     std::vector<ProbeRecord> probes;
     std::vector<std::pair<std::string, std::string>> outputs_failed;  // option, and what stood in the way
     std::vector<std::string> bad_boundaries;                          // of the bodies' meshes, a sentence each
+    std::string written;                                              // a line for each output and checkpoint
 };
+
+/// Carries a run out, with its outputs. Throws SceneError for a scene or options that it does not understand.
+RunResult simulate(const RunOptions& options);
 
 /// Why not to rely on the run, a sentence each; empty when all estimates are small.
 std::vector<std::string> doubts_of(const RunResult& result);

@@ -129,28 +129,26 @@ private:
 
 }  // namespace
 
-Json parse_json(const std::string& text, const std::filesystem::path& file) {
+Json parse_json(const std::string& text, const std::filesystem::path& file, const std::string& expected) {
     if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c); }))
-        Complaint{file.string(), {}, {}, "an empty file", "a scene in JSON", {}}.raise();
+        Complaint{file.string(), {}, {}, "an empty file", expected, {}}.raise();
     StrictBuilder builder(text, file);
     Json::sax_parse(text, &builder);
     return builder.take();
 }
 
-Json read_json(const std::filesystem::path& file) {
+Json read_json(const std::filesystem::path& file, const std::string& expected) {
     std::error_code error;
-    if (!std::filesystem::exists(file, error))
-        Complaint{file.string(), {}, {}, "no such file", "a scene in JSON", {}}.raise();
-    if (std::filesystem::is_directory(file, error))
-        Complaint{file.string(), {}, {}, "a folder", "a scene in JSON", {}}.raise();
+    if (!std::filesystem::exists(file, error)) Complaint{file.string(), {}, {}, "no such file", expected, {}}.raise();
+    if (std::filesystem::is_directory(file, error)) Complaint{file.string(), {}, {}, "a folder", expected, {}}.raise();
     // such as /dev/zero, which has no end; a pipe has one
     if (std::filesystem::is_character_file(file, error))
-        Complaint{file.string(), {}, {}, "a device", "a scene in JSON", {}}.raise();
+        Complaint{file.string(), {}, {}, "a device", expected, {}}.raise();
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
-    if (!stream) Complaint{file.string(), {}, {}, "a file that cannot be read", "a scene in JSON", {}}.raise();
-    return parse_json(text.str(), file);
+    if (!stream) Complaint{file.string(), {}, {}, "a file that cannot be read", expected, {}}.raise();
+    return parse_json(text.str(), file, expected);
 }
 
 }  // namespace skerry

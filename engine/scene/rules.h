@@ -127,6 +127,9 @@ private:
     std::vector<std::function<void(const Place&, const T&)>> checks_;
 };
 
+/// The whole JSON schema of files that hold one object of a rule.
+std::string schema_document(const std::string& title, const RuleTable& rule);
+
 /// The rule of a type; specialised in scene_rules.cpp.
 template <class T>
 const Rule<T>& rule_of();

@@ -3,13 +3,17 @@
 
 namespace skerry {
 
-std::string scene_schema() {
+std::string schema_document(const std::string& title, const RuleTable& rule) {
     SchemaBook definitions = SchemaBook::object();
-    const Json scene = rule_of<SceneFile>().schema(definitions);
-    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Skerry scene"}};
-    for (const auto& [key, value] : scene.items()) schema[key] = value;
+    const Json object = rule.schema(definitions);
+    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
+    for (const auto& [key, value] : object.items()) schema[key] = value;
     schema["$defs"] = definitions;
     return schema.dump(1) + "\n";
+}
+
+std::string scene_schema() {
+    return schema_document("Skerry scene", rule_of<SceneFile>());
 }
 
 }  // namespace skerry

@@ -6,9 +6,12 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
+#include "systems/collision/collider_crossings.h"
+#include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/geometry/closest_points.h"
 #include "systems/geometry/time_of_contact.h"
@@ -16,16 +19,6 @@
 namespace skerry {
 
 namespace {
-
-// Features that approach each other by less than this fraction of their distance in the step cannot meet, by far.
-constexpr Real slow_fraction = 0.5;
-
-struct StepMotion {
-    std::span<const Vec3> velocity_next, push_out;
-    Real h;
-
-    Vec3 of(Index node) const { return h * (velocity_next[node] + push_out[node]); }
-};
 
 /// Where the features are at some time of the step, and how they are nearest.
 struct Nearest {
@@ -142,13 +135,27 @@ struct PairReach {
 PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
     const BodyTable& body = inputs.body;
     const Index a = pairs.first[p], b = pairs.second[p];
+    if (pairs.kind[p] == PairKind::collider) {
+        const RigidMotion& collider = inputs.collider.motion[b];
+        const Real turning = collider.angular_velocity.norm(),
+                   rim_speed = turning > 0 ? turning * collider_radius(inputs.collider.geometry[b]) : 0;
+        const Real motion =
+            h * (body.frame_speed[a] + body.frame[a].velocity.norm() + collider.velocity.norm() + rim_speed);
+        return {motion, pairs.travel[p] + motion};
+    }
     const Real motion =
         h * (body.frame_speed[a] + body.frame_speed[b] + (body.frame[a].velocity - body.frame[b].velocity).norm());
     return {motion, pairs.travel[p] + motion};
 }
 
+/// A plane is touched by nodes alone, which its contacts hold wherever they go.
+bool can_be_crossed(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
+    return pairs.kind[p] != PairKind::collider ||
+           collider_point_count(inputs.collider.geometry[pairs.second[p]].shape) > 0;
+}
+
 bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
-    return pairs.kind[p] != PairKind::collider && pairs.state[p] == PairState::apart &&
+    return (pairs.kind[p] == PairKind::collider || pairs.state[p] == PairState::apart) &&
            pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).contact_distance > 0;
 }
 
@@ -159,15 +166,17 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const StepMotion& mot
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        if (from >= to || pairs.kind[p] == PairKind::collider) continue;
+        if (from >= to || !can_be_crossed(inputs, pairs, p)) continue;
         const PairReach reach = reach_of(inputs, pairs, p, motion.h);
         // Of the block's candidates, those awake in find_contacts have D >= block_nearest, so that a motion below
         // slow_fraction block_nearest cannot bring them together; those asleep have g > reach as long as the motion
         // stays within the front of find_contacts.
         const bool slow =
             reach.motion <= slow_fraction * pairs.block_nearest[b] && reach.travel_bound <= pairs.travel_bound[p];
-        if (!slow && is_watched(inputs, pairs, p))
-            tested += PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.travel_bound);
+        if (slow || !is_watched(inputs, pairs, p)) continue;
+        tested += pairs.kind[p] == PairKind::collider
+                      ? find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found)
+                      : PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.travel_bound);
     }
     return tested;
 }
@@ -177,7 +186,8 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const StepMotion& mot
 Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
-        if (pairs.kind[p] == PairKind::collider || pairs.state[p] != PairState::apart) continue;
+        if (!can_be_crossed(inputs, pairs, p)) continue;
+        if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) continue;
         // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. Where the list was made from the very
         // positions of this step nothing has moved since, d0 is not lost, and T + m is the bound.
         const Real drifted =
@@ -200,7 +210,9 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
     for (const auto& found : crossings.found)
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
-            pairs.state[static_cast<std::size_t>(at - pairs.key.begin())] = PairState::overlapping;
+            const auto p = static_cast<std::size_t>(at - pairs.key.begin());
+            // to a collider distances are signed
+            if (pairs.kind[p] != PairKind::collider) pairs.state[p] = PairState::overlapping;
         }
 }
 

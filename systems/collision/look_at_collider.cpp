@@ -7,6 +7,7 @@
 
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/colliders/face_contact.h"
+#include "systems/collision/narrow/winding_number.h"
 #include "systems/collision/pair_look.h"
 
 namespace skerry {
@@ -21,8 +22,10 @@ public:
           geometry_(inputs.collider.geometry[second_]),
           motion_(inputs.collider.motion[second_]) {}
 
-    void run(Range range) {
+    /// Returns the least distance of what was looked at, m; how far it may move in a flat place where that is more.
+    Real run(Range range) {
         for_each_awake(range, [&](Index c) { wake(c); });
+        return nearest_;
     }
 
 private:
@@ -42,6 +45,7 @@ private:
         const SurfacePoint nearest =
             distance_to_collider_part(geometry_, motion_, second_local(candidate.feature), inputs_.position[node]);
         asleep_until_[c] = travel_base_ + nearest.distance - scale_.contact_distance;
+        nearest_ = std::min(nearest_, nearest.distance);
         if (!(nearest.distance <= near_)) return;
         const Vec3 velocity = velocity_at(nearest.point);
         if (!within_reach(nearest.distance, speed_against(velocity, std::array{node}))) return;
@@ -56,8 +60,12 @@ private:
         const Real flat = flat_reach(geometry_, end);
         const Real distance = edge_distance(geometry_, part, end[0], end[1]);
         asleep_until_[c] = travel_base_ + std::max(distance - scale_.contact_distance, flat);
-        if (!(distance <= near_) || flat >= 0) return;
+        if (!(distance <= near_) || flat >= 0) {
+            nearest_ = std::min(nearest_, std::max(distance, flat));
+            return;
+        }
         const EdgeContact contact = edge_contact(geometry_, part, end[0], end[1]);
+        nearest_ = std::min(nearest_, contact.nearest);
         for (std::size_t i = 0; i < contact.count; ++i) {
             const EdgePoint& touch = contact.point[i];
             const Vec3 point = world(touch.on.point), velocity = velocity_at(point);
@@ -77,6 +85,7 @@ private:
         const FaceContact contact = face_contact(geometry_, k, corner);
         const Real flat = flat_reach(geometry_, corner);
         asleep_until_[c] = travel_base_ + std::max(contact.nearest - face_zone(scale_), flat);
+        nearest_ = std::min(nearest_, std::max({contact.nearest, contact.distance, flat}));
         if (!contact.above || flat >= 0 || !(contact.distance <= near_)) return;
         const Vec3 point = world(contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(point);
@@ -89,12 +98,16 @@ private:
             -(motion_.rotation * contact.normal), contact.distance, scale_.contact_distance, velocity);
     }
 
-    /// As of two bodies: the point may be in front of the far side of a thin part, or nearer to another face.
+    /// As of two bodies: the point may be in front of the far side of a thin part, or nearer to another face; or
+    /// outside, in a fold.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
-        return depth <= scale_.face_depth && is_nearest(c, depth, [&](Index i) {
-                   const LocalFace other = face_of(candidates_[i].first);
-                   return closest_point_on_triangle(point, other[0], other[1], other[2]).distance_squared;
-               });
+        return depth <= scale_.face_depth &&
+               is_nearest(c, depth,
+                          [&](Index i) {
+                              const LocalFace other = face_of(candidates_[i].first);
+                              return closest_point_on_triangle(point, other[0], other[1], other[2]).distance_squared;
+                          }) &&
+               !is_outside(inputs_, first_, world(point));
     }
 
     LocalFace face_of(Index triangle) const {
@@ -115,14 +128,14 @@ private:
 
     const ColliderGeometry& geometry_;
     const RigidMotion& motion_;
+    Real nearest_ = std::numeric_limits<Real>::infinity();
 };
 
 }  // namespace
 
 Real look_at_collider(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
                       PairTable& pairs, Column<ContactRow>& found) {
-    ColliderContacts(inputs, settings, h, pairs, p, found).run(range);
-    return std::numeric_limits<Real>::infinity();
+    return ColliderContacts(inputs, settings, h, pairs, p, found).run(range);
 }
 
 }  // namespace skerry

@@ -8,8 +8,7 @@
 
 namespace skerry {
 
-/// look_at_candidates of a pair with a collider. Returns infinity: its features are left out of find_crossings by
-/// distance.
+/// look_at_candidates of a pair with a collider.
 Real look_at_collider(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
                       PairTable& pairs, Column<ContactRow>& found);
 

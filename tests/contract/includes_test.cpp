@@ -18,8 +18,8 @@ struct Place {
 };
 
 std::optional<Place> place_of(const std::string& path) {
-    // jobs stands beside the components, and uses them; what supports the tests supports benchmarks, too. The first
-    // that fits counts.
+    // jobs stands beside the components, and uses them; what supports the tests supports benchmarks, too, which tests
+    // look at. The first that fits counts.
     static const std::vector<Place> places{
         {"components/", 10},        {"jobs/", 11},
         {"systems/geometry/", 20},  {"systems/material/", 30},
@@ -27,7 +27,7 @@ std::optional<Place> place_of(const std::string& path) {
         {"systems/contact/", 40},   {"systems/solver/", 50},
         {"systems/kernels/", 55},   {"engine/", 60},
         {"tests/support/", 70},     {"examples/", 71},
-        {"profiling/", 71},         {"tests/", 71},
+        {"profiling/", 71},         {"tests/", 72},
     };
     for (const Place& place : places)
         if (path.starts_with(place.folder)) return place;

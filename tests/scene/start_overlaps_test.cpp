@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "systems/geometry/rotation.h"
 #include "tests/support/random.h"
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
@@ -233,6 +234,50 @@ TEST_CASE("a body a bit in any collider is lifted out of it", "[scene]") {
             CHECK(report.start_moves[0].translation.dot(out) > 0.004);
             s.world.advance(1e-6);
             CHECK(s.world.report().max_penetration == 0);
+        }
+}
+
+TEST_CASE("a body that something sharp is in between its nodes is lifted off it", "[scene]") {
+    const Mesh mesh = mesh::box({0.2, 0.2, 0.2}, {2, 2, 2});
+    struct Case {
+        const char* name;
+        Shape shape;
+        Vec3 tip, out;  // m: what is in the body furthest; unit but for its length
+    };
+    const std::vector<Case> cases{
+        {"corner", Box{{1, 1, 1}}, {0.5, 0.5, 0.5}, {1, 1, 1}},
+        {"edge", Box{{1, 1, 1}}, {0.5, 0.5, 0.1}, {1, 1, 0}},
+        {"bead", Sphere{0.02}, {0, 0, 0.02}, {0, 0, 1}},
+        {"end", Capsule{0.02, 0.6}, {0, 0, 0.32}, {0, 0, 1}},
+        {"rim of a cylinder", Cylinder{0.5, 0.6}, {0.5, 0, 0.3}, {1, 0, 1}},
+        {"rim of a bucket", Bucket{0.5, 0.6, 0.05}, {0.55, 0, 0.6}, {1, 0, 1}},
+    };
+    for (const Case& c : cases)
+        for (Real depth : {0.0, 0.004}) {
+            Stage s(StartOverlaps::resolve);
+            const Vec3 out = c.out.normalized();
+            const Mat3 turned = Eigen::Quaternion<Real>::FromTwoVectors(Vec3::UnitZ(), out).toRotationMatrix();
+            const Vec3 position = c.tip + (0.1 - depth) * out + turned * Vec3(0.03, 0.045, 0);
+            const auto body = s.world.add_body(
+                mesh,
+                {.material = s.rubber, .position = position, .rotation = rotation_vector(turned), .name = "block"});
+            const auto collider = s.world.add_collider(c.shape, {.motion = {}, .name = "fixture"});
+            s.world.settle_start();
+            INFO(c.name << ", depth " << depth);
+            const WorldReport report = s.world.report();
+            REQUIRE(report.start_overlaps.size() == (depth > 0 ? 1 : 0));
+            if (report.start_overlaps.empty()) continue;
+            CHECK(report.start_overlaps[0].collider == collider);
+            // by the shortest way of one point out of the other, which is not the shortest of the whole
+            CHECK(report.start_overlaps[0].depth > 0.1 * depth);
+            CHECK(report.start_overlaps[0].depth < 1.001 * depth);
+            REQUIRE(report.start_moves.size() == 1);
+            CHECK(report.start_moves[0].translation.norm() < 0.004 + s.world.contact_distance(body));
+            // what is left counts as touching
+            const Real touching = 0.05 * s.world.contact_distance(body);
+            CHECK(report.start_moves[0].translation.dot(out) > 0.004 - touching);
+            s.world.advance(1e-6);
+            CHECK(s.world.report().max_penetration < touching);
         }
 }
 

@@ -58,12 +58,14 @@ Named random_shot(std::mt19937_64& random) {
 /// What is shot at, around the origin with its front towards +z.
 struct Target {
     std::string name;
-    Mesh mesh;            // empty: a mesh collider
-    SurfaceMesh surface;  // of a mesh collider
-    bool held = false;    // at its rim
-    Real aim = 0.03;      // m, how far from the axis shots may go
-    Real steepest = 60;   // degrees from the axis
-    Real reach = 0.03;    // m, along the axis
+    Mesh mesh;                       // empty: a collider
+    SurfaceMesh surface;             // of a collider; of an analytic one a little within it
+    bool held = false;               // at its rim
+    Real aim = 0.03;                 // m, how far from the axis shots may go
+    Real steepest = 60;              // degrees from the axis
+    Real reach = 0.03;               // m, along the axis
+    std::optional<Shape> shape{};    // of an analytic collider
+    Mat3 turned = Mat3::Identity();  // from the frame of the shape
 };
 
 SurfaceMesh pyramid(const Vec3& half, bool ridge) {
@@ -105,23 +107,131 @@ Target random_target(std::mt19937_64& random) {
     }
 }
 
+/// What a line of (distance from the axis, height) sweeps about the z axis. It begins and ends on the axis, outside on
+/// its right.
+SurfaceMesh revolved(const std::vector<std::array<Real, 2>>& line, Index around) {
+    SurfaceMesh surface;
+    surface.nodes = {{0, 0, line.front()[1]}, {0, 0, line.back()[1]}};
+    const auto rings = static_cast<Index>(line.size()) - 2;
+    const auto node = [&](Index ring, Index i) { return 2 + ring * around + i % around; };
+    for (Index ring = 0; ring < rings; ++ring)
+        for (Index i = 0; i < around; ++i) {
+            const auto& [r, z] = line[static_cast<std::size_t>(ring) + 1];
+            const Real angle = 2 * std::acos(-1.0) * i / around;
+            surface.nodes.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+        }
+    for (Index i = 0; i < around; ++i) {
+        surface.triangles.push_back({0, node(0, i + 1), node(0, i)});
+        for (Index ring = 0; ring + 1 < rings; ++ring) {
+            surface.triangles.push_back({node(ring, i), node(ring, i + 1), node(ring + 1, i)});
+            surface.triangles.push_back({node(ring, i + 1), node(ring + 1, i + 1), node(ring + 1, i)});
+        }
+        surface.triangles.push_back({1, node(rings - 1, i), node(rings - 1, i + 1)});
+    }
+    return surface;
+}
+
+/// A capsule about z; a ball where `length` is 0.
+SurfaceMesh revolved_capsule(Real radius, Real length, Index around) {
+    std::vector<std::array<Real, 2>> line;
+    constexpr int steps = 8;
+    for (const int end : {-1, 1})
+        for (int i = 0; i <= steps; ++i) {
+            if (length == 0 && end == 1 && i == 0) continue;
+            const Real angle = std::acos(-1.0) / 2 * (end < 0 ? i - steps : i) / steps;
+            line.push_back({radius * std::cos(angle), radius * std::sin(angle) + end * length / 2});
+        }
+    return revolved(line, around);
+}
+
+SurfaceMesh revolved_cylinder(Real radius, Real height, Index around) {
+    return revolved({{0, -height / 2}, {radius, -height / 2}, {radius, height / 2}, {0, height / 2}}, around);
+}
+
+SurfaceMesh revolved_bucket(const Bucket& bucket, Real within, Index around) {
+    const Real inner = bucket.radius + within, outer = bucket.radius + bucket.thickness - within,
+               rim = bucket.height - within;
+    return revolved({{0, -bucket.thickness + within},
+                     {outer, -bucket.thickness + within},
+                     {outer, rim},
+                     {inner, rim},
+                     {inner, -within},
+                     {0, -within}},
+                    around);
+}
+
+/// Analytic colliders, thin and sharp ones above all. Their surfaces lie within them by a tenth of the thickness.
+Target random_shape(std::mt19937_64& random) {
+    const Mat3 lying = rotation_matrix(Vec3(std::acos(-1.0) / 2, 0, 0));
+    const auto target = [](const char* name, const Shape& shape, SurfaceMesh surface, Real aim, Real steepest,
+                           Real reach, const Mat3& turned = Mat3::Identity()) {
+        return Target{name, {}, std::move(surface), false, aim, steepest, reach, shape, turned};
+    };
+    const auto box = [](const Vec3& size) {
+        return mesh::boundary(mesh::box(size - Vec3::Constant(0.1 * size.minCoeff()), {1, 1, 1}));
+    };
+    switch (static_cast<int>(9 * fraction(random))) {
+        case 0:
+            return target("rod", Capsule{0.001, 0.1}, revolved_capsule(0.0009, 0.1, 24), 0.01, 70, 0.001, lying);
+        case 1:
+            return target("needle", Capsule{0.0005, 0.06}, revolved_capsule(0.00045, 0.06, 24), 0.005, 60, 0.0305);
+        case 2: {
+            const Vec3 size(0.08, 0.001, 0.08);
+            return target("plate, edge on", Box{size}, box(size), 0.02, 70, 0.04);
+        }
+        case 3: {
+            const Vec3 size(0.12, 0.12, 0.001);
+            return target("plate", Box{size}, box(size), 0.04, 60, 0.0005);
+        }
+        case 4: {
+            const Vec3 size(0.06, 0.06, 0.06), on_corner(std::acos(-1.0) / 4, std::atan(std::sqrt(0.5)), 0);
+            const Mat3 turned =
+                rotation_matrix(Vec3(0, -on_corner.y(), 0)) * rotation_matrix(Vec3(on_corner.x(), 0, 0));
+            return target("corner", Box{size}, box(size), 0.01, 40, 0.052, turned);
+        }
+        case 5:
+            return target("bead", Sphere{0.002}, revolved_capsule(0.0018, 0, 24), 0.004, 80, 0.002);
+        case 6:
+            return target("disc, edge on", Cylinder{0.04, 0.001}, revolved_cylinder(0.0399, 0.0008, 48), 0.01, 70, 0.04,
+                          lying);
+        case 7: {
+            const Bucket bucket{0.04, 0.05, 0.001};
+            return target("rim", bucket, revolved_bucket(bucket, 0.0001, 64), 0.04, 50, 0.05);
+        }
+        default: {
+            const Bucket bucket{0.04, 0.06, 0.001};
+            return target("wall", bucket, revolved_bucket(bucket, 0.0001, 64), 0.02, 50, 0.041, lying);
+        }
+    }
+}
+
 struct Outcome {
     std::string description;
     std::string failure;  // empty: stopped
     WorldReport report;
 };
 
-/// Who flies: the shot, or a mesh collider towards it, whose velocity is set anew at every look.
+/// Who flies: the shot, or a collider towards it, whose velocity is set anew at every look.
 enum class Flying { shot, collider };
+
+/// At what: all of random_target, its colliders, or analytic colliders.
+enum class Targets { all, surfaces, shapes };
+
+Target random_target(std::mt19937_64& random, Targets targets) {
+    if (targets == Targets::shapes) return random_shape(random);
+    for (;;) {
+        Target target = random_target(random);
+        if (targets == Targets::all || target.mesh.nodes.empty()) return target;
+    }
+}
 
 /// One shot: everything about it follows from its number.
 class Shot {
 public:
-    Shot(std::uint64_t number, bool continuous, Flying flying = Flying::shot)
+    Shot(std::uint64_t number, bool continuous, Flying flying, Targets targets)
         : random_(seed + number), world_(settings(continuous)), flying_(flying) {
         shot_ = random_shot(random_);
-        do target_ = random_target(random_);
-        while (flying == Flying::collider && !target_.mesh.nodes.empty());
+        target_ = random_target(random_, targets);
         frame_ = rotation_matrix(std::acos(-1.0) * fraction(random_) * random_direction(random_));
         speed_ = 3 * std::pow(100.0 / 3, fraction(random_));
         const Real own = std::pow(10.0, 4.7 + 4.3 * fraction(random_)),
@@ -163,8 +273,8 @@ private:
         const auto other = world_.add_material({.young_modulus = other_modulus, .poisson_ratio = 0.3, .friction = 0.3});
         if (target_.mesh.nodes.empty()) {
             ColliderSettings placed;
-            placed.rotation = rotation_vector(frame_);
-            collider_ = world_.add_collider(target_.surface, placed);
+            placed.rotation = rotation_vector(frame_ * target_.turned);
+            collider_ = world_.add_collider(target_.shape ? *target_.shape : Shape(target_.surface), placed);
             faces_ = target_.surface.triangles;
         } else {
             target_body_ = world_.add_body(target_.mesh,
@@ -243,10 +353,10 @@ struct Count {
     std::uint64_t shots = 0, touching = 0, tests = 0, stopped = 0, crossed = 0;
 };
 
-Count shoot(std::uint64_t shots, bool continuous, Flying flying = Flying::shot) {
+Count shoot(std::uint64_t shots, bool continuous, Flying flying = Flying::shot, Targets targets = Targets::all) {
     Count count;
     for (std::uint64_t n = 0; n < shots; ++n) {
-        const Outcome outcome = Shot(n, continuous, flying).fly();
+        const Outcome outcome = Shot(n, continuous, flying, targets).fly();
         ++count.shots;
         count.touching += outcome.report.max_contacts > 0;
         count.tests += outcome.report.crossing_tests;
@@ -257,25 +367,33 @@ Count shoot(std::uint64_t shots, bool continuous, Flying flying = Flying::shot) 
     return count;
 }
 
+/// `touching`: how many at least hit what they are aimed at; `stopped`: how often at least one would have gone through.
+void check_all_stopped(const Count& count, std::uint64_t touching, std::uint64_t stopped) {
+    INFO("seed " << seed);
+    CHECK(count.wrong == "");
+    CHECK(count.crossed == 0);
+    CHECK(count.touching > touching);
+    CHECK(count.stopped > stopped);
+}
+
 }  // namespace
 
 TEST_CASE("of 1,000 shots at up to 100 m/s all are stopped", "[scene][slow]") {
-    INFO("seed " << seed);
-    const Count count = shoot(1000, true);
-    CHECK(count.wrong == "");
-    CHECK(count.crossed == 0);
-    CHECK(count.touching > 950);  // nearly all hit what they are aimed at
-    CHECK(count.stopped > 1000);
+    check_all_stopped(shoot(1000, true), 950, 1000);
 }
 
 TEST_CASE("of 1,000 mesh colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
           "[scene][slow]") {
-    INFO("seed " << seed);
-    const Count count = shoot(1000, true, Flying::collider);
-    CHECK(count.wrong == "");
-    CHECK(count.crossed == 0);
-    CHECK(count.touching > 900);
-    CHECK(count.stopped > 300);
+    check_all_stopped(shoot(1000, true, Flying::collider, Targets::surfaces), 900, 300);
+}
+
+TEST_CASE("of 1,000 shots at thin and sharp analytic colliders all are stopped", "[scene][slow]") {
+    check_all_stopped(shoot(1000, true, Flying::shot, Targets::shapes), 900, 300);
+}
+
+TEST_CASE("of 1,000 analytic colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
+          "[scene][slow]") {
+    check_all_stopped(shoot(1000, true, Flying::collider, Targets::shapes), 800, 300);
 }
 
 TEST_CASE("without the look at the motion of a step some of the shots come through", "[scene]") {

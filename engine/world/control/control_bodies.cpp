@@ -77,6 +77,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     if (model.bodies.tetrahedron_count[body] > 0)
         model.bodies.stable_step[body] =
             look_at_stable_step(model, body, model.nodes.position, world.scratch.stiffness_sum);
+    model.watch.forget(body);
     model.body_records[body].settled = model.settled = false;
     world.query_trees.forget();
     world.cache.search_afresh(model);

@@ -123,6 +123,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     find_steps(model, row, body, zones_of(model, body), model.nodes.rest_position, stiffness_sum);
     model.bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
+    model.watch.forget(b);
 }
 
 }  // namespace skerry

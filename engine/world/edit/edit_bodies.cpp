@@ -325,6 +325,7 @@ void erase_body(Model& model, Index row) {
     erase_rows(model.bvh_leaves, renumber.bvh_leaves);
     erase_rows(model.bodies, renumber.bodies);
     model.body_records.erase(model.body_records.begin() + row);
+    model.watch.erase(row, renumber.nodes);
     renumber.apply(model);
 }
 

@@ -222,6 +222,18 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
 }
 
 /// What follows from the lists of nodes is put beside them.
+/// Columns of no rows: nothing has been looked at yet.
+void check_watch(const Hdf5File& file, const Model& model) {
+    const StepWatch& watch = model.watch;
+    const std::size_t rows = watch.step.size(), nodes = watch.position.size();
+    if (rows != 0) expect_size(file, "/watch/step", rows, model.bodies.slot.size());
+    if (nodes != 0) expect_size(file, "/watch/position", nodes, model.nodes.position.size());
+    expect_size(file, "/watch/stiffness_sum", watch.stiffness_sum.size(), nodes);
+    const std::size_t looked_at = nodes > 0 ? rows : 0;
+    expect_between(file, "/watch/progress/kept", std::array{watch.kept}, 0, static_cast<Index>(looked_at));
+    expect_between(file, "/watch/progress/body", std::array{watch.body}, 0, watch.kept);
+}
+
 void check_clusters(const Hdf5File& file, Model& model) {
     NodeClusters& clusters = model.clusters;
     const std::size_t count = clusters.body.size();
@@ -267,6 +279,7 @@ void check_model(const Hdf5File& file, Model& model) {
     check_handles(file, model);
     check_disabled_pairs(file, model);
     check_clusters(file, model);
+    check_watch(file, model);
 }
 
 }  // namespace skerry

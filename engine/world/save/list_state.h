@@ -47,6 +47,14 @@ void list_records(SavedRows& saved, auto&& archive) {
     archive.column("/records/shape_size", saved.shape_size);
 }
 
+void list_watch(StepWatch& watch, auto&& archive) {
+    archive.value("/watch/progress", watch);
+    archive.value("/watch/look", watch.look);
+    archive.column("/watch/position", watch.position);
+    archive.column("/watch/stiffness_sum", watch.stiffness_sum);
+    archive.column("/watch/step", watch.step);
+}
+
 void list_model(Model& model, auto&& archive) {
     model.for_each_table([&](const std::string& table, auto& columns) {
         columns.for_each_column([&](const char* name, auto& column, ColumnRole role) {
@@ -65,6 +73,7 @@ void list_model(Model& model, auto&& archive) {
     list_ragged("/clusters/nodes", model.clusters.nodes, archive);
     archive.column("/clusters/body", model.clusters.body);
     archive.column("/clusters/inverse", model.clusters.inverse);
+    list_watch(model.watch, archive);
     archive.value("/clusters/open", model.clusters_open);
     archive.value("/model/settled", model.settled);
 }
@@ -123,7 +132,6 @@ void list_state(WorldState& world, SavedRows& saved, auto&& archive) {
     archive.value("/clock/time", world.clock.time);
     archive.value("/clock/offset", world.clock.offset);
     archive.value("/clock/cycle", world.clock.cycle);
-    archive.value("/clock/steps_since_watch", world.clock.steps_since_watch);
     list_records(saved, archive);
     list_model(world.model, archive);
     list_cache(world.cache, saved, archive);

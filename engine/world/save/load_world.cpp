@@ -18,12 +18,20 @@ namespace {
 
 /// Columns in which a number may be infinite: bounds that nothing has, and the lanes that are left over.
 bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 12> paths{"/tetrahedra/altitude",     "/tetrahedra/uninverted_until",
-                                                     "/bodies/uninverted_until", "/bodies/rest_step",
-                                                     "/bodies/stable_step",      "/bodies/cluster_step",
-                                                     "/bodies/travel",           "/colliders/travel",
-                                                     "/pairs/valid_until",       "/pairs/candidates/asleep_until",
-                                                     "/search/body_valid_until", "/search/collider_valid_until"};
+    constexpr std::array<std::string_view, 14> paths{"/watch/step",
+                                                     "/watch/look/highest",
+                                                     "/tetrahedra/altitude",
+                                                     "/tetrahedra/uninverted_until",
+                                                     "/bodies/uninverted_until",
+                                                     "/bodies/rest_step",
+                                                     "/bodies/stable_step",
+                                                     "/bodies/cluster_step",
+                                                     "/bodies/travel",
+                                                     "/colliders/travel",
+                                                     "/pairs/valid_until",
+                                                     "/pairs/candidates/asleep_until",
+                                                     "/search/body_valid_until",
+                                                     "/search/collider_valid_until"};
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 

@@ -16,6 +16,7 @@
 #include "components/material_table.h"
 #include "components/pair_table.h"
 #include "components/step_levels.h"
+#include "components/step_watch.h"
 #include "engine/world/state/clock.h"
 #include "engine/world/step/balance.h"
 #include "skerry/report.h"
@@ -185,6 +186,25 @@ struct MembersOf<StepCycle> {
                           Member{"lead", &S::lead}, Member{"elements", &S::elements}};
     }
     static_assert(sizeof(StepCycle) == 2 * sizeof(int) + (1 + 2 * step_level_count) * sizeof(Real),
+                  "a member is not saved");
+};
+/// All but its columns and the look, and what is found anew before each step.
+template <>
+struct MembersOf<StepWatch> {
+    static constexpr auto list() {
+        using S = StepWatch;
+        return std::tuple{Member{"steps", &S::steps}, Member{"second", &S::second}, Member{"body", &S::body},
+                          Member{"kept", &S::kept}};
+    }
+};
+template <>
+struct MembersOf<StepLook> {
+    static constexpr auto list() {
+        using S = StepLook;
+        return std::tuple{Member{"piece", &S::piece}, Member{"broken", &S::broken}, Member{"highest", &S::highest},
+                          Member{"element", &S::element}};
+    }
+    static_assert(sizeof(StepLook) == (2 + element_level_count) * sizeof(Real) + element_level_count * sizeof(Index),
                   "a member is not saved");
 };
 template <>

@@ -103,8 +103,9 @@ std::optional<Overlap> StartSearch::look_at_collider(const StartPair& pair) {
     const PlacedSolid body{solid(pair.first), shift(pair.first)};
     const ColliderGeometry& geometry = model_.colliders.geometry[pair.second];
     const RigidMotion& motion = collider_[static_cast<std::size_t>(pair.second)];
-    if (const auto overlap = find_points_inside(geometry, motion, body, rounding(pair))) return overlap;
-    return geometry.shape == ColliderShape::plane ? std::nullopt : find_collider_inside(geometry, motion, body);
+    if (const auto overlap = find_surface_inside(geometry, motion, body, rounding(pair))) return overlap;
+    if (geometry.shape == ColliderShape::plane) return std::nullopt;
+    return find_collider_inside(geometry, motion, body, rounding(pair));
 }
 
 Vec3 StartSearch::extent(Index body) const {

@@ -24,7 +24,6 @@ struct Clock {
     Real time = 0;    // s, start of the next step
     Real offset = 0;  // s, by which positions are ahead of velocities; only leapfrog, and only within advance
     StepCycle cycle;
-    std::uint64_t steps_since_watch = 0;  // of the stable step (step/stable_steps.h)
 };
 
 }  // namespace skerry

@@ -18,6 +18,7 @@
 #include "components/node_table.h"
 #include "components/ragged.h"
 #include "components/range.h"
+#include "components/step_watch.h"
 #include "components/surface_table.h"
 #include "skerry/mesh.h"
 #include "skerry/settings.h"
@@ -74,6 +75,7 @@ struct Model {
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
     HandleMap<AttachmentHandle> attachment_map;
+    StepWatch watch;
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
 

@@ -92,12 +92,12 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
-    Column<Real> stiffness_sum;             // of stable_step, by node
-    Column<Vec3> cluster_kick;              // of kick_clusters
-    Column<std::uint8_t> pressed;           // by body at rest, in this step
-    WarmStartTable warm_start_next;         // of store_warm_start
-    Column<ExternalWork> work_parts;        // of measure_work
-    Column<InversionPart> inversion_parts;  // of find_inversions
+    Column<Real> stiffness_sum;       // of stable_step, by node
+    Column<Vec3> cluster_kick;        // of kick_clusters
+    Column<std::uint8_t> pressed;     // by body at rest, in this step
+    WarmStartTable warm_start_next;   // of store_warm_start
+    Column<ExternalWork> work_parts;  // of measure_work
+    InversionMemory inversions;       // of find_inversions
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
     bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }

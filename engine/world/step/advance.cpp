@@ -13,11 +13,24 @@ namespace skerry {
 
 namespace {
 
-/// Steps between two looks at the stable step: it changes with deformation, over many steps.
-/// In cycles of fine steps it is the coarse ones that count: all elements deform at the pace of the whole.
-constexpr std::uint64_t steps_per_watch = 256;
-/// With clusters steps are several times longer, and explicit elements beside them deform more in each.
-constexpr std::uint64_t steps_per_watch_of_clusters = 128;
+/// Steps in which all bodies are looked at for their stable step, which changes with deformation, over many steps: what
+/// a step relies on is never older than two rounds. In cycles of fine steps it is the coarse ones that count: all
+/// elements deform at the pace of the whole. With clusters steps are several times longer, and explicit elements beside
+/// them deform more in each.
+std::uint64_t steps_per_round(const WorldState& world) {
+    return std::uint64_t{world.model.clusters.empty() ? 128u : 64u} << world.clock.cycle.levels;
+}
+
+/// Keeps the looks at stable steps going. Returns true when the energies are to be looked at, too.
+bool keep_watch(WorldState& world) {
+    StepWatch& watch = world.model.watch;
+    ++watch.steps;
+    // within a cycle levels must stay
+    if (watch.steps < steps_per_round(world) || world.clock.cycle.index != 0) return false;
+    world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
+    watch.second = !watch.second;
+    return !watch.second;
+}
 
 StepStatus status_of(StepFault fault) {
     switch (fault) {
@@ -202,6 +215,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             break;
         }
         const StepPlan plan = plan_step(model, clock.cycle, left, tries.longest);
+        keep_shapes(model, steps_per_round(world));
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;
@@ -220,11 +234,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         note_limit(world, report);
         left = plan.steps > 1 ? left - plan.h : 0;
         world.record.balance.work += follow_stiffening(model);
-        // Between cycles: within one, levels must stay.
-        const std::uint64_t between = model.clusters.empty() ? steps_per_watch : steps_per_watch_of_clusters;
-        if (++clock.steps_since_watch >= between << clock.cycle.levels && clock.cycle.index == 0) {
-            clock.steps_since_watch = 0;
-            world.record.balance.work += watch_stable_steps(model, world.scratch.stiffness_sum);
+        if (keep_watch(world)) {
             if (clock.offset == 0)
                 check_balance(model, lag_between_steps(world), world.record.balance);
             else

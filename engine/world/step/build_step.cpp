@@ -17,6 +17,7 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/predict_velocity.h"
 #include "systems/dynamics/motion/update_sleep.h"
+#include "systems/dynamics/stability/watch_stable_steps.h"
 
 namespace skerry {
 
@@ -34,6 +35,13 @@ void list_scripted_motion(WorldState& w, TaskGraph& g) {
             value(p.h), write(a.motion));
     g.stage("dynamics/drive_nodes", drive_nodes, inputs<NodeMotionInputs>(a), value(p.h), read(n.position),
             write(n.velocity));
+}
+
+/// Beside all others.
+void list_watch(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    g.stage("dynamics/watch_stable_steps", kernels().watch_stable_steps,
+            inputs<WatchInputs>(m.elements, m.element_nodes, m.materials, m.bodies, m.nodes), make(m.watch));
 }
 
 void list_force_branch(WorldState& w, TaskGraph& g) {
@@ -126,8 +134,8 @@ void list_checks(WorldState& w, TaskGraph& g) {
     const auto if_possible =
         only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; }, read(found.verdict));
     g.stage_with_result("dynamics/find_inversions", found.inversions, kernels().find_inversions,
-                        inputs<InversionInputs>(m.tetrahedra, b, n, pushed), value(p.h),
-                        make(w.scratch.inversion_parts), outputs<InversionBudgets>(m.tetrahedra, b), if_possible);
+                        inputs<InversionInputs>(m.tetrahedra, b, n, pushed), value(p.h), make(w.scratch.inversions),
+                        outputs<InversionBudgets>(m.tetrahedra, b), if_possible);
     const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
                                 value(m.loaded), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
@@ -170,6 +178,7 @@ void list_commit(WorldState& w, TaskGraph& g) {
 
 void build_step(WorldState& world) {
     list_scripted_motion(world, world.graph);
+    list_watch(world, world.graph);
     list_force_branch(world, world.graph);
     list_contact_branch(world, world.graph);
     list_solve(world, world.graph);

@@ -198,7 +198,7 @@ void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
         model.bodies.rest_step[b] = std::min(plan.step, step_of(model, b, model.nodes.rest_position, sums));
     }
     model.rebuild_clusters();
-    watch_stable_steps(model, stiffness_sum);
+    look_at_stable_steps(model, stiffness_sum);
 }
 
 Real added_energy(const Model& model) {

@@ -8,6 +8,7 @@
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/watch_stable_steps.h"
 
 namespace skerry {
 
@@ -26,45 +27,126 @@ Real trusted_step(const Model& model, Index* body) {
     return std::min(stable, model.settings.step_size.value_or(stable));
 }
 
-Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
-                         Column<Real>& stiffness_sum) {
+namespace {
+
+/// What the explicit elements of a body stand in this shape, s.
+Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> position, Column<Real>& stiffness_sum) {
     stiffness_sum.resize(position.size());
-    const ElementInputs elements = model.all_elements();
-    const Range blocks = model.bodies.blocks[body];
-    const Real step = kernels().stable_step(elements, blocks, position, model.nodes.mass, stiffness_sum).step;
+    return kernels()
+        .stable_step(model.all_elements(), model.bodies.blocks[body], position, model.nodes.mass, stiffness_sum)
+        .step;
+}
+
+/// The step that a body stands whose explicit elements stand `step`. Not a number where a shape is none.
+Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3> position, Real step) {
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
+    const Range blocks = model.bodies.blocks[body];
     const Real stiffening =
-        worst_stiffening(elements, blocks, position,
-                         model.elements.implicit_modulus.span().subspan(static_cast<std::size_t>(blocks.begin),
-                                                                        static_cast<std::size_t>(blocks.size())));
-    // not a number where a shape is none
+        worst_stiffening(model.all_elements(), blocks, position, rows_of(model.elements.implicit_modulus, blocks));
     return std::min(step, of_clusters / std::sqrt(stiffening > 1 ? stiffening : Real(1)));
 }
 
-Real watch_stable_steps(Model& model, Column<Real>& stiffness_sum) {
-    constexpr Real worth_clusters = 1.25;  // steps that a strained body makes shorter by this
-    constexpr Real reserve = 1.05;         // so that the next look finds it standing, too
-    BodyTable& bodies = model.bodies;
-    const auto now = [&](std::size_t b) { return look_at_stable_step(model, b, model.nodes.position, stiffness_sum); };
-    Real goal = std::numeric_limits<Real>::infinity();  // s, what bodies stand when they are not strained
-    for (std::size_t b = 0; b < bodies.slot.size(); ++b)
-        if (bodies.tetrahedron_count[b] > 0) goal = std::min(goal, bodies.rest_step[b]);
-    const Real energy_before = added_energy(model);
-    bool changed = false;
-    for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
-        if (bodies.tetrahedron_count[b] == 0) continue;
-        bodies.stable_step[b] = now(b);
-        if (!(bodies.stable_step[b] > 0) || bodies.stable_step[b] * worth_clusters >= goal ||
-            !clusters_allowed(model.settings))
-            continue;
-        if (!make_implicit(model, b, reserve * goal, bodies.stable_step[b], stiffness_sum)) continue;
-        changed = true;
-        bodies.stable_step[b] = now(b);
+}  // namespace
+
+Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
+                         Column<Real>& stiffness_sum) {
+    return within_clusters(model, body, position, explicit_step(model, body, position, stiffness_sum));
+}
+
+namespace {
+
+/// Takes over the stable steps that were found, body by body.
+class LooksTaken {
+public:
+    LooksTaken(Model& model, Column<Real>& stiffness_sum) : model_(model), stiffness_sum_(stiffness_sum) {
+        const BodyTable& bodies = model.bodies;
+        for (std::size_t b = 0; b < bodies.slot.size(); ++b)
+            if (bodies.tetrahedron_count[b] > 0) goal_ = std::min(goal_, bodies.rest_step[b]);
     }
-    if (!changed) return 0;
-    model.rebuild_clusters();
-    return added_energy(model) - energy_before;
+
+    void take(std::size_t b, Real step) {
+        constexpr Real worth_clusters = 1.25;  // steps that a strained body makes shorter by this
+        constexpr Real reserve = 1.05;         // so that the next look finds it standing, too
+        BodyTable& bodies = model_.bodies;
+        bodies.stable_step[b] = within_clusters(model_, b, model_.nodes.position, step);
+        if (!(bodies.stable_step[b] > 0) || bodies.stable_step[b] * worth_clusters >= goal_ ||
+            !clusters_allowed(model_.settings))
+            return;
+        const Real before = changed_ ? energy_before_ : added_energy(model_);
+        stiffness_sum_.resize(model_.nodes.position.size());
+        if (!make_implicit(model_, b, reserve * goal_, bodies.stable_step[b], stiffness_sum_)) return;
+        energy_before_ = before;
+        changed_ = true;
+        bodies.stable_step[b] = look_at_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
+    }
+
+    /// J, what clusters have brought into the balance.
+    Real end() {
+        if (!changed_) return 0;
+        model_.rebuild_clusters();
+        return added_energy(model_) - energy_before_;
+    }
+
+private:
+    Model& model_;
+    Column<Real>& stiffness_sum_;
+    Real goal_ = std::numeric_limits<Real>::infinity();  // s, what bodies stand when they are not strained
+    Real energy_before_ = 0;                             // J
+    bool changed_ = false;
+};
+
+}  // namespace
+
+Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum) {
+    LooksTaken looks(model, stiffness_sum);
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
+        if (model.bodies.tetrahedron_count[b] > 0)
+            looks.take(b, explicit_step(model, b, model.nodes.position, stiffness_sum));
+    model.watch.begin_round();
+    return looks.end();
+}
+
+Real take_over_looks(Model& model, Column<Real>& stiffness_sum) {
+    StepWatch& watch = model.watch;
+    LooksTaken looks(model, stiffness_sum);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(watch.body); ++b)
+        if (model.bodies.tetrahedron_count[b] > 0 && watch.step[b] != StepWatch::not_looked_at)
+            looks.take(b, watch.step[b]);
+    watch.begin_round();
+    return looks.end();
+}
+
+void keep_shapes(Model& model, std::uint64_t round) {
+    const BodyTable& bodies = model.bodies;
+    StepWatch& watch = model.watch;
+    const auto rows = static_cast<Index>(bodies.slot.size());
+    const auto pieces_of = [&](Index row) {
+        const auto b = static_cast<std::size_t>(row);
+        return pieces_of_body(bodies.blocks[b], bodies.level_count[b]);
+    };
+    std::uint64_t total = 0, kept = 0;
+    watch.before = 0;
+    for (Index row = 0; row < rows; ++row) {
+        const std::uint64_t pieces = pieces_of(row);
+        if (row < watch.body) watch.before += pieces;
+        if (row < watch.kept) kept += pieces;
+        total += pieces;
+    }
+    const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
+    watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(total)));
+    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // a save has all rows
+    watch.stiffness_sum.resize(model.nodes.position.size());
+    watch.step.resize(bodies.slot.size());
+    for (; watch.kept < rows && (kept < watch.target || pieces_of(watch.kept) == 0); ++watch.kept) {
+        const auto b = static_cast<std::size_t>(watch.kept);
+        kept += pieces_of(watch.kept);
+        watch.step[b] = bodies.asleep[b] ? StepWatch::not_looked_at : 0;
+        if (bodies.asleep[b]) continue;
+        std::ranges::copy(rows_of(model.nodes.position, bodies.nodes[b]),
+                          rows_of(watch.position, bodies.nodes[b]).begin());
+        std::ranges::fill(rows_of(watch.stiffness_sum, bodies.nodes[b]), Real(0));
+    }
 }
 
 Real follow_stiffening(Model& model) {

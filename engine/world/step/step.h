@@ -21,9 +21,14 @@ Real trusted_step(const Model& model, Index* body = nullptr);
 /// Looks at the stable step of one body again, s.
 Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
                          Column<Real>& stiffness_sum);
-/// Looks at the stable step of every body again. Bodies that stand much less than at rest get clusters where that
+/// Looks at the stable step of every body at once. Bodies that stand much less than at rest get clusters where that
 /// helps; returns the energy that these, by changing what their elements weigh, bring into the balance, J.
-Real watch_stable_steps(Model& model, Column<Real>& stiffness_sum);
+Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum);
+/// At the end of a round of looks beside the steps: bodies take over what was found, and get clusters as above. Returns
+/// the same energy.
+Real take_over_looks(Model& model, Column<Real>& stiffness_sum);
+/// Before a step, of a round of so many: keeps the shapes that are to be looked at beside it.
+void keep_shapes(Model& model, std::uint64_t round);
 
 /// After a committed step: clusters follow what has stiffened. Returns the energy that brings into the balance, J.
 Real follow_stiffening(Model& model);

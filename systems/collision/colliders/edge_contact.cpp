@@ -174,13 +174,18 @@ Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, 
 
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
     const Along along(geometry, part, a, b);
+    const bool convex = is_convex(geometry, part);
     EdgeContact contact;
     Index next = 0;
-    contact.nearest = scan(along, is_convex(geometry, part), [&](Real low, Real high) {
-        constexpr Index numbers = contacts_of_edge / 2;
-        if (next < contacts_of_edge) Stretch(along, {low, high}, next, contact).add_points();
+    contact.nearest = scan(along, convex, [&](Real low, Real high) {
+        constexpr Index numbers = crossing_of_edge / 2;
+        if (next < crossing_of_edge) Stretch(along, {low, high}, next, contact).add_points();
         next += numbers;
     });
+    if (!convex) return contact;
+    Real least = std::min(along.at(0).distance, along.at(1).distance);
+    for (std::size_t i = 0; i < contact.count; ++i) least = std::min(least, contact.point[i].on.distance);
+    contact.nearest = std::max(contact.nearest, least - flat_slope * along.length());
     return contact;
 }
 

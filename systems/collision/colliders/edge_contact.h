@@ -13,13 +13,13 @@ Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, 
 
 /// A point of an edge that may touch first.
 struct EdgePoint {
-    Index number;     // below contacts_of_edge: which of the edge's points it is, from step to step
+    Index number;     // below crossing_of_edge: which of the edge's points it is, from step to step
     Real s;           // its place, 0 < s < 1 from the first end to the second
     SurfacePoint on;  // of the collider, in its frame
 };
 
 struct EdgeContact {
-    Real nearest;                    // m, edge_distance
+    Real nearest;                    // m: no point of the edge is nearer, by what was found
     std::array<EdgePoint, 8> point;  // by number
     std::size_t count = 0;
 };

@@ -53,8 +53,9 @@ inline std::uint64_t face_collider_feature(Index k, Index triangle) {
     return second_side_bit | static_cast<std::uint64_t>(k) << local_bits | static_cast<std::uint64_t>(triangle);
 }
 
-/// Contacts of one edge with a part take the numbers from this on.
-inline constexpr Index contacts_of_edge = 8;
+/// Contacts of one edge with a part: numbers from 0 to below this. The last is that of a crossing, which stands beside
+/// the others.
+inline constexpr Index contacts_of_edge = 9, crossing_of_edge = contacts_of_edge - 1;
 
 inline std::uint64_t edge_collider_feature(Index edge, Index part) {
     return edge_edge_bit | static_cast<std::uint64_t>(edge) << local_bits |

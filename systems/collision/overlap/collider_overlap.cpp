@@ -2,6 +2,9 @@
 
 #include <limits>
 
+#include "systems/collision/colliders/collider_shape.h"
+#include "systems/collision/colliders/edge_contact.h"
+#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/tree/box.h"
 #include "systems/geometry/closest_points.h"
@@ -17,7 +20,7 @@ Vec3 inner_point(const ColliderGeometry& geometry) {
     return Vec3::Zero();
 }
 
-/// From a point to the nearest of a surface, m.
+/// From a point to the nearest one of a surface, m.
 Vec3 to_surface(const Solid& solid, const Vec3& point) {
     Real least = std::numeric_limits<Real>::infinity();
     Vec3 way = Vec3::Zero();
@@ -32,34 +35,125 @@ Vec3 to_surface(const Solid& solid, const Vec3& point) {
     return way;
 }
 
-}  // namespace
+/// A body and an analytic collider.
+struct ColliderAndBody {
+    const ColliderGeometry& geometry;
+    const RigidMotion& motion;
+    const PlacedSolid& body;
 
-std::optional<Overlap> find_points_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
-                                          const PlacedSolid& body, Real tolerance) {
-    Overlap overlap{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
-    Aabb inside = empty_box();
-    std::size_t count = 0;
-    for (const Index n : body.solid.surface_point) {
-        const Vec3 x = body.solid.point[static_cast<std::size_t>(n)] + body.shift;
-        const SurfacePoint found = distance_to_collider(geometry, motion, x);
-        if (!(found.distance < -tolerance)) continue;
-        ++count;
-        grow(inside, x);
-        if (-found.distance > overlap.depth) {
-            overlap.depth = -found.distance;
-            overlap.direction = found.normal;
+    /// A point of the body in the frame of the collider.
+    Vec3 local(Index node) const {
+        const Vec3 x = body.solid.point[static_cast<std::size_t>(node)] + body.shift;
+        return motion.rotation.transpose() * (x - motion.position);
+    }
+    /// A point of the collider.
+    Vec3 world(const Vec3& point) const { return motion.position + motion.rotation * point; }
+};
+
+class SurfaceInside {
+public:
+    SurfaceInside(const ColliderAndBody& pair, Real tolerance)
+        : pair_(pair), tolerance_(tolerance), inside_(empty_box()) {}
+
+    std::optional<Overlap> find() {
+        const Solid& solid = pair_.body.solid;
+        std::size_t nodes = 0;
+        for (const Index n : solid.surface_point) {
+            const Vec3 at = pair_.local(n);
+            nodes += add(local_distance(pair_.geometry, at), at);
+        }
+        for (const SolidTriangle& t : solid.surface)
+            for (std::size_t k = 0; k < 3; ++k)
+                // a closed surface has each edge twice, once in either direction; of others some are looked at twice
+                if (!solid.closed || t.node[k] < t.node[(k + 1) % 3])
+                    add_edge(pair_.local(t.node[k]), pair_.local(t.node[(k + 1) % 3]));
+        if (!(overlap_.depth > 0)) return std::nullopt;
+        if (nodes == solid.surface_point.size()) overlap_.kind = OverlapKind::inside;
+        overlap_.place = pair_.world((inside_.lower + inside_.upper) / 2);
+        overlap_.direction = pair_.motion.rotation * overlap_.direction;
+        return overlap_;
+    }
+
+private:
+    bool add(const SurfacePoint& found, const Vec3& at) {
+        if (!(found.distance < -tolerance_)) return false;
+        grow(inside_, at);
+        if (-found.distance > overlap_.depth) {
+            overlap_.depth = -found.distance;
+            overlap_.direction = found.normal;
+        }
+        return true;
+    }
+    void add_edge(const Vec3& from, const Vec3& to) {
+        for (Index part = 0; part < collider_part_count(pair_.geometry.shape); ++part) {
+            if (!(edge_distance(pair_.geometry, part, from, to) < -tolerance_)) continue;
+            const EdgeContact contact = edge_contact(pair_.geometry, part, from, to);
+            for (std::size_t i = 0; i < contact.count; ++i)
+                add(contact.point[i].on, from + contact.point[i].s * (to - from));
         }
     }
-    if (count == 0) return std::nullopt;
-    if (count == body.solid.surface_point.size()) overlap.kind = OverlapKind::inside;
-    overlap.place = (inside.lower + inside.upper) / 2;
-    return overlap;
+
+    const ColliderAndBody pair_;
+    const Real tolerance_;
+    Aabb inside_;
+    Overlap overlap_{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
+};
+
+/// Corners, ends and rims of a collider in a body.
+class PointsInside {
+public:
+    PointsInside(const ColliderAndBody& pair, Real tolerance)
+        : pair_(pair), overlap_{OverlapKind::crossing, tolerance, {}, {}} {}
+
+    std::optional<Overlap> find() {
+        for (Index k = 0; k < collider_point_count(pair_.geometry.shape); ++k) {
+            if (collider_point_follows(pair_.geometry.shape, k))
+                add_rim(k);
+            else
+                add(collider_point(pair_.geometry, k, Vec3::Zero()));
+        }
+        return found_ ? std::optional(overlap_) : std::nullopt;
+    }
+
+private:
+    void add(const ColliderPoint& point) {
+        const PlacedSolid& body = pair_.body;
+        const Vec3 at = pair_.world(point.at) - body.shift;
+        const bool within = contains(body.solid, at, 0);
+        if (!within && point.radius == 0) return;
+        const Vec3 way = to_surface(body.solid, at);
+        const Real length = way.norm(), depth = (within ? length : -length) + point.radius;
+        if (!(depth > overlap_.depth && length > 0)) return;
+        found_ = true;
+        overlap_.depth = depth;
+        overlap_.direction = (within ? -way : way) / length;
+        overlap_.place = at + body.shift;
+    }
+    /// Where it is deepest behind each face.
+    void add_rim(Index k) {
+        for (const SolidTriangle& t : pair_.body.solid.surface) {
+            const FaceContact face = face_contact(
+                pair_.geometry, k, {pair_.local(t.node[0]), pair_.local(t.node[1]), pair_.local(t.node[2])});
+            if (face.above && -face.distance > overlap_.depth) add(face.point);
+        }
+    }
+
+    const ColliderAndBody pair_;
+    Overlap overlap_;
+    bool found_ = false;
+};
+
+}  // namespace
+
+std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
+                                           const PlacedSolid& body, Real tolerance) {
+    return SurfaceInside({geometry, motion, body}, tolerance).find();
 }
 
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
-                                            const PlacedSolid& body) {
+                                            const PlacedSolid& body, Real tolerance) {
     const Vec3 point = motion.position + motion.rotation * inner_point(geometry);
-    if (!contains(body.solid, point - body.shift, 0)) return std::nullopt;
+    if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
     Vec3 way = to_surface(body.solid, point - body.shift);
     const Real length = way.norm();
     // The body goes against the way out of the collider, and past its other side.

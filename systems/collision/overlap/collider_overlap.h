@@ -8,14 +8,14 @@
 
 namespace skerry {
 
-/// Of points of a body's surface that lie in a collider by more than `tolerance` (m): `depth` and `direction` are those
-/// of the deepest. Points that a contact sees alone: what a collider has between two of them is not looked at.
-/// crossing, or inside where all lie in it.
-std::optional<Overlap> find_points_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
-                                          const PlacedSolid& body, Real tolerance);
+/// Of nodes and edges of a body's surface that lie in a collider by more than `tolerance` (m): `depth` and `direction`
+/// are those of the deepest point. crossing, or inside where all nodes lie in it.
+std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
+                                           const PlacedSolid& body, Real tolerance);
 
-/// A collider that no point of the surface lies in may be inside the body as a whole.
+/// A collider that no node or edge lies in may be inside the body: as a whole, around, or by a corner, an end or a rim
+/// that has come in between the edges of a face, by more than `tolerance` (m), crossing.
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
-                                            const PlacedSolid& body);
+                                            const PlacedSolid& body, Real tolerance);
 
 }  // namespace skerry

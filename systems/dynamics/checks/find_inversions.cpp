@@ -12,6 +12,7 @@ namespace skerry {
 
 namespace {
 
+// Smaller bodies share a job of as many.
 constexpr Index blocks_per_part = 256;
 
 // Blocks whose budgets are tested together, without a branch for each.
@@ -51,16 +52,22 @@ struct Body {
     Real travel_bound;  // m, travel with it
     Real travel_base;   // m: a budget begins here (measure_displacement.h)
 
-    InversionPart look(std::size_t begin, std::size_t end, std::span<Real> uninverted_until) const {
-        InversionPart part{std::numeric_limits<Real>::infinity()};
-        for (std::size_t b = begin; b < end; b += blocks_at_once) {
+    Body(const InversionInputs& of, Real step, Index body)
+        : inputs(of),
+          h(step),
+          reach(step * of.body_frame_speed[body]),
+          travel_bound(of.body_travel[body] + reach),
+          travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
+
+    void look(InversionPart& part, std::span<Real> uninverted_until) const {
+        const auto end = static_cast<std::size_t>(part.blocks.end);
+        for (auto b = static_cast<std::size_t>(part.blocks.begin); b < end; b += blocks_at_once) {
             const std::size_t stop = std::min(b + blocks_at_once, end);
             if (!(travel_bound < least(uninverted_until, b, stop)))
                 for (std::size_t i = b; i < stop; ++i)
                     if (!(travel_bound < uninverted_until[i])) look_at_block(i, uninverted_until[i], part);
             part.uninverted_until = std::min(part.uninverted_until, least(uninverted_until, b, stop));
         }
-        return part;
     }
 
     bool has_inverted(Range blocks) const {
@@ -105,36 +112,65 @@ private:
     }
 };
 
+/// Cuts the bodies that can have come far enough into parts, and these into jobs.
+void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> body_uninverted_until,
+                InversionMemory& memory) {
+    memory.part.clear();
+    memory.job.clear();
+    // whichever bodies are due in a later step
+    const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
+    memory.part.reserve(most);
+    memory.job.reserve(most + 1);
+    Index open = blocks_per_part;  // of the last job
+    for (Index b = 0; b < static_cast<Index>(inputs.body_blocks.size()); ++b) {
+        const Range blocks = inputs.body_blocks[b];
+        if (inputs.body_travel[b] + h * inputs.body_frame_speed[b] < body_uninverted_until[b]) continue;
+        for (Index first = blocks.begin; first < blocks.end; first += blocks_per_part) {
+            const Range some{first, std::min(first + blocks_per_part, blocks.end)};
+            if (open + some.size() > blocks_per_part) {
+                memory.job.push_back(static_cast<Index>(memory.part.size()));
+                open = 0;
+            }
+            open += some.size();
+            memory.part.push_back({b, some, std::numeric_limits<Real>::infinity()});
+        }
+    }
+    memory.job.push_back(static_cast<Index>(memory.part.size()));
+}
+
+/// What the parts of one body found, added to what was found before it.
+void add_body(const InversionInputs& inputs, Real h, std::span<const InversionPart> parts, Real& uninverted_until,
+              Inversions& found) {
+    const Index body = parts.front().body;
+    bool judged = false;
+    uninverted_until = std::numeric_limits<Real>::infinity();
+    for (const InversionPart& part : parts) {
+        uninverted_until = std::min(uninverted_until, part.uninverted_until);
+        if (part.count == 0) continue;
+        judged |= part.judged;
+        if (found.count == 0) found = {0, body, part.tetrahedron, false};
+        found.count += part.count;
+    }
+    if (judged) found.first |= !Body(inputs, h, body).has_inverted(inputs.body_blocks[body]);
+}
+
 }  // namespace
 
-Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
+Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets) {
     SKERRY_CHECK(budgets.body_uninverted_until.size() == inputs.body_blocks.size());
     SKERRY_CHECK(budgets.block_uninverted_until.size() == inputs.tetrahedron_node.size());
+    list_parts(inputs, h, budgets.body_uninverted_until, memory);
+    Column<InversionPart>& parts = memory.part;
+    parallel_for(executor, memory.job.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+        for (Index p = memory.job[begin]; p < memory.job[end]; ++p)
+            Body(inputs, h, parts[p].body).look(parts[p], budgets.block_uninverted_until);
+    });
     Inversions found;
-    for (std::size_t b = 0; b < inputs.body_blocks.size(); ++b) {
-        const Range blocks = inputs.body_blocks[b];
-        const Real reach = h * inputs.body_frame_speed[b], travel = inputs.body_travel[b];
-        if (blocks.size() == 0 || travel + reach < budgets.body_uninverted_until[b]) continue;
-        const Body body{inputs, h, reach, travel + reach, travel - 2 * inputs.body_displacement[b]};
-        parts.resize(static_cast<std::size_t>((blocks.size() + blocks_per_part - 1) / blocks_per_part));
-        parallel_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) {
-                const std::size_t first = static_cast<std::size_t>(blocks.begin) + p * blocks_per_part;
-                parts[p] = body.look(first, std::min(first + blocks_per_part, static_cast<std::size_t>(blocks.end)),
-                                     budgets.block_uninverted_until);
-            }
-        });
-        bool judged = false;
-        budgets.body_uninverted_until[b] = std::numeric_limits<Real>::infinity();
-        for (const InversionPart& part : parts) {
-            budgets.body_uninverted_until[b] = std::min(budgets.body_uninverted_until[b], part.uninverted_until);
-            if (part.count == 0) continue;
-            judged |= part.judged;
-            if (found.count == 0) found = {0, static_cast<Index>(b), part.tetrahedron, false};
-            found.count += part.count;
-        }
-        if (judged) found.first |= !body.has_inverted(blocks);
+    for (std::size_t first = 0, next = 0; first < parts.size(); first = next) {
+        while (next < parts.size() && parts[next].body == parts[first].body) ++next;
+        add_body(inputs, h, std::span(parts.data() + first, next - first),
+                 budgets.body_uninverted_until[static_cast<std::size_t>(parts[first].body)], found);
     }
     return found;
 }

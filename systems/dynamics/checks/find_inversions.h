@@ -4,6 +4,7 @@
 #include <span>
 
 #include "components/body_table.h"
+#include "components/column.h"
 #include "components/element_table.h"
 #include "components/node_table.h"
 #include "jobs/access.h"
@@ -45,11 +46,19 @@ struct Inversions {
     bool first = false;
 };
 
-/// Working memory, kept between steps: what was found in some blocks.
+/// Some blocks of a body that is due, and what was found in them.
 struct InversionPart {
+    Index body = no_index;
+    Range blocks{0, 0};
     Real uninverted_until = 0;                // m, the least of them
     Index count = 0, tetrahedron = no_index;  // that the step turns over, and the first of them
     bool judged = false;                      // some of them without leeway
+};
+
+/// Working memory, kept between steps.
+struct InversionMemory {
+    Column<InversionPart> part;  // of all bodies that are due, in their order
+    Column<Index> job;           // first rows of `part`, for each job, and their count
 };
 
 struct InversionBudgets {
@@ -63,8 +72,8 @@ struct InversionBudgets {
 
 /// Looks only where the body can have come far enough: a tetrahedron is not turned over before its corners have moved
 /// by half of its width, the distance of the two nearest parallel planes around it. So slivers are looked at often, the
-/// rest of their body is not. Budgets are written where tetrahedra are looked at. Parallel over blocks.
-Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, Column<InversionPart>& parts,
+/// rest of their body is not. Budgets are written where tetrahedra are looked at. Parallel over parts of bodies.
+Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 
 }  // namespace skerry

@@ -1,6 +1,6 @@
 // The eigenvalues of M^-1/2 K M^-1/2 that are not zero are those of the 9x9 matrix  A(Y) = V H(Y L^T) L  with L L^T = Q
 // and Y a 3x3 matrix. H, or something above it, is a sum of few terms that become blocks of A in closed form, and
-// lambda_max(A) <= (tr A^16)^(1/16).
+// lambda_max(A) <= (tr A^16)^(1/16). Whether it is below some c is told sooner: then c - A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include "systems/material/with_law.h"
@@ -9,17 +9,37 @@ namespace skerry {
 
 namespace {
 
-/// A symmetric 9x9 matrix; row 3 p + i is component i of column p of Y.
+/// A symmetric 9x9 matrix, of which entries above the diagonal are left out; row 3 p + i is component i of column p of
+/// Y.
+template <class T>
 struct Matrix9 {
-    Real8 a[9][9];
+    T a[9][9];
 };
+
+/// Part `part` of the lanes, as many as a register has: 9x9 matrices of more would go through memory twice.
+[[gnu::always_inline]] inline KernelReal lanes_in(const Real8& x, std::size_t part) {
+    Lanes<Real, element_lanes> all;
+    store(x, all);
+    return load_part<KernelReal>(all, part);
+}
+LaneMat3<KernelReal> lanes_in(const LaneMat3<Real8>& m, std::size_t part) {
+    const auto column = [part](const LaneVec3<Real8>& c) {
+        return LaneVec3<KernelReal>{lanes_in(c.x, part), lanes_in(c.y, part), lanes_in(c.z, part)};
+    };
+    return {column(m.c0), column(m.c1), column(m.c2)};
+}
+LaneSymmetric<KernelReal> lanes_in(const LaneSymmetric<Real8>& s, std::size_t part) {
+    return {lanes_in(s.xx, part), lanes_in(s.yy, part), lanes_in(s.zz, part),
+            lanes_in(s.xy, part), lanes_in(s.yz, part), lanes_in(s.zx, part)};
+}
 
 /// The lower triangular L with L L^T = Q. A pivot lost to rounding is raised to a small positive one, which only
 /// enlarges Q.
-LaneMat3<Real8> cholesky(const LaneMat3<Real8>& Q) {
-    const Real8 least = 1e-14 * (Q.c0.x + Q.c1.y + Q.c2.z) + 1e-300;
-    const auto pivot = [&](const Real8& x) { return square_root(x > least ? x : least); };
-    LaneMat3<Real8> L{};
+template <class T>
+LaneMat3<T> cholesky(const LaneMat3<T>& Q) {
+    const T least = 1e-14 * (Q.c0.x + Q.c1.y + Q.c2.z) + 1e-300;
+    const auto pivot = [&](const T& x) { return square_root(x > least ? x : least); };
+    LaneMat3<T> L{};
     L.c0.x = pivot(Q.c0.x);
     L.c0.y = Q.c0.y / L.c0.x;
     L.c0.z = Q.c0.z / L.c0.x;
@@ -30,17 +50,17 @@ LaneMat3<Real8> cholesky(const LaneMat3<Real8>& Q) {
 }
 
 /// A(Y) = H(Y L^T) L, summed up term by term as a law adds them.
+template <class T>
 class StiffnessTerms {
 public:
-    explicit StiffnessTerms(const LaneMat3<Real8>& L) : L_(L) {}
-    Matrix9& compressed() { return A_; }
+    StiffnessTerms(const LaneMat3<T>& L, Matrix9<T>& A) : L_(L), A_(A) { A_ = {}; }
 
     /// H += s identity: s (L^T L)_pq I.
-    void add_identity(const Real8& s) {
-        const LaneVec3<Real8> c[3] = {L_.c0, L_.c1, L_.c2};
+    void add_identity(const T& s) {
+        const LaneVec3<T> c[3] = {L_.c0, L_.c1, L_.c2};
         for (int p = 0; p < 3; ++p) {
-            for (int q = 0; q < 3; ++q) {
-                const Real8 x = s * dot(c[p], c[q]);
+            for (int q = 0; q <= p; ++q) {
+                const T x = s * dot(c[p], c[q]);
                 for (int i = 0; i < 3; ++i) A_.a[3 * p + i][3 * q + i] += x;
             }
         }
@@ -48,35 +68,35 @@ public:
 
     /// H += s X X^T, X a matrix as a vector of nine: the dyad of X L.
     template <class Matrix>
-    void add_dyad(const Real8& s, const Matrix& X) {
-        const LaneMat3<Real8> XL = multiply(X, L_);
-        const Real8 x[9] = {XL.c0.x, XL.c0.y, XL.c0.z, XL.c1.x, XL.c1.y, XL.c1.z, XL.c2.x, XL.c2.y, XL.c2.z};
+    void add_dyad(const T& s, const Matrix& X) {
+        const LaneMat3<T> XL = multiply(X, L_);
+        const T x[9] = {XL.c0.x, XL.c0.y, XL.c0.z, XL.c1.x, XL.c1.y, XL.c1.z, XL.c2.x, XL.c2.y, XL.c2.z};
         for (int r = 0; r < 9; ++r)
-            for (int c = 0; c < 9; ++c) A_.a[r][c] += s * x[r] * x[c];
+            for (int c = 0; c <= r; ++c) A_.a[r][c] += s * x[r] * x[c];
     }
 
     /// H += s (X -> R X^T R): the block (p, q) is the dyad of columns q and p of R L.
     template <class Matrix>
-    void add_turned_transpose(const Real8& s, const Matrix& R) {
-        const LaneMat3<Real8> RL = multiply(R, L_);
-        const Real8 x[3][3] = {{RL.c0.x, RL.c0.y, RL.c0.z}, {RL.c1.x, RL.c1.y, RL.c1.z}, {RL.c2.x, RL.c2.y, RL.c2.z}};
+    void add_turned_transpose(const T& s, const Matrix& R) {
+        const LaneMat3<T> RL = multiply(R, L_);
+        const T x[3][3] = {{RL.c0.x, RL.c0.y, RL.c0.z}, {RL.c1.x, RL.c1.y, RL.c1.z}, {RL.c2.x, RL.c2.y, RL.c2.z}};
         for (int p = 0; p < 3; ++p)
-            for (int q = 0; q < 3; ++q)
+            for (int q = 0; q <= p; ++q)
                 for (int i = 0; i < 3; ++i)
-                    for (int k = 0; k < 3; ++k) A_.a[3 * p + i][3 * q + k] += s * x[q][i] * x[p][k];
+                    for (int k = 0; k < (p == q ? i + 1 : 3); ++k) A_.a[3 * p + i][3 * q + k] += s * x[q][i] * x[p][k];
     }
 
     /// H += s d(cof F)/dF: the block (p, q) is -[F cof(L)_m]x for (p, q, m) cyclic and plus that for (q, p, m).
-    void add_cofactor_slope(const Real8& s, const LaneMat3<Real8>& F) {
-        const LaneMat3<Real8> E = multiply(F, cofactor(L_));
-        const LaneVec3<Real8> e[3] = {E.c0, E.c1, E.c2};
+    void add_cofactor_slope(const T& s, const LaneMat3<T>& F) {
+        const LaneMat3<T> E = multiply(F, cofactor(L_));
+        const LaneVec3<T> e[3] = {E.c0, E.c1, E.c2};
         for (int m = 0; m < 3; ++m) {
             const int p = 3 * ((m + 1) % 3), q = 3 * ((m + 2) % 3);
-            const auto add = [&](int i, int k, const Real8& x) {
-                A_.a[p + i][q + k] += x;
-                A_.a[q + k][p + i] += x;
-                A_.a[p + k][q + i] -= x;
-                A_.a[q + i][p + k] -= x;
+            const auto add = [&](int i, int k, const T& x) {
+                T& one = p > q ? A_.a[p + i][q + k] : A_.a[q + k][p + i];
+                T& other = p > q ? A_.a[p + k][q + i] : A_.a[q + i][p + k];
+                one += x;
+                other -= x;
             };
             add(0, 1, s * e[m].z);
             add(1, 2, s * e[m].x);
@@ -85,43 +105,74 @@ public:
     }
 
 private:
-    const LaneMat3<Real8>& L_;
-    Matrix9 A_{};
+    const LaneMat3<T>& L_;
+    Matrix9<T>& A_;
 };
 
 /// H of the viscous parts, whose stress is F S: X -> F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and
 /// S are replaced by bounds of their eigenvalues, the first by the mean of F^T F and twice its spread.
-void add_viscous_stiffness(const ViscousPart& viscous, const LaneMat3<Real8>& F, StiffnessTerms& H) {
+template <class T>
+void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
-    const LaneSymmetric<Real8> strain = green_strain(F), S = stress(moduli, viscous.stretch);
-    const Real8 third = strain.trace() / 3.0;
-    const LaneSymmetric<Real8> deviator{strain.xx - third, strain.yy - third, strain.zz - third,
-                                        strain.xy,         strain.yz,         strain.zx};
-    const Real8 largest = 1.0 + 2.0 * (third + 2.0 * square_root(inner_product(deviator, deviator) / 6.0));
-    const Real8 mu = moduli.mu * viscous.strain_share;
+    const ViscousStretch<T> stretch{lanes_in(viscous.stretch.strain, part), lanes_in(viscous.stretch.volume, part)};
+    const LaneSymmetric<T> strain = green_strain(F), S = stress(moduli, stretch);
+    const T third = strain.trace() / 3.0;
+    const LaneSymmetric<T> deviator{strain.xx - third, strain.yy - third, strain.zz - third,
+                                    strain.xy,         strain.yz,         strain.zx};
+    const T largest = 1.0 + 2.0 * (third + 2.0 * square_root(inner_product(deviator, deviator) / 6.0));
+    const T strain_share = lanes_in(viscous.strain_share, part), volume_share = lanes_in(viscous.volume_share, part);
+    const T mu = moduli.mu * strain_share;
     H.add_identity(mu * largest + square_root(inner_product(S, S)));
     H.add_turned_transpose(mu, F);
-    H.add_dyad(moduli.lambda * viscous.strain_share + moduli.bulk * viscous.volume_share, F);
+    H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// (tr A^16)^(1/16), after scaling by the norm so that nothing overflows.
-Real8 largest_eigenvalue_bound(Matrix9& A) {
-    const auto norm = [](const Matrix9& m) {
-        Real8 sum{};
+/// Whether the eigenvalues of volume A are below `limit` in every lane of this part: whether limit - volume A has a
+/// Cholesky decomposition L D L^T with D > 0, by more than rounding.
+template <class T>
+bool is_below(const Matrix9<T>& A, const T& volume, Real limit) {
+    const Real rounding = 1e-12 * limit;
+    T m[9][9];     // L D below the diagonal
+    T inverse[9];  // of D
+    for (int c = 0; c < 9; ++c) {
+        T scaled[9];  // row c of L
+        T pivot = limit - volume * A.a[c][c];
+        for (int k = 0; k < c; ++k) {
+            scaled[k] = m[c][k] * inverse[k];
+            pivot -= m[c][k] * scaled[k];
+        }
+        if (!all(pivot > rounding)) return false;
+        inverse[c] = 1.0 / pivot;
+        for (int r = c + 1; r < 9; ++r) {
+            T sum = -(volume * A.a[r][c]);
+            for (int k = 0; k < c; ++k) sum -= m[r][k] * scaled[k];
+            m[r][c] = sum;
+        }
+    }
+    return true;
+}
+
+/// (tr A^16)^(1/16), after scaling by the norm so that nothing overflows. Writes what is above the diagonal.
+template <class T>
+T largest_eigenvalue_bound(Matrix9<T>& A) {
+    for (int r = 0; r < 9; ++r)
+        for (int c = 0; c < r; ++c) A.a[c][r] = A.a[r][c];
+    const auto norm = [](const Matrix9<T>& m) {
+        T sum{};
         for (const auto& row : m.a)
-            for (const Real8& x : row) sum += x * x;
+            for (const T& x : row) sum += x * x;
         return square_root(sum);
     };
-    const Real8 scale = norm(A);
-    const Real8 inverse = 1.0 / (scale > 0.0 ? scale : Real8{} + 1.0);
+    const T scale = norm(A);
+    const T inverse = 1.0 / (scale > 0.0 ? scale : T{} + 1.0);
     for (auto& row : A.a)
-        for (Real8& x : row) x *= inverse;
-    Matrix9 other;
-    Matrix9 *from = &A, *to = &other;
+        for (T& x : row) x *= inverse;
+    Matrix9<T> other;
+    Matrix9<T>*from = &A, *to = &other;
     for (int squaring = 0; squaring < 3; ++squaring) {
         for (int r = 0; r < 9; ++r)
             for (int c = 0; c <= r; ++c) {
-                Real8 sum{};
+                T sum{};
                 for (int k = 0; k < 9; ++k) sum += from->a[r][k] * from->a[c][k];
                 to->a[r][c] = to->a[c][r] = sum;
             }
@@ -133,21 +184,30 @@ Real8 largest_eigenvalue_bound(Matrix9& A) {
 }  // namespace
 
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
-                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q) {
-    const LaneMat3<Real8> L = cholesky(Q);
-    StiffnessTerms H(L);
+                              const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough) {
+    const bool relaxes = viscous.moduli.mu > 0 || viscous.moduli.lambda > 0 || viscous.moduli.bulk > 0;
+    Matrix9<KernelReal> A[kernel_parts];
     with_law(material.model, [&](auto law) {
-        if constexpr (law.has_frame) {
-            extract_rotation(F, volume, q);
-            law.add_stiffness(material, F, rotation_of(q), H);
-        } else {
-            law.add_stiffness(material, F, H);
+        if constexpr (law.has_frame) extract_rotation(F, volume, q);
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const LaneMat3<KernelReal> F_part = lanes_in(F, part), L = cholesky(lanes_in(Q, part));
+            StiffnessTerms<KernelReal> H(L, A[part]);
+            if constexpr (law.has_frame)
+                law.add_stiffness(material, F_part, lanes_in(rotation_of(q), part), H);
+            else
+                law.add_stiffness(material, F_part, H);
+            if (relaxes) add_viscous_stiffness(viscous, part, F_part, H);
         }
     });
-    if (viscous.moduli.mu > 0 || viscous.moduli.lambda > 0 || viscous.moduli.bulk > 0)
-        add_viscous_stiffness(viscous, F, H);
-    const Real8 bound = volume * largest_eigenvalue_bound(H.compressed());
-    return volume > 0.0 ? bound : Real8{};
+    // all lanes of the block together, so that a part more or less changes no bit
+    bool below = enough > 0;
+    for (std::size_t part = 0; below && part < kernel_parts; ++part)
+        below = is_below(A[part], lanes_in(volume, part), enough);
+    if (below) return Real8{} + enough;
+    Lanes<Real, element_lanes> bound;
+    for (std::size_t part = 0; part < kernel_parts; ++part)
+        store_part(lanes_in(volume, part) * largest_eigenvalue_bound(A[part]), bound, part);
+    return volume > 0.0 ? load(bound) : Real8{};
 }
 
 }  // namespace skerry

@@ -16,39 +16,58 @@ namespace skerry {
 
 namespace {
 
-/// The highest level of a range of blocks.
-int top_level(const ElementInputs& elements, std::size_t first, std::size_t end) {
+/// One more than the highest level of a range of blocks.
+int levels_of(const ElementInputs& elements, Range blocks) {
     int top = 0;
     if (!elements.schedule.level.empty())
-        for (std::size_t b = first; b < end; ++b) top = std::max<int>(top, elements.schedule.level[b]);
-    return top;
+        for (Index b = blocks.begin; b < blocks.end; ++b)
+            top = std::max<int>(top, elements.schedule.level[static_cast<std::size_t>(b)]);
+    return top + 1;
 }
 
-/// Calls visit(block, bound of omega^2 by lane, level) for every block, from the coarsest level down: an element shares
-/// masses with those of its level and of coarser ones alone (element_levels.h).
-template <class Visit>
-void for_each_bound(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                    std::span<const Real> mass, std::span<Real> stiffness_sum, Visit&& visit) {
+/// Blocks whose stiffness is summed in one piece: they take as long as the bound of one.
+constexpr Index blocks_summed = 8;
+
+Index sums_of(Range blocks) {
+    return (blocks.size() + blocks_summed - 1) / blocks_summed;
+}
+
+/// Takes pieces of a look, from the coarsest level down: an element shares masses with those of its level and of
+/// coarser ones alone (element_levels.h). First the sums of a level, then visit(block, bound of omega^2 by lane, level)
+/// for each of its blocks. enough(level): bounds below it need not be known.
+template <class Enough, class Visit>
+void take_pieces(const ElementInputs& elements, Range blocks, int levels, std::span<const Vec3> position,
+                 std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t from, std::uint64_t until,
+                 Enough&& enough, Visit&& visit) {
     SKERRY_CHECK(stiffness_sum.size() == position.size() && mass.size() == position.size());
-    const std::size_t first = static_cast<std::size_t>(blocks.begin), end = static_cast<std::size_t>(blocks.end);
     const auto level_of = [&](std::size_t b) {
         return elements.schedule.level.empty() ? 0 : int{elements.schedule.level[b]};
     };
-    for (std::size_t b = first; b < end; ++b) clear_stiffness(elements, b, stiffness_sum);
+    const Index sums = sums_of(blocks);
+    const auto of_level = static_cast<std::uint64_t>(sums + blocks.size());
     // The frame of a corotational element starts from the same lane of the block before it: neighbours turn together.
     const Real8 one = Real8{} + 1.0;
     LaneQuaternion<Real8> q{one, {}, {}, {}};
-    for (int level = top_level(elements, first, end); level >= 0; --level) {
-        for (std::size_t b = first; b < end; ++b)
-            if (level_of(b) == level)
-                add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
-                              [](std::size_t) { return true; });
-        for (std::size_t b = first; b < end; ++b)
-            if (level_of(b) == level)
-                visit(b,
-                      frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, stiffness_sum, q),
-                      level);
+    for (std::uint64_t piece = from; piece < until; ++piece) {
+        const int level = levels - 1 - static_cast<int>(piece / of_level);
+        const auto place = static_cast<Index>(piece % of_level);
+        const bool bounds = place >= sums;
+        const Index first = blocks.begin + (bounds ? place - sums : place * blocks_summed);
+        const Index end = bounds ? first + 1 : std::min(first + blocks_summed, blocks.end);
+        for (auto b = static_cast<std::size_t>(first); b < static_cast<std::size_t>(end); ++b) {
+            if (level_of(b) != level) continue;
+            const LaneMat3<Real8> F = deformation_of(elements, b, position);
+            if (bounds)
+                visit(b, frequency_squared_of(elements, b, F, mass, stiffness_sum, q, enough(level)), level);
+            else
+                add_stiffness(elements, b, F, stiffness_sum, [](std::size_t) { return true; });
+        }
     }
+}
+
+void clear_stiffness(const ElementInputs& elements, Range blocks, std::span<Real> stiffness_sum) {
+    for (Index b = blocks.begin; b < blocks.end; ++b)
+        clear_stiffness(elements, static_cast<std::size_t>(b), stiffness_sum);
 }
 
 /// s, of an element whose bound of omega^2 this is.
@@ -58,42 +77,62 @@ Real step_of(Real bound, int level) {
 
 }  // namespace
 
-StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                       std::span<const Real> mass, std::span<Real> stiffness_sum) {
-    std::array<Real, element_level_count> highest{};
-    std::array<Index, element_level_count> element;
-    element.fill(no_index);
-    Index broken = no_index;
-    for_each_bound(elements, blocks, position, mass, stiffness_sum, [&](std::size_t b, const Real8& bound, int level) {
+std::uint64_t pieces_of_look(Range blocks, int levels) {
+    return static_cast<std::uint64_t>(levels) * static_cast<std::uint64_t>(sums_of(blocks) + blocks.size());
+}
+
+void continue_look(const ElementInputs& elements, Range blocks, int levels, std::span<const Vec3> position,
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look) {
+    const auto highest = [&](int level) { return look.highest[static_cast<std::size_t>(level)]; };
+    const auto note = [&](std::size_t b, const Real8& bound, int level) {
         const auto at = static_cast<std::size_t>(level);
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const Index here = static_cast<Index>(b * element_lanes + l);
             // a shape that is not finite has no stable step
-            if (!(bound[l] <= std::numeric_limits<Real>::max()) && broken == no_index) broken = here;
-            if (bound[l] > highest[at]) {
-                highest[at] = bound[l];
-                element[at] = here;
+            if (!(bound[l] <= std::numeric_limits<Real>::max()) && look.broken == no_index) look.broken = here;
+            if (bound[l] > look.highest[at]) {
+                look.highest[at] = bound[l];
+                look.element[at] = here;
             }
         }
-    });
-    if (broken != no_index) return {0, broken};
+    };
+    take_pieces(elements, blocks, levels, position, mass, stiffness_sum, look.piece, until, highest, note);
+    look.piece = until;
+}
+
+StableStep result_of(const StepLook& look) {
+    if (look.broken != no_index) return {0, look.broken};
     StableStep found{std::numeric_limits<Real>::infinity(), no_index};
     for (int level = element_level_count - 1; level >= 0; --level) {
         const auto at = static_cast<std::size_t>(level);
-        if (element[at] == no_index) continue;
-        if (const Real step = step_of(highest[at], level); step < found.step) found = {step, element[at]};
+        if (!(look.highest[at] > 0)) continue;
+        if (const Real step = step_of(look.highest[at], level); step < found.step) found = {step, look.element[at]};
     }
     return found;
+}
+
+StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                       std::span<const Real> mass, std::span<Real> stiffness_sum) {
+    clear_stiffness(elements, blocks, stiffness_sum);
+    const int levels = levels_of(elements, blocks);
+    StepLook look;
+    continue_look(elements, blocks, levels, position, mass, stiffness_sum, pieces_of_look(blocks, levels), look);
+    return result_of(look);
 }
 
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step) {
     SKERRY_CHECK(step.size() == static_cast<std::size_t>(blocks.size()));
-    for_each_bound(elements, blocks, position, mass, stiffness_sum, [&](std::size_t b, const Real8& bound, int level) {
+    clear_stiffness(elements, blocks, stiffness_sum);
+    const int levels = levels_of(elements, blocks);
+    const auto note = [&](std::size_t b, const Real8& bound, int level) {
         for (std::size_t l = 0; l < element_lanes; ++l)
             step[b - static_cast<std::size_t>(blocks.begin)][l] =
                 bound[l] > 0 ? step_of(bound[l], level) : std::numeric_limits<Real>::infinity();
-    });
+    };
+    take_pieces(
+        elements, blocks, levels, position, mass, stiffness_sum, 0, pieces_of_look(blocks, levels),
+        [](int) { return Real(0); }, note);
 }
 
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

@@ -1,9 +1,11 @@
 // The largest step that symplectic Euler stands, from a bound that survives slivers (docs/methods/stable_step.md 1, 2).
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "components/body_table.h"
+#include "components/step_watch.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 
 namespace skerry {
@@ -21,6 +23,16 @@ struct StableStep {
 /// level has what element_levels.h asks. `stiffness_sum` is scratch, one entry a node.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
+
+/// The same in parts: a look has so many pieces, which take about as long as each other. `levels`: one more than the
+/// highest level of the elements.
+std::uint64_t pieces_of_look(Range blocks, int levels);
+/// Goes on with a look until `until` of its pieces are done. `stiffness_sum` is zero at the nodes of the body before
+/// the first; all inputs stay the same until the last.
+void continue_look(const ElementInputs& elements, Range blocks, int levels, std::span<const Vec3> position,
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look);
+/// What a look has found when all of its pieces are done.
+StableStep result_of(const StepLook& look);
 
 /// The step that each element of these blocks allows by itself (s), with the shares of masses that it has: the shortest
 /// is that of stable_step. Infinity where nothing bounds a step, and in lanes left over.

@@ -79,22 +79,24 @@ void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<El
 }
 
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                           std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q) {
+                           std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
+                           Real enough) {
     const MaterialConstants material = elements.material_of(block);
     const LaneMat3<Real8> Q = inverse_mass_tensor(elements, block, F, mass, stiffness_sum);
     const Real8 volume = load(elements.volume[block]);
     // nothing, or no number where F is none: not every bound looks at F
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.viscous_strain.empty())
-        return frequency_squared_bound(material, F, {}, volume, Q, q) + nothing;
+        return frequency_squared_bound(material, F, {}, volume, Q, q, enough) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
-    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q);
+    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough);
+    if (all(in_full <= enough)) return in_full + nothing;
     // A spring that relaxes by a step's end counts less, and the less the longer the step: the step by the springs in
     // full is a safe guess of it.
     const Real8 step = step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0);
     viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
-    return frequency_squared_bound(material, F, viscous, volume, Q, q) + nothing;
+    return frequency_squared_bound(material, F, viscous, volume, Q, q, enough) + nothing;
 }
 
 Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

@@ -49,8 +49,10 @@ inline void clear_stiffness(const ElementInputs& elements, std::size_t block, st
 /// Bound of omega^2 of each element of a block, 1/s^2, with masses m_k = mass k_k / stiffness_sum; without
 /// stiffness_sum every element has all the mass of its nodes, which is no bound for a body but tells what the element
 /// does alone. Not a number where F is none. `q` is a start of the corotational frame and is left at the frame found.
+/// `enough`, 1/s^2: as frequency_squared_bound has it.
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                           std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q);
+                           std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
+                           Real enough = 0);
 
 /// Pa, bound of the material's Hessian of each element of a block, what is viscous in full: K <= this V sum g_k.g_l.
 Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

@@ -66,7 +66,10 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
                 const EdgeContact contact = edge_contact(shape.geometry, part, a, b);
                 const Real length = (b - a).norm();
                 CHECK(contact.nearest <= sampled.least + 1e-12);
-                CHECK(contact.nearest == edge_distance(shape.geometry, part, a, b));
+                CHECK(contact.nearest >= edge_distance(shape.geometry, part, a, b));
+                const bool is_wall = shape.geometry.shape == ColliderShape::bucket && part == 1;
+                // between samples the distance is less by half of their spacing at most
+                if (!is_wall) CHECK(contact.nearest >= sampled.least - (2e-4 + 0.5 / samples) * length);
                 Real least = sampled.at_ends;
                 for (std::size_t i = 0; i < contact.count; ++i) {
                     const EdgePoint& point = contact.point[i];

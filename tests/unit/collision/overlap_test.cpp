@@ -256,7 +256,7 @@ TEST_CASE("a box in every collider is found, outside by nothing it is not", "[un
     };
     for (const Case& c : cases) {
         const auto at = [&](Real z) {
-            return find_points_inside(c.geometry, still, {box, still.position + Vec3(0, 0, z)}, tolerance);
+            return find_surface_inside(c.geometry, still, {box, still.position + Vec3(0, 0, z)}, tolerance);
         };
         INFO("shape " << static_cast<int>(c.geometry.shape));
         CHECK_FALSE(at(c.touching));
@@ -267,16 +267,17 @@ TEST_CASE("a box in every collider is found, outside by nothing it is not", "[un
         CHECK(shallow->depth == Approx(1e-3));
         CHECK(shallow->direction.z() == Approx(1));
     }
-    const auto buried = find_points_inside(cases[2].geometry, still, {box, still.position}, tolerance);
+    const auto buried = find_surface_inside(cases[2].geometry, still, {box, still.position}, tolerance);
     REQUIRE(buried);
     CHECK(buried->kind == OverlapKind::inside);
     const Solid large = solid_of(box_mesh({2, 2, 2}, Vec3(9, 9, 9)));
     for (std::size_t k = 1; k < cases.size(); ++k) {
-        CHECK_FALSE(find_points_inside(cases[k].geometry, still, {large, still.position + Vec3(1, 2, 1)}, tolerance));
-        const auto around = find_collider_inside(cases[k].geometry, still, {large, still.position + Vec3(1, 2, 1)});
+        CHECK_FALSE(find_surface_inside(cases[k].geometry, still, {large, still.position + Vec3(1, 2, 1)}, tolerance));
+        const auto around =
+            find_collider_inside(cases[k].geometry, still, {large, still.position + Vec3(1, 2, 1)}, tolerance);
         REQUIRE(around);
         CHECK(around->kind == OverlapKind::around);
-        CHECK_FALSE(find_collider_inside(cases[k].geometry, still, {large, still.position + Vec3(0, 0, 6)}));
+        CHECK_FALSE(find_collider_inside(cases[k].geometry, still, {large, still.position + Vec3(0, 0, 6)}, tolerance));
     }
 }
 

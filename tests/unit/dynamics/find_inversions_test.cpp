@@ -18,7 +18,7 @@ struct Loose {
     std::vector<Range> blocks;
     std::vector<Real> max_speed, travel, displacement, uninverted_until, block_uninverted_until;
     std::vector<Vec3> position, velocity, push;
-    Column<InversionPart> parts;
+    InversionMemory memory;
 
     Loose(std::mt19937_64& random, const std::vector<Index>& elements) {
         std::uniform_real_distribution<Real> place(-1, 1);
@@ -64,7 +64,7 @@ struct Loose {
         const auto executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
         return find_inversions(*executor,
                                {node, volume, {}, blocks, max_speed, travel, displacement, position, velocity, push}, h,
-                               parts, {block_uninverted_until, uninverted_until});
+                               memory, {block_uninverted_until, uninverted_until});
     }
     /// The same by looking at every element.
     Inversions by_hand() const {
@@ -97,10 +97,10 @@ TEST_CASE("what turns inside out is found, as by looking at every element in eve
     for (const int workers : {1, 4}) {
         std::mt19937_64 random(7);
         std::normal_distribution<Real> kick(0, 1);
-        Loose loose(random, {1, 1100, 30});
+        Loose loose(random, {1, 2200, 30});
         std::size_t with = 0, skipped = 0;
         std::vector<Vec3> start = loose.position;
-        for (int step = 0; step < 400; ++step) {
+        for (int step = 0; step < 200; ++step) {
             for (std::size_t body = 0; body < loose.blocks.size(); ++body) {
                 const Real speed = (step / 50) % 2 ? 0.002 : 0.2;  // m/s, of a node: slow times and quick ones
                 for (Index b = loose.blocks[body].begin; b < loose.blocks[body].end; ++b)

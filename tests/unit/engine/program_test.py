@@ -211,6 +211,15 @@ class ProgramTest(ProgramCase):
         self.assertAlmostEqual(scene["body_kinds"][0]["stable_dt"], scene["stable_dt"], delta=1e-9 * scene["stable_dt"])
         self.assertIn("stable step", self.skerry("inspect", self.scene).stdout)
 
+    def test_inspect_says_what_another_value_would_do(self):
+        written = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
+        place = f"materials.{SCENE['bodies'][0]['material']}.E"
+        stiff = json.loads(self.skerry("inspect", self.scene, "--json", "--set", f"{place}=1e9").stdout)
+        self.assertLess(stiff["stable_dt"], written["stable_dt"])
+        self.assert_refused("inspect", self.scene, "--set", "materials.rubber.weight=1", said=["weight"])
+        mesh = ROOT / "scenes/meshes/torus.msh"
+        self.assert_refused("inspect", mesh, "--set", f"{place}=1e9", said=["torus.msh", "--set", "a mesh", "a scene"])
+
     def test_inspect_says_which_tetrahedra_bound_the_step(self):
         mesh = self.bad_box("bad.msh", cells=6)
         found = json.loads(self.skerry("inspect", mesh, "--json").stdout)["step_bound"]

@@ -1,0 +1,64 @@
+// How far the looks at the stable steps of all bodies have come. They are taken in small parts beside the steps, so
+// that no step takes longer than others for them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "components/column.h"
+#include "components/range.h"
+#include "components/step_levels.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// A look at one body: the pieces of it that are done, and what they found.
+struct StepLook {
+    std::uint64_t piece = 0;                           // the next one
+    Index broken = no_index;                           // the first element whose bound is no number
+    std::array<Real, element_level_count> highest{};   // 1/s^2, by level: bound of omega^2
+    std::array<Index, element_level_count> element{};  // by level, where the bound is not zero: whose it is
+};
+
+/// The looks go round over all bodies. State, of which the hash needs only the steps: what is done of a look before and
+/// after a try that is given up differs, but is made up for by the next one.
+struct StepWatch {
+    /// Of bodies that rest, whose shape does not change, and of those that somebody else has looked at.
+    static constexpr Real not_looked_at = -1;
+
+    std::uint64_t steps = 0;  // of the present round
+    bool second = false;      // of two rounds, after which the energies are looked at
+    Index body = 0;           // row of BodyTable: whose look is under way
+    Index kept = 0;           // rows below it have had their shape kept in this round
+    StepLook look;
+    std::uint64_t before = 0;  // pieces of the rows below `body`
+    std::uint64_t target = 0;  // pieces to be done by the end of the next step
+
+    Column<Vec3> position;       // m, by node: the shape that is looked at
+    Column<Real> stiffness_sum;  // by node, of stable_step.h
+    Column<Real> step;           // s, by body: what was found, or not_looked_at
+
+    /// A new round, after this one or instead of it.
+    void begin_round() {
+        steps = 0;
+        body = kept = 0;
+        look = {};
+    }
+    /// Somebody else has looked at the body in this row, or it has changed since its shape was kept.
+    void forget(std::size_t row) {
+        if (row < step.size()) step[row] = not_looked_at;
+    }
+    /// This row of BodyTable and these of NodeTable are gone.
+    void erase(Index row, Range nodes) {
+        if (static_cast<std::size_t>(row) < step.size()) step.erase(static_cast<std::size_t>(row), 1);
+        if (static_cast<std::size_t>(nodes.end) <= position.size()) {
+            position.erase(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
+            stiffness_sum.erase(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
+        }
+        if (row == body) look = {};
+        body -= row < body;
+        kept -= row < kept;
+    }
+};
+
+}  // namespace skerry

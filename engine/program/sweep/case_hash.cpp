@@ -1,0 +1,77 @@
+#include "engine/program/sweep/case_hash.h"
+
+#include <cinttypes>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "components/hash.h"
+#include "engine/scene/assign.h"
+#include "engine/scene/parse_json.h"
+
+namespace skerry {
+
+namespace {
+
+void add_text(const std::string& text, Hash& hash) {
+    hash.add(text.size());
+    hash.add(text.data(), text.size());
+}
+
+}  // namespace
+
+CaseHasher::CaseHasher(const std::filesystem::path& scene) : file_(scene), scene_(read_json(scene)) {}
+
+std::string CaseHasher::hash(std::span<const std::string> assignments) {
+    Json json = scene_;
+    Hash all;
+    try {
+        for (const std::string& assignment : assignments) assign(assignment, file_, json);
+    } catch (const SceneError&) {
+        for (const std::string& assignment : assignments) add_text(assignment, all);
+    }
+    add_text(json.dump(-1, ' ', false, Json::error_handler_t::replace), all);
+    add_files(json, file_, all);
+    char text[24];
+    std::snprintf(text, sizeof text, "0x%016" PRIx64, all.value());
+    return text;
+}
+
+std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
+    const auto known = files_.find(file);
+    if (known != files_.end()) return known->second;
+    files_[file] = 0;  // of one that is not there, or that includes itself
+    Hash hash;
+    std::ifstream stream(file, std::ios::binary);
+    add_text({std::istreambuf_iterator<char>(stream), {}}, hash);
+    // The two files of TetGen name each other by their names alone.
+    for (const auto& [one, other] : {std::pair{".node", ".ele"}, std::pair{".ele", ".node"}})
+        if (file.extension() == one) {
+            std::ifstream beside(std::filesystem::path(file).replace_extension(other), std::ios::binary);
+            add_text({std::istreambuf_iterator<char>(beside), {}}, hash);
+        }
+    if (file.extension() == ".json") {
+        try {
+            add_files(read_json(file), file, hash);
+        } catch (const SceneError&) {  // the case will be refused for it
+        }
+    }
+    return files_[file] = hash.value();
+}
+
+void CaseHasher::add_files(const Json& json, const std::filesystem::path& of, Hash& hash) {
+    const auto add = [&](const Json& name) {
+        if (name.is_string()) hash.add(hash_of_file(of.parent_path() / name.get_ref<const std::string&>()));
+    };
+    if (!json.is_structured()) return;
+    for (const auto& [key, value] : json.items()) {
+        if (json.is_object() && (key == "include" || key == "file")) {
+            add(value);
+            if (value.is_array())
+                for (const Json& item : value) add(item);
+        }
+        add_files(value, of, hash);
+    }
+}
+
+}  // namespace skerry

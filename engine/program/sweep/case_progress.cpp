@@ -1,0 +1,46 @@
+#include "engine/program/sweep/case_progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "engine/program/number_text.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr double bar_interval = 0.1;      // s
+constexpr double first_line_after = 1;    // s
+constexpr double longest_interval = 600;  // s, between two lines
+
+}  // namespace
+
+CaseProgress::CaseProgress(bool wanted, int count)
+    : wanted_(wanted && count > 0),
+      bar_(wanted && isatty(STDERR_FILENO) != 0),
+      count_(count),
+      next_(bar_ ? 0 : first_line_after) {}
+
+CaseProgress::~CaseProgress() {
+    if (bar_) clear_bar();
+}
+
+void CaseProgress::show(int done, int running) {
+    const double wall = watch_.seconds();
+    if (!wanted_ || wall < next_) return;
+    const double share = static_cast<double>(done) / count_;
+    std::string text =
+        std::to_string(done) + " of " + std::to_string(count_) + " cases, " + std::to_string(running) + " under way";
+    if (done > 0) text += ", about " + duration_text(wall * (1 - share) / share) + " left";
+    if (bar_)
+        std::fprintf(stderr, "\r\033[K%s %s", bar_text(share).c_str(), text.c_str());
+    else
+        std::fprintf(stderr, "skerry: after %s: %s\n", duration_text(wall).c_str(), text.c_str());
+    std::fflush(stderr);
+    next_ = bar_ ? wall + bar_interval : wall + std::clamp(wall, first_line_after, longest_interval);
+}
+
+}  // namespace skerry

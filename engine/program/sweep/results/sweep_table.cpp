@@ -1,0 +1,200 @@
+#include "engine/program/sweep/results/sweep_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/program/number_text.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr int most_lines = 60;  // of cases on the terminal
+constexpr int most_messages = 10;
+
+using Cells = std::vector<std::string>;
+
+std::string number_cell(double value) {
+    return std::isfinite(value) ? short_number(value, 5) : "-";
+}
+
+double figure_of(const CaseResult& result, std::string_view name) {
+    const auto found = std::ranges::find(result.figures, name, [](const auto& figure) { return figure.first; });
+    return found == result.figures.end() ? std::nan("") : found->second;
+}
+
+/// Of the figures, those of the table on the terminal.
+std::vector<std::string> shown_figures(const SweepTable& table) {
+    std::vector<std::string> shown{"seconds_simulated", "steps",         "seconds_cpu",
+                                   "contacts_mean",     "penetration_m", "energy_error_share"};
+    for (const std::string& name : figure_names(table))
+        if (name.ends_with(".slip_m")) shown.push_back(name);
+    shown.emplace_back("doubts");
+    return shown;
+}
+
+std::string value_cell(const std::optional<Json>& value) {
+    if (!value) return "-";
+    if (value->is_number_float()) return short_number(value->get<double>(), 6);
+    return value->is_string() ? value->get<std::string>() : value->dump();
+}
+
+Cells case_cells(const SweepTable& table, int index, const std::vector<std::string>& shown) {
+    const auto row = static_cast<std::size_t>(index);
+    const CaseFile& file = table.files[row];
+    const bool whole = file.state == CaseFileState::whole;
+    Cells cells{std::to_string(index)};
+    for (const std::optional<Json>& value : table.cases.values[row]) cells.push_back(value_cell(value));
+    cells.emplace_back(whole ? name_of(file.result.status) : "not run");
+    for (const std::string& name : shown) cells.push_back(number_cell(figure_of(file.result, name)));
+    return cells;
+}
+
+std::string aligned(const std::vector<Cells>& lines) {
+    std::vector<std::size_t> width;
+    for (const Cells& cells : lines) {
+        width.resize(std::max(width.size(), cells.size()));
+        for (std::size_t i = 0; i < cells.size(); ++i) width[i] = std::max(width[i], cells[i].size());
+    }
+    std::string text;
+    for (const Cells& cells : lines) {
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            text += (i == 0 ? "" : "  ") + std::string(width[i] - cells[i].size(), ' ') + cells[i];
+        text += "\n";
+    }
+    return text;
+}
+
+std::string messages_text(const SweepTable& table) {
+    std::string text;
+    int told = 0, left = 0;
+    for (const CaseFile& file : table.files) {
+        const CaseResult& result = file.result;
+        if (file.state != CaseFileState::whole || (result.message.empty() && result.doubts.empty())) continue;
+        if (told++ >= most_messages) {
+            ++left;
+            continue;
+        }
+        const std::string of = "case " + std::to_string(result.index) + " ";
+        if (!result.message.empty()) text += of + std::string(name_of(result.status)) + ": " + result.message + "\n";
+        for (const std::string& doubt : result.doubts) text += of + "DOUBT: " + doubt + "\n";
+    }
+    if (left > 0) text += "... " + std::to_string(left) + " more cases have something to say: sweep.csv has all\n";
+    return text;
+}
+
+std::string totals_text(const SweepTable& table) {
+    int counts[3] = {0, 0, 0}, doubted = 0, missing = 0;
+    double cpu = 0;
+    for (const CaseFile& file : table.files) {
+        if (file.state != CaseFileState::whole) {
+            ++missing;
+            continue;
+        }
+        ++counts[static_cast<int>(file.result.status)];
+        if (!file.result.doubts.empty()) ++doubted;
+        cpu += figure_of(file.result, "seconds_cpu");
+    }
+    std::string text = std::to_string(table.cases.count()) + " cases: " + std::to_string(counts[0]) + " ok";
+    const auto add = [&text](int count, const char* what) {
+        if (count > 0) text += ", " + std::to_string(count) + " " + what;
+    };
+    add(counts[1], "failed");
+    add(counts[2], "refused");
+    add(missing, "not run");
+    add(doubted, "doubted");
+    return text + "; " + duration_text(cpu) + " of CPU in all\n";
+}
+
+/// What a sweep would be for, if not for this.
+std::string sameness_text(const SweepTable& table) {
+    std::string hash;
+    int same = 0;
+    for (const CaseFile& file : table.files) {
+        if (file.state != CaseFileState::whole || file.result.state_hash.empty()) continue;
+        if (!hash.empty() && file.result.state_hash != hash) return {};
+        hash = file.result.state_hash;
+        ++same;
+    }
+    return same > 1 ? "All " + std::to_string(same) +
+                          " cases that ran ended in the same state: no parameter has changed anything\n"
+                    : "";
+}
+
+std::string csv_cell(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + "\"";
+}
+
+/// With all digits; whole numbers without a point.
+std::string csv_number(double value) {
+    if (!std::isfinite(value)) return {};
+    constexpr double exact = 1e15;
+    return value == std::floor(value) && std::abs(value) < exact ? std::to_string(static_cast<long long>(value))
+                                                                 : Json(value).dump();
+}
+
+void add_line(const Cells& cells, std::string& csv) {
+    for (std::size_t i = 0; i < cells.size(); ++i) csv += (i == 0 ? "" : ",") + csv_cell(cells[i]);
+    csv += "\r\n";
+}
+
+std::string joined(const std::vector<std::string>& sentences) {
+    std::string text;
+    for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+    return text;
+}
+
+}  // namespace
+
+std::vector<std::string> figure_names(const SweepTable& table) {
+    std::vector<std::string> names;
+    for (const CaseFile& file : table.files)
+        for (const auto& [name, value] : file.result.figures)
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    return names;
+}
+
+std::string table_text(const SweepTable& table) {
+    const std::vector<std::string> shown = shown_figures(table);
+    Cells head{std::string(case_column)};
+    for (const Parameter& parameter : table.cases.parameters) head.push_back(parameter.name);
+    head.emplace_back(status_column);
+    head.insert(head.end(), shown.begin(), shown.end());
+    std::vector<Cells> lines{head};
+    const int count = std::min(table.cases.count(), most_lines);
+    for (int i = 0; i < count; ++i) lines.push_back(case_cells(table, i, shown));
+    std::string text = aligned(lines);
+    if (count < table.cases.count())
+        text += "... " + std::to_string(table.cases.count() - count) + " more cases in sweep.csv\n";
+    return text + messages_text(table) + sameness_text(table) + totals_text(table);
+}
+
+std::string table_csv(const SweepTable& table) {
+    const std::vector<std::string> figures = figure_names(table);
+    Cells head{std::string(case_column)};
+    for (const Parameter& parameter : table.cases.parameters) head.push_back(parameter.name);
+    head.emplace_back(status_column);
+    head.insert(head.end(), figures.begin(), figures.end());
+    for (const std::string_view name : {hash_column, message_column, doubts_column}) head.emplace_back(name);
+    std::string csv;
+    add_line(head, csv);
+    for (std::size_t i = 0; i < table.files.size(); ++i) {
+        const CaseFile& file = table.files[i];
+        Cells cells{std::to_string(i)};
+        for (const std::optional<Json>& value : table.cases.values[i])
+            cells.push_back(!value               ? std::string()
+                            : value->is_string() ? value->get<std::string>()
+                            : value->is_number() ? csv_number(value->get<double>())
+                                                 : value->dump());
+        cells.emplace_back(file.state == CaseFileState::whole ? name_of(file.result.status) : "not run");
+        for (const std::string& name : figures) cells.push_back(csv_number(figure_of(file.result, name)));
+        cells.insert(cells.end(), {file.result.state_hash, file.result.message, joined(file.result.doubts)});
+        add_line(cells, csv);
+    }
+    return csv;
+}
+
+}  // namespace skerry

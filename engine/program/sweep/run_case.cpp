@@ -1,0 +1,85 @@
+#include "engine/program/sweep/run_case.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <exception>
+#include <iostream>
+
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+double seconds_of(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// Of this process, all its life.
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+}
+
+RunOptions options_of(const CaseJob& job) {
+    RunOptions options;
+    options.scene = job.scene;
+    options.overrides.assignments = job.head.assignments;
+    options.overrides.threads = 1;
+    options.overrides.backend = Backend::serial;
+    options.quiet = true;
+    if (job.probes) options.probes = unfinished_series_file(job.folder, job.index);
+    return options;
+}
+
+int run_to_file(const CaseJob& job) {
+    CaseResult result;
+    Json report;
+    try {
+        const RunResult run = simulate(options_of(job));
+        if (run.stopped_by != 0) return exit_signal + run.stopped_by;
+        if (!run.outputs_failed.empty()) return exit_output;
+        result = result_of(run, cpu_seconds());
+        report = statistics_of(run);
+    } catch (const SceneError& error) {
+        result.status = CaseStatus::refused;
+        result.message = error.what();
+        result.figures = {{"seconds_cpu", cpu_seconds()}};
+    }
+    result.index = job.index;
+    const std::filesystem::path unfinished = unfinished_series_file(job.folder, job.index);
+    std::error_code error;
+    if (job.probes && std::filesystem::exists(unfinished, error))
+        std::filesystem::rename(unfinished, series_file(job.folder, job.index));
+    try {
+        write_case(case_file(job.folder, job.index), job.head, result, report);
+    } catch (const SceneError& failure) {
+        std::cerr << "skerry: " << failure.what() << std::endl;
+        return exit_output;
+    }
+    return exit_ok;
+}
+
+}  // namespace
+
+int run_case(const CaseJob& job) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that would get too large is an error like any other
+    try {
+        return run_to_file(job);
+    } catch (const std::exception& error) {
+        std::cerr << "skerry: case " << job.index << ": " << error.what() << std::endl;
+        return exit_failed;
+    }
+}
+
+std::filesystem::path series_file(const std::filesystem::path& folder, int index) {
+    return case_file(folder, index).replace_extension(".csv");
+}
+
+std::filesystem::path unfinished_series_file(const std::filesystem::path& folder, int index) {
+    return case_file(folder, index).replace_extension(".part.csv");
+}
+
+}  // namespace skerry

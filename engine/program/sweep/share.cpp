@@ -1,0 +1,114 @@
+#include "engine/program/sweep/share.h"
+
+#include <charconv>
+#include <cstring>
+
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+[[noreturn]] void refuse_share(const std::string& who, const std::string& found, const std::string& expected,
+                               const std::string& hint) {
+    Complaint{.file = {}, .object = who, .field = {}, .found = found, .expected = expected, .hint = hint}.raise();
+}
+
+const char* const by_hand = "--rank I --of N say it by hand";
+
+class Variables {
+public:
+    explicit Variables(const Environment& environment) : environment_(environment) {}
+
+    bool has(const char* name) const { return text(name) != nullptr; }
+
+    /// Empty where it is not set.
+    std::optional<int> number(const char* name) const {
+        const char* const found = text(name);
+        if (found == nullptr) return {};
+        int value = 0;
+        const char* const end = found + std::strlen(found);
+        const auto [read, error] = std::from_chars(found, end, value);
+        if (error != std::errc() || read != end || value < 0)
+            refuse_share(name, "\"" + std::string(found) + "\"", "a whole number from 0", by_hand);
+        return value;
+    }
+
+private:
+    /// Empty counts as not set: so scripts switch a variable off.
+    const char* text(const char* name) const {
+        const char* const value = environment_(name);
+        return value != nullptr && *value != '\0' ? value : nullptr;
+    }
+
+    const Environment& environment_;
+};
+
+void require_within(const Share& share, const std::string& who) {
+    if (share.of < 1) refuse_share(who, "0 processes", "at least one", by_hand);
+    if (share.rank >= share.of)
+        refuse_share(who, "rank " + std::to_string(share.rank) + " of " + std::to_string(share.of),
+                     "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
+}
+
+/// Tasks of one job: the launcher that is nearest to this process, which may have been started by the others.
+Share task_share(const Variables& variables) {
+    struct Launcher {
+        const char *rank, *of;
+    };
+    constexpr Launcher launchers[] = {
+        {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, {"PMI_RANK", "PMI_SIZE"}, {"SLURM_PROCID", "SLURM_NTASKS"}};
+    for (const Launcher& launcher : launchers) {
+        const bool slurm = std::strcmp(launcher.rank, "SLURM_PROCID") == 0;
+        // what sbatch starts has a rank, 0, and the number of tasks that it may start, but is no step
+        if (slurm && variables.has("SLURM_JOB_ID") && !variables.has("SLURM_STEP_ID")) continue;
+        const char* const count = slurm && variables.has("SLURM_STEP_NUM_TASKS") ? "SLURM_STEP_NUM_TASKS" : launcher.of;
+        const std::optional<int> rank = variables.number(launcher.rank), of = variables.number(count);
+        if (!rank || !of) continue;
+        const Share share{*rank, *of, std::string(launcher.rank) + ", " + count, 1};
+        require_within(share, share.said_by);
+        return share;
+    }
+    return {};
+}
+
+/// Jobs of a SLURM array, whose numbers may begin anywhere and be some apart.
+Share array_share(const Variables& variables) {
+    const std::optional<int> id = variables.number("SLURM_ARRAY_TASK_ID");
+    if (!id) return {};
+    const std::optional<int> count = variables.number("SLURM_ARRAY_TASK_COUNT");
+    if (!count)
+        refuse_share("SLURM_ARRAY_TASK_ID", "no SLURM_ARRAY_TASK_COUNT beside it", "the number of jobs of the array",
+                     by_hand);
+    const int least = variables.number("SLURM_ARRAY_TASK_MIN").value_or(0);
+    const int step = variables.number("SLURM_ARRAY_TASK_STEP").value_or(1);
+    if (*id < least || step < 1 || (*id - least) % step != 0 || (*id - least) / step >= *count)
+        refuse_share("SLURM_ARRAY_TASK_ID",
+                     std::to_string(*id) + " of " + std::to_string(*count) + " jobs from " + std::to_string(least) +
+                         " on, " + std::to_string(step) + " apart",
+                     "an array without gaps, such as --array=0-63", by_hand);
+    return {(*id - least) / step, *count, "SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT", {}};
+}
+
+}  // namespace
+
+Share share_of(std::optional<int> rank, std::optional<int> of, const Environment& environment) {
+    const Variables variables(environment);
+    Share share;
+    if (rank || of) {
+        if (!rank || !of) refuse_share("command line", rank ? "--rank alone" : "--of alone", "--rank I --of N", {});
+        share = {*rank, *of, "--rank, --of", {}};
+        require_within(share, "command line");
+        return share;
+    }
+    const Share array = array_share(variables), task = task_share(variables);
+    share.rank = array.rank * task.of + task.rank;
+    share.of = array.of * task.of;
+    share.said_by = array.said_by + (array.said_by.empty() || task.said_by.empty() ? "" : "; ") + task.said_by;
+    share.cores = task.cores;
+    if (const std::optional<int> cores = variables.number("SLURM_CPUS_PER_TASK"); cores && *cores > 0)
+        share.cores = cores;
+    return share;
+}
+
+}  // namespace skerry

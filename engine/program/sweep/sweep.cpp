@@ -1,0 +1,246 @@
+// The command: which cases are left, running them, the table when all are there.
+#include <fcntl.h>
+#include <sched.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <ostream>
+
+#include "engine/output/write_file.h"
+#include "engine/program/commands.h"
+#include "engine/program/number_text.h"
+#include "engine/program/require_writable.h"
+#include "engine/program/sweep/case_progress.h"
+#include "engine/program/sweep/process_pool.h"
+#include "engine/program/sweep/results/sweep_table.h"
+#include "engine/program/sweep/share.h"
+#include "engine/program/sweep/sweep_plan.h"
+#include "skerry/error.h"
+
+namespace skerry {
+
+namespace {
+
+/// That the system lets this process use: those of its cgroup's set or of who bound it, not all of the machine.
+int cores_here() {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+    return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));  // more cores than such a set can name
+}
+
+std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
+    std::vector<int> mine;
+    for (int i = 0; i < plan.cases.count(); ++i)
+        if (share.has(i)) mine.push_back(i);
+    return mine;
+}
+
+/// Of those cases, the ones without a result. Refuses results of other cases, unless they may go.
+std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine, bool redo) {
+    std::vector<int> left;
+    int others = 0;
+    std::string first;  // of the others
+    for (const int index : mine) {
+        const CaseFile file = plan.read(index);
+        if (file.state == CaseFileState::other && others++ == 0)
+            first = case_file({}, index).string() + " is " + file.found;
+        if (file.state != CaseFileState::whole) left.push_back(index);
+    }
+    if (others == 0) return left;
+    if (!redo)
+        Complaint{.file = plan.folder.string(),
+                  .object = "output",
+                  .field = {},
+                  .found = std::to_string(others) + (others == 1 ? " file that is" : " files that are") +
+                           " not of these cases; " + first,
+                  .expected = "results of " + plan.file.place.file().string() + " as it is now",
+                  .hint = "--redo computes these cases again; --out takes another folder"}
+            .raise();
+    std::cerr << "skerry: " << others << " results of other cases are computed again" << std::endl;
+    return left;
+}
+
+void print_cases(const SweepPlan& plan, const std::vector<int>& mine) {
+    int done = 0;
+    for (const int index : mine) {
+        const CaseFileState state = plan.read(index).state;
+        done += state == CaseFileState::whole ? 1 : 0;
+        std::cout << "case " << index << ": " << case_text(plan.cases, index)
+                  << (state == CaseFileState::whole   ? "  (done)"
+                      : state == CaseFileState::other ? "  (its file is another's)"
+                                                      : "")
+                  << "\n";
+    }
+    std::cout << mine.size() << " of " << plan.cases.count() << " cases are for this process, " << done
+              << " of them are done; results in " << plan.folder.string() << std::endl;
+}
+
+/// Holds other processes off the files of the whole sweep while it lives, where the file system can.
+class FolderLock {
+public:
+    explicit FolderLock(const std::filesystem::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_CLOEXEC)) {
+        if (descriptor_ >= 0) static_cast<void>(flock(descriptor_, LOCK_EX));
+    }
+    ~FolderLock() {
+        if (descriptor_ >= 0) close(descriptor_);
+    }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int descriptor_;
+};
+
+SweepTable collect(const SweepPlan& plan) {
+    SweepTable table{plan.file, plan.cases, {}};
+    for (int i = 0; i < plan.cases.count(); ++i) table.files.push_back(plan.read(i));
+    return table;
+}
+
+int count_missing(const SweepTable& table) {
+    int missing = 0;
+    for (const CaseFile& file : table.files) missing += file.state == CaseFileState::whole ? 0 : 1;
+    return missing;
+}
+
+void write_tables(const SweepPlan& plan, const SweepTable& table, bool quiet) {
+    const FolderLock lock(plan.folder);
+    const std::filesystem::path csv = plan.folder / "sweep.csv", page = plan.folder / "sweep.html";
+    write_file(csv, [&](std::ostream& out) { out << table_csv(table); });
+    write_file(page, [&](std::ostream& out) { out << table_page(table); });
+    if (!quiet) std::cout << table_text(table) << "wrote " << csv.string() << "\nwrote " << page.string() << std::endl;
+}
+
+/// What cases that came to no end have left behind.
+void remove_unfinished(const SweepPlan& plan, int index) {
+    std::error_code ignored;
+    std::filesystem::remove(case_file(plan.folder, index) += ".part", ignored);
+    std::filesystem::remove(unfinished_series_file(plan.folder, index), ignored);
+}
+
+struct SweepRun {
+    PoolEnd end;
+    bool output_failed = false;
+};
+
+SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs, const SweepOptions& options) {
+    SweepRun run;
+    CaseProgress progress(!options.quiet, static_cast<int>(left.size()));
+    const auto index_of = [&](int job) { return left[static_cast<std::size_t>(job)]; };
+    const auto one = [&](int job) { return run_case(plan.job(index_of(job), options.probes)); };
+    const auto goes_on = [&](int, int code) {
+        run.output_failed |= code == exit_output;  // what does not fit now will not later
+        return !run.output_failed;
+    };
+    const auto show = [&](int done, int running) { progress.show(done, running); };
+    run.end = run_in_processes(static_cast<int>(left.size()), jobs, {one, goes_on, show});
+    for (const auto& [job, how] : run.end.lost) remove_unfinished(plan, index_of(job));
+    for (const int job : run.end.stopped) remove_unfinished(plan, index_of(job));
+    clear_bar();
+    for (const auto& [job, how] : run.end.lost)
+        std::cerr << "skerry: case " << index_of(job) << " (" << case_text(plan.cases, index_of(job)) << ") " << how
+                  << ": it has no result" << std::endl;
+    return run;
+}
+
+/// Whether no case of this process failed, was refused or is doubted.
+bool all_good(const SweepPlan& plan, const std::vector<int>& mine) {
+    return std::ranges::all_of(mine, [&](int index) {
+        const CaseFile file = plan.read(index);
+        return file.state != CaseFileState::whole ||
+               (file.result.status == CaseStatus::ok && file.result.doubts.empty());
+    });
+}
+
+bool is_there(const SweepPlan& plan, int index) {
+    std::error_code error;
+    return std::filesystem::exists(case_file(plan.folder, index), error);
+}
+
+/// Whether every case has a file. Of many processes most find one that has none soon, and read no other's results.
+bool all_there(const SweepPlan& plan) {
+    for (int i = 0; i < plan.cases.count(); ++i)
+        if (!is_there(plan, i)) return false;
+    return true;
+}
+
+/// The table, where all have a result; else how to go on.
+void conclude(const SweepPlan& plan, const std::vector<int>& mine, const SweepOptions& options) {
+    if (options.table || all_there(plan)) {
+        const SweepTable table = collect(plan);
+        if (options.table || count_missing(table) == 0) return write_tables(plan, table, options.quiet);
+    }
+    if (options.quiet) return;
+    // by their files: a process may have been stopped after it had written its own
+    const auto there = std::ranges::count_if(mine, [&](int index) { return is_there(plan, index); });
+    const bool all = there == static_cast<std::ptrdiff_t>(mine.size());
+    std::cout << there << " of " << mine.size() << " cases of this process have a result in " << plan.folder.string()
+              << ". " << (all ? "" : "The same command goes on with the rest. ")
+              << "The table comes with the last of all " << plan.cases.count() << " cases, or by --table." << std::endl;
+}
+
+int exit_code_of(const SweepPlan& plan, const std::vector<int>& mine, const SweepRun& run,
+                 const SweepOptions& options) {
+    if (run.end.signal != 0) return exit_signal + run.end.signal;
+    if (run.output_failed) return exit_output;
+    if (!run.end.lost.empty()) return exit_failed;
+    return options.strict && !all_good(plan, mine) ? exit_failed : exit_ok;
+}
+
+/// Results do not take the place of what is read.
+void check_folder(const SweepPlan& plan, const SweepOptions& options) {
+    require_writable_folder(plan.folder);
+    for (const char* name : {"sweep.csv", "sweep.html"}) require_writable_file(plan.folder / name);
+    for (const std::filesystem::path& read : {options.cases, plan.file.scene.path}) {
+        std::error_code error;
+        const std::string name = read.filename().string();
+        const bool taken = name.starts_with("case_") || name == "sweep.csv" || name == "sweep.html";
+        if (taken && std::filesystem::equivalent(std::filesystem::absolute(read).parent_path(), plan.folder, error))
+            Complaint{.file = read.string(),
+                      .object = "--out",
+                      .field = {},
+                      .found = "a file with the name of a result in the folder of the results",
+                      .expected = "another folder",
+                      .hint = {}}
+                .raise();
+    }
+}
+
+}  // namespace
+
+int sweep(const SweepOptions& options) {
+    const Share share = share_of(options.rank, options.of, [](const char* name) { return std::getenv(name); });
+    const SweepPlan plan = plan_sweep(options.cases, options.out);
+    const std::vector<int> mine = cases_of_share(plan, share);
+    if (options.dry_run) {
+        print_cases(plan, mine);
+        return exit_ok;
+    }
+    check_folder(plan, options);
+    SweepRun run;
+    if (!options.table) {
+        const std::vector<int> left = cases_left(plan, mine, options.redo);
+        const int jobs = options.jobs.value_or(share.cores.value_or(cores_here()));
+        if (!options.quiet) {
+            if (!share.said_by.empty())
+                std::cerr << "skerry: process " << share.rank << " of " << share.of << " (" << share.said_by << ")\n";
+            std::cerr << "skerry: " << left.size() << " of " << mine.size() << " cases to run, " << jobs
+                      << " at a time\n";
+        }
+        make_folder(plan.folder);
+        run = run_cases(plan, left, jobs, options);
+    }
+    try {
+        conclude(plan, mine, options);
+    } catch (const SceneError& error) {  // of a table: the results are there
+        std::cerr << "skerry: " << error.what() << std::endl;
+        return exit_output;
+    }
+    return exit_code_of(plan, mine, run, options);
+}
+
+}  // namespace skerry

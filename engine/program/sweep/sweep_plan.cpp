@@ -1,0 +1,105 @@
+#include "engine/program/sweep/sweep_plan.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/program/sweep/case_hash.h"
+#include "engine/scene/assign.h"
+#include "engine/scene/scene_file.h"
+
+namespace skerry {
+
+namespace {
+
+std::vector<std::string> keys_of(const Json& json, const char* key) {
+    std::vector<std::string> names;
+    if (const auto found = json.find(key); found != json.end() && found->is_object())
+        for (const auto& [name, value] : found->items()) names.push_back(name);
+    return names;
+}
+
+/// Sets one place of a scene. A value of a material that is not there would make one that no body has.
+void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
+               Json& json) {
+    if (place.find('=') != std::string::npos)
+        of.refuse("the place " + in_quotes(place), "a place alone, without \"=\" and value");
+    const std::vector<std::string> before = keys_of(json, "materials");
+    called_at(of, [&] { assign(place + "=" + value.dump(), scene, json); });
+    for (const std::string& name : keys_of(json, "materials"))
+        if (std::ranges::find(before, name) == before.end() && !value.is_object())
+            of.refuse("the place " + in_quotes(place) + ", of a material that " + scene.string() + " has not",
+                      before.empty() ? "a scene with materials of its own" : "one of " + listed(before),
+                      nearest_hint(name, before));
+}
+
+/// Whether one of the scenes can be read says whether the sweep was meant.
+void require_a_readable_case(const SweepPlan& plan) {
+    const SweepFile& file = plan.file;
+    constexpr int most_tried = 100;
+    std::string first;
+    for (int i = 0; i < std::min(plan.cases.count(), most_tried); ++i) {
+        try {
+            read_scene_file(file.scene.path, assignments_of(file, plan.cases, i));
+            return;
+        } catch (const SceneError& error) {
+            if (first.empty())
+                first = "case " + std::to_string(i) + " (" + case_text(plan.cases, i) + "): " + error.what();
+        }
+    }
+    file.place.key(file.random         ? "random"
+                   : file.grid.empty() ? "list"
+                                       : "grid")
+        .refuse_inner("no case is a scene that can be read; " + first);
+}
+
+/// Tries all places on the scene; those of a list case by case.
+void require_places(const SweepPlan& plan, const Json& scene) {
+    const SweepFile& file = plan.file;
+    Json fixed = scene;
+    for (const auto& [place, value] : file.set.items)
+        try_place(file.place.key("set"), place, value.json, file.scene.path, fixed);
+    for (std::size_t i = 0; i < plan.cases.values.size(); ++i) {
+        Json json = fixed;
+        for (std::size_t p = 0; p < plan.cases.parameters.size(); ++p) {
+            const Parameter& parameter = plan.cases.parameters[p];
+            const std::optional<Json>& value = plan.cases.values[i][p];
+            if (!value) continue;
+            const Place of = file.list.empty() ? parameter.place.key("set") : file.place.key("list").item(i);
+            for (const std::string& place : parameter.places) try_place(of, place, *value, file.scene.path, json);
+        }
+        if (file.list.empty()) return;
+    }
+}
+
+}  // namespace
+
+CaseJob SweepPlan::job(int index, bool probes) const {
+    Json values = Json::object();
+    const std::vector<std::optional<Json>>& row = cases.values[static_cast<std::size_t>(index)];
+    for (std::size_t p = 0; p < row.size(); ++p)
+        if (row[p]) values[cases.parameters[p].name] = *row[p];
+    return {index,
+            file.scene.path,
+            {file.name, file.scene.path.string(), hashes[static_cast<std::size_t>(index)], std::move(values),
+             assignments_of(file, cases, index)},
+            folder,
+            probes};
+}
+
+CaseFile SweepPlan::read(int index) const {
+    return read_case(case_file(folder, index), index, hashes[static_cast<std::size_t>(index)]);
+}
+
+SweepPlan plan_sweep(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    SweepPlan plan{.file = read_sweep_file(file), .cases = {}, .folder = folder, .hashes = {}};
+    plan.cases = cases_of(plan.file);
+    if (plan.folder.empty()) plan.folder = std::filesystem::path("out") / file.stem();
+    CaseHasher hasher(plan.file.scene.path);
+    require_places(plan, hasher.scene());
+    require_a_readable_case(plan);
+    for (int i = 0; i < plan.cases.count(); ++i)
+        plan.hashes.push_back(hasher.hash(assignments_of(plan.file, plan.cases, i)));
+    return plan;
+}
+
+}  // namespace skerry

@@ -1,0 +1,308 @@
+#include "profiling/scaling/schedule.h"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+#include <vector>
+
+namespace skerry::profiling {
+
+namespace {
+
+constexpr int nobody = -1;
+
+/// By what a block takes longer than alone when `busy` of `cores` cores are at work.
+class Slowdown {
+public:
+    Slowdown(int cores, const MachineModel& machine, const Traffic& traffic)
+        : demand_(traffic.bytes_per_second), bandwidth_(machine.bandwidth) {
+        const int chiplets = (cores + machine.cores_per_chiplet - 1) / machine.cores_per_chiplet;
+        in_caches_ = traffic.working_set <= chiplets * machine.cache_per_chiplet;
+        // Any worker may get any block: each core has written what is read as often as any other.
+        const double elsewhere = 1 - 1.0 / cores, far = 1 - 1.0 / chiplets;
+        moved_ = 1 + demand_ * ((elsewhere - far) / machine.near_rate + far / machine.far_rate);
+    }
+    double operator()(int busy) const { return in_caches_ ? moved_ : std::max(moved_, busy * demand_ / bandwidth_); }
+
+private:
+    double demand_, bandwidth_, moved_ = 1;
+    bool in_caches_ = true;
+};
+
+/// Cores that work through the parts of a recording, one part after the other.
+class Cores {
+public:
+    Cores(const Recording& recording, int count, const MachineModel& machine, const Traffic& traffic)
+        : recording_(recording),
+          machine_(machine),
+          slowdown_(count, machine, traffic),
+          transfer_(count > machine.cores_per_chiplet ? machine.far_line_transfer : machine.line_transfer),
+          workers_(static_cast<std::size_t>(count)) {}
+
+    /// Begins when all has ended before, on worker 0. Returns when it ends, s.
+    double run(std::span<const StageRun> part);
+
+private:
+    /// A loop whose blocks are being taken.
+    struct Loop {
+        int owner;
+        Range blocks;  // those that nobody has taken
+        int inside;    // workers
+        double counter_free = 0;
+    };
+    struct Worker {
+        Index stage = no_index;  // row of part_, if it runs one
+        Index piece = 0;         // its next
+        int loop = nobody;       // owner of the loop that it takes blocks from
+        bool idle = true, in_team = false;
+        double idle_since = 0;
+    };
+    struct Event {
+        double time;
+        std::uint64_t number;  // of events at the same time the first made is the first
+        int worker;
+        bool operator>(const Event& other) const {
+            return time != other.time ? time > other.time : number > other.number;
+        }
+    };
+
+    Worker& worker(int w) { return workers_[static_cast<std::size_t>(w)]; }
+    void at(double time, int w) { events_.push({time, event_count_++, w}); }
+    int busy() const {
+        return static_cast<int>(std::ranges::count_if(workers_, [](const Worker& w) { return !w.idle; }));
+    }
+    double longer(double seconds) const { return seconds * slowdown_(busy()); }
+    double seconds_of(Index block) const { return recording_.seconds[static_cast<std::size_t>(block)]; }
+
+    void go_on(int w, double time);
+    void start_stage(int w, Index stage);
+    void next_piece(int w, double time);
+    void take_block(int w, double time);
+    void end_stage(int w, double time);
+    void find_work(int w, double time);
+    void hand_out(int w, const Piece& piece, double time);
+    double run_phase(int w, const Piece& piece, double time);
+    void dismiss_team(double time);
+    void wake(Index most, double time);
+    Loop* open_loop();
+    Loop& loop_of(int owner);
+
+    const Recording& recording_;
+    const MachineModel& machine_;
+    Slowdown slowdown_;
+    double transfer_;
+    std::vector<Worker> workers_;
+    double now_ = 0;
+
+    std::span<const StageRun> part_;
+    std::vector<Index> left_;   // predecessors, by stage
+    std::vector<Index> ready_;  // stages
+    std::vector<Loop> loops_;
+    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+    std::uint64_t event_count_ = 0;
+    int team_leader_ = nobody;
+};
+
+double Cores::run(std::span<const StageRun> part) {
+    part_ = part;
+    ready_.clear();
+    left_.clear();
+    if (part.front().stage == no_index) {
+        start_stage(0, 0);
+    } else {
+        left_ = recording_.graph.predecessor_count;
+        for (Index s = 0; s < static_cast<Index>(left_.size()); ++s)
+            if (left_[static_cast<std::size_t>(s)] == 0) ready_.push_back(s);
+        if (ready_.empty()) return now_;
+        start_stage(0, ready_.front());
+        ready_.erase(ready_.begin());
+        wake(static_cast<Index>(ready_.size()), now_);
+    }
+    at(now_, 0);
+    while (!events_.empty()) {
+        const Event event = events_.top();
+        events_.pop();
+        go_on(event.worker, event.time);
+    }
+    return now_;
+}
+
+void Cores::go_on(int w, double time) {
+    if (worker(w).loop != nobody)
+        take_block(w, time);
+    else if (worker(w).stage != no_index)
+        next_piece(w, time);
+    else
+        find_work(w, time);
+}
+
+void Cores::start_stage(int w, Index stage) {
+    worker(w).idle = false;
+    worker(w).stage = stage;
+    worker(w).piece = part_[static_cast<std::size_t>(stage)].pieces.begin;
+}
+
+void Cores::next_piece(int w, double time) {
+    Worker& self = worker(w);
+    if (self.piece == part_[static_cast<std::size_t>(self.stage)].pieces.end) {
+        end_stage(w, time);
+        return;
+    }
+    const Piece& piece = recording_.pieces[static_cast<std::size_t>(self.piece++)];
+    switch (piece.kind) {
+        case PieceKind::serial:
+            at(time + longer(seconds_of(piece.blocks.begin)), w);
+            return;
+        case PieceKind::loop:
+            hand_out(w, piece, time);
+            return;
+        case PieceKind::phase:
+            at(run_phase(w, piece, time), w);
+            return;
+    }
+}
+
+void Cores::hand_out(int w, const Piece& piece, double time) {
+    loops_.push_back({w, piece.blocks, 1});
+    worker(w).loop = w;
+    wake(piece.blocks.size() - 1, time);
+    take_block(w, time);
+}
+
+Cores::Loop* Cores::open_loop() {
+    for (Loop& loop : loops_)
+        if (loop.blocks.size() > 0) return &loop;
+    return nullptr;
+}
+
+Cores::Loop& Cores::loop_of(int owner) {
+    return *std::ranges::find_if(loops_, [&](const Loop& loop) { return loop.owner == owner; });
+}
+
+/// The next block of the loop that the worker is in. When there is none the worker leaves, and the last that does lets
+/// the owner go on.
+void Cores::take_block(int w, double time) {
+    Loop& loop = loop_of(worker(w).loop);
+    if (loop.blocks.size() > 0) {
+        double begin = time;
+        if (loop.inside > 1) begin = loop.counter_free = std::max(time, loop.counter_free) + transfer_;
+        at(begin + longer(seconds_of(loop.blocks.begin++)), w);
+        return;
+    }
+    const int owner = loop.owner;
+    worker(w).loop = nobody;
+    if (--loop.inside == 0) {
+        loops_.erase(loops_.begin() + (&loop - loops_.data()));
+        at(time + (w == owner ? 0 : transfer_), owner);
+    }
+    if (w != owner) find_work(w, time);
+}
+
+void Cores::end_stage(int w, double time) {
+    const Index stage = worker(w).stage;
+    worker(w).stage = no_index;
+    now_ = std::max(now_, time);
+    if (team_leader_ == w) dismiss_team(time);
+    const std::size_t ready_before = ready_.size();
+    if (!left_.empty()) {
+        const RecordedGraph& graph = recording_.graph;
+        const auto row = static_cast<std::size_t>(stage);
+        for (Index e = graph.successor_offset[row]; e < graph.successor_offset[row + 1]; ++e) {
+            const Index next = graph.successor[static_cast<std::size_t>(e)];
+            if (--left_[static_cast<std::size_t>(next)] != 0) continue;
+            if (worker(w).stage == no_index)
+                start_stage(w, next);
+            else
+                ready_.push_back(next);
+        }
+    }
+    wake(static_cast<Index>(ready_.size() - ready_before), time);
+    go_on(w, time);
+}
+
+void Cores::find_work(int w, double time) {
+    Worker& self = worker(w);
+    self.idle = false;
+    if (!ready_.empty()) {
+        start_stage(w, ready_.back());
+        ready_.pop_back();
+        next_piece(w, time);
+        return;
+    }
+    if (Loop* const loop = open_loop()) {
+        self.loop = loop->owner;
+        ++loop->inside;
+        take_block(w, time);
+        return;
+    }
+    self.idle = true;
+    self.idle_since = time;
+}
+
+/// Idle workers, those first that have looked for work the shortest time.
+void Cores::wake(Index most, double time) {
+    for (; most > 0; --most) {
+        int latest = nobody;
+        for (int w = 0; w < static_cast<int>(workers_.size()); ++w) {
+            const Worker& other = worker(w);
+            if (!other.idle || other.in_team) continue;
+            if (latest == nobody || other.idle_since > worker(latest).idle_since) latest = w;
+        }
+        if (latest == nobody) return;
+        Worker& woken = worker(latest);
+        const bool asleep = time - woken.idle_since > machine_.patience;
+        woken.idle = false;
+        at(time + (asleep ? machine_.wake_up : machine_.join), latest);
+    }
+}
+
+/// Members take blocks in their order, each when it has done its last. Returns when all are done.
+double Cores::run_phase(int w, const Piece& piece, double time) {
+    const Index count = piece.blocks.size();
+    if (team_leader_ == nobody && count > 1) {
+        team_leader_ = w;
+        for (Worker& other : workers_)
+            if (other.idle) other.in_team = true;
+    }
+    const auto members = team_leader_ == w ? 1 + std::ranges::count_if(workers_, &Worker::in_team) : 1;
+    const auto at_work = std::min<std::ptrdiff_t>(members, count);
+    std::priority_queue<double, std::vector<double>, std::greater<>> free;
+    for (std::ptrdiff_t m = 0; m < at_work; ++m) free.push(time);
+    double end = time;
+    const double slower = slowdown_(static_cast<int>(at_work));
+    for (Index block = piece.blocks.begin; block < piece.blocks.end; ++block) {
+        const double done = free.top() + slower * seconds_of(block);
+        free.pop();
+        free.push(done);
+        end = std::max(end, done);
+    }
+    // all count their blocks on one line
+    return at_work == 1 ? end : end + machine_.barrier + static_cast<double>(at_work - 2) * transfer_;
+}
+
+void Cores::dismiss_team(double time) {
+    team_leader_ = nobody;
+    for (Worker& other : workers_)
+        if (other.in_team) {
+            other.in_team = false;
+            other.idle_since = time;
+        }
+}
+
+}  // namespace
+
+MachineModel MachineModel::free_of_cost() {
+    MachineModel machine;
+    machine.join = machine.wake_up = machine.barrier = machine.line_transfer = machine.far_line_transfer = 0;
+    machine.bandwidth = machine.near_rate = machine.far_rate = std::numeric_limits<double>::infinity();
+    return machine;
+}
+
+double predict_seconds(const Recording& recording, int cores, const MachineModel& machine, const Traffic& traffic) {
+    Cores all(recording, cores, machine, traffic);
+    double end = 0;
+    for_each_part(recording, [&](std::span<const StageRun> part) { end = all.run(part); });
+    return end;
+}
+
+}  // namespace skerry::profiling

@@ -1,0 +1,46 @@
+// What a recording takes on a number of cores: list scheduling of its pieces, with stated costs of the machine.
+#pragma once
+
+#include "profiling/scaling/recording.h"
+
+namespace skerry::profiling {
+
+/// A machine. What two virtual cores with one cache cost was measured on such (measure_costs.h, docs/scaling.md); what
+/// goes beyond one chiplet was not measured at all.
+struct MachineModel {
+    // s, from handing out blocks to the first of them on a worker that looks for work: measured with oneTBB, 1.5 to 2.5
+    double join = 2e-6;
+    // s, the same of a worker that sleeps and is woken by the system: measured, 18 to 37; half as long without a
+    // hypervisor
+    double wake_up = 20e-6;
+    // s, a worker without work looks for some this long before it sleeps: measured, between 100 and 200
+    double patience = 150e-6;
+    // s, what a phase of a Team costs (jobs/team.h)
+    double barrier = 0.3e-6;
+    // s, for a cache line to go from core to core, and so for each block that is taken from a counter that others take
+    // from, too: 20 ns within a chiplet, about 100 between them (published measurements of such processors)
+    double line_transfer = 20e-9, far_line_transfer = 100e-9;
+
+    int cores_per_chiplet = 8;
+    double cache_per_chiplet = 32e6;  // bytes, of the last level
+    double bandwidth = 370e9;         // bytes/s, of all memory of a socket of 64 cores (twelve channels, sustained)
+    // bytes/s that a core gets of what another core of its chiplet has written last: set by the stages of one scene
+    // (scenes/table.json) on two threads; of what another chiplet has: half of it, a guess
+    double near_rate = 30e9, far_rate = 15e9;
+
+    /// Nothing costs anything: what the work alone allows.
+    static MachineModel free_of_cost();
+};
+
+/// What moves while the steps run, for the share of the bandwidth.
+struct Traffic {
+    double bytes_per_second = 0;  // of one core alone
+    double working_set = 0;       // bytes that each step reads
+};
+
+/// Seconds that the recording takes on `cores` cores. A worker takes stages that are ready, then blocks of what is
+/// handed out, one counter a loop, and stays with a loop until it has no more; who handed it out waits for its last
+/// block. A Team has who is free when its first phase begins.
+double predict_seconds(const Recording& recording, int cores, const MachineModel& machine, const Traffic& traffic = {});
+
+}  // namespace skerry::profiling

@@ -1,0 +1,268 @@
+#include "systems/collision/colliders/time_of_touch.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "systems/collision/colliders/collider_shape.h"
+#include "systems/collision/colliders/face_contact.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/tree/box.h"
+#include "systems/geometry/rotation.h"
+#include "systems/geometry/time_of_contact.h"
+
+namespace skerry {
+
+namespace {
+
+using Nodes = std::array<Vec3, 3>;
+
+// As in time_of_contact.cpp.
+constexpr Real advance = 0.9;
+constexpr int most_rounds = 4096;
+
+// The least distance along an edge is found to this fraction of it.
+constexpr Real place_tolerance = 1e-12;
+
+Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3>& weight) {
+    return {distance, weight, on.point, on.normal};
+}
+
+/// Of a convex part, whose distance is convex along the edge: where its slope passes zero. Outside of the part, where
+/// alone touches are looked for, it has no kink.
+Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
+    const Vec3 edge = end[1] - end[0];
+    const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
+    Real low = 0, high = 1;
+    const SurfacePoint first = at(0);
+    SurfacePoint last = at(1);
+    if (!(first.normal.dot(edge) < 0)) return of_surface(first, first.distance, {1, 0, 0});
+    if (!(last.normal.dot(edge) > 0)) return of_surface(last, last.distance, {0, 1, 0});
+    while (high - low > place_tolerance) {
+        const Real middle = 0.5 * (low + high);
+        const SurfacePoint there = at(middle);
+        if (there.normal.dot(edge) < 0) {
+            low = middle;
+        } else {
+            high = middle;
+            last = there;
+        }
+    }
+    return of_surface(last, last.distance, {1 - high, high, 0});
+}
+
+/// The wall of a bucket: between two distances from the axis and two heights.
+class Wall {
+public:
+    Wall(const ColliderGeometry& geometry, const Nodes& end)
+        : inner_(geometry.size[0]),
+          outer_(geometry.size[0] + geometry.size[2]),
+          bottom_(-geometry.size[2]),
+          rim_(geometry.size[1]),
+          start_(end[0]),
+          edge_(end[1] - end[0]) {
+        const Real across = edge_.head<2>().squaredNorm();
+        nearest_to_axis_ =
+            across > 0 ? std::clamp(-start_.head<2>().dot(edge_.head<2>()) / across, Real(0), Real(1)) : 0;
+    }
+
+    /// No point of the edge between two places is nearer, m: by the ranges of its heights and distances from the axis.
+    Real bound(Real low, Real high) const {
+        const Real r_low = from_axis(low), r_high = from_axis(high), r_most = std::max(r_low, r_high),
+                   r_least = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
+                   z_high = height(high);
+        const Real beside = std::max({inner_ - r_most, r_least - outer_, Real(0)}),
+                   above = std::max({std::min(z_low, z_high) - rim_, bottom_ - std::max(z_low, z_high), Real(0)});
+        return std::sqrt(beside * beside + above * above);
+    }
+
+private:
+    Real from_axis(Real s) const { return (start_ + s * edge_).head<2>().norm(); }
+    Real height(Real s) const { return start_[2] + s * edge_[2]; }
+
+    const Real inner_, outer_, bottom_, rim_;  // m
+    const Vec3 start_, edge_;                  // m
+    Real nearest_to_axis_;
+};
+
+/// Of the wall of a bucket, whose distance may have several minima: branch and bound. The distance given is a bound,
+/// and not below half of the one at the place; what was given up for taking too many looks counts as a quarter of it.
+Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end) {
+    constexpr int most_looks = 1024;
+    const Wall wall(geometry, end);
+    const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * (end[1] - end[0]), part); };
+    struct Interval {
+        Real low, high;
+    };
+    std::array<Interval, 64> open;
+    std::size_t count = 0;
+    Real place = 0, value = at(0).distance, bound = value;
+    const auto look = [&](Real s) {
+        const Real distance = at(s).distance;
+        if (!(distance < value)) return;
+        value = distance;
+        place = s;
+    };
+    look(1);
+    open[count++] = {0, 1};
+    for (int looks = 0; count > 0 && value > 0; ++looks) {
+        const Interval interval = open[--count];
+        const Real least = wall.bound(interval.low, interval.high);
+        if (least >= value / 2 || looks >= most_looks || count + 2 > open.size()) {
+            bound = std::min(bound, std::max(least, value / 4));
+            continue;
+        }
+        const Real middle = 0.5 * (interval.low + interval.high);
+        look(middle);
+        open[count++] = {middle, interval.high};
+        open[count++] = {interval.low, middle};
+    }
+    return of_surface(at(place), std::min(bound, value), {1 - place, place, 0});
+}
+
+Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes& end) {
+    const bool is_wall = geometry.shape == ColliderShape::bucket && part == 1;
+    return is_wall ? nearest_on_wall(geometry, part, end) : nearest_on_convex(geometry, part, end);
+}
+
+/// A face and the disc within a rim. The inside of the face is touched first where the rim reaches furthest towards its
+/// plane, on either side; else one of its edges is nearest, unless the rim has gone through it.
+Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
+    const FaceContact front = face_contact(geometry, k, corner),
+                      back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
+    if (front.above && front.distance > 0) return {front.distance, front.closest.weight, front.point.at, -front.normal};
+    const auto& behind = back.closest.weight;
+    if (back.above && back.distance > 0)
+        return {back.distance, {behind[0], behind[2], behind[1]}, back.point.at, -back.normal};
+    const Vec3& furthest = front.point.at;
+    const Vec3 centre(0, 0, furthest.z());
+    const ColliderGeometry disc{ColliderShape::cylinder, {furthest.head<2>().norm(), 0, 0}};
+    Touch nearest{infinite, {}, furthest, Vec3::Zero(), false};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Nodes end{corner[i] - centre, corner[(i + 1) % 3] - centre, Vec3::Zero()};
+        nearest.distance = std::min(nearest.distance, nearest_on_convex(disc, 0, end).distance);
+    }
+    nearest.distance = std::max({nearest.distance, front.distance, back.distance});
+    return nearest;
+}
+
+Touch nearest_on_face(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
+    if (collider_point_follows(geometry.shape, k)) return nearest_on_rim(geometry, k, corner);
+    const ColliderPoint point = collider_point(geometry, k, Vec3::Zero());
+    const PointTriangle closest = closest_point_on_triangle(point.at, corner[0], corner[1], corner[2]);
+    const Vec3 apart = closest.nearest - point.at;
+    const Real length = apart.norm();
+    const Vec3 normal = length > 0 ? Vec3(apart / length) : Vec3(Vec3::Zero());
+    return {length - point.radius, closest.weight, point.at + point.radius * normal, normal};
+}
+
+bool touches_within(const TouchingFeature& feature, const Touch& touch, const Nodes& nodes) {
+    return feature.kind == TouchingFeature::Kind::face &&
+           touch.normal.dot((nodes[1] - nodes[0]).cross(nodes[2] - nodes[0])) > 0;
+}
+
+/// Of a feature as seen from the collider. Times are fractions of the step.
+class RelativeMotion {
+public:
+    RelativeMotion(const RigidMotion& motion, Real h, const TouchingFeature& feature)
+        : motion_(motion), feature_(feature), shift_(h * motion.velocity), turn_(h * motion.angular_velocity) {}
+
+    Nodes at(Real time) const {
+        const Mat3 back = rotation(time).transpose();
+        Nodes local;
+        for (std::size_t i = 0; i < feature_.nodes(); ++i) local[i] = back * arm(i, time);
+        return local;
+    }
+
+    /// No node moves faster, m a step.
+    Real greatest_speed() const {
+        Real greatest = 0;
+        for (std::size_t i = 0; i < feature_.nodes(); ++i)
+            greatest = std::max(greatest, velocity(i, 0).norm() + turn_.norm() * drift(i).norm());
+        return greatest;
+    }
+
+    /// From `time` on no node comes through the plane through the collider's nearest point for as long as this.
+    Real time_before_plane(const Touch& touch, const Nodes& nodes, Real time) const {
+        const Vec3 normal = rotation(time) * touch.normal;
+        Real least = infinite;
+        for (std::size_t i = 0; i < feature_.nodes(); ++i) {
+            const Real above = touch.normal.dot(nodes[i] - touch.point),
+                       approach = greatest_turn(i) * (1 - time) / 2 - normal.dot(velocity(i, time));
+            if (approach > 0) least = std::min(least, above / approach);
+        }
+        return least;
+    }
+
+private:
+    Mat3 rotation(Real time) const {
+        return turn_.isZero(0) ? motion_.rotation : Mat3(rotation_matrix(time * turn_) * motion_.rotation);
+    }
+    Vec3 arm(std::size_t i, Real time) const {
+        return feature_.position[i] + time * feature_.displacement[i] - (motion_.position + time * shift_);
+    }
+    Vec3 drift(std::size_t i) const { return feature_.displacement[i] - shift_; }
+    /// In the frame that turns, along the axes of the world, m a step.
+    Vec3 velocity(std::size_t i, Real time) const { return drift(i) - turn_.cross(arm(i, time)); }
+    /// Of the acceleration in that frame, m a step squared, a bound.
+    Real greatest_turn(std::size_t i) const {
+        const Real turning = turn_.norm(), drifting = drift(i).norm();
+        return turning * (2 * drifting + turning * (arm(i, 0).norm() + drifting));
+    }
+
+    const RigidMotion& motion_;
+    const TouchingFeature& feature_;
+    const Vec3 shift_;  // m, of the collider in the step
+    const Vec3 turn_;   // rad
+};
+
+/// Whether all of what the feature is looked at against lies behind the plane of a touch.
+bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
+    if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
+    return geometry.shape != ColliderShape::bucket || feature.of_collider == 0;
+}
+
+}  // namespace
+
+Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature,
+                    const std::array<Vec3, 3>& nodes) {
+    switch (feature.kind) {
+        case TouchingFeature::Kind::node: {
+            const SurfacePoint on = local_distance(geometry, nodes[0], feature.of_collider);
+            return of_surface(on, on.distance, {1, 0, 0});
+        }
+        case TouchingFeature::Kind::edge:
+            return nearest_on_edge(geometry, feature.of_collider, nodes);
+        case TouchingFeature::Kind::face:
+            break;
+    }
+    return nearest_on_face(geometry, feature.of_collider, nodes);
+}
+
+Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature) {
+    return RelativeMotion(motion, h, feature).greatest_speed();
+}
+
+std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
+                                 const TouchingFeature& feature) {
+    const RelativeMotion moving(motion, h, feature);
+    const Real speed = moving.greatest_speed();
+    Nodes nodes = moving.at(0);
+    Touch touch = nearest_touch(geometry, feature, nodes);
+    const Real start = touch.distance;
+    if (!(start > 0)) return std::nullopt;
+    Real time = 0;
+    for (int round = 0; round < most_rounds && touch.distance > contact_slack * start; ++round) {
+        Real free = touch.distance / speed;  // infinite without motion
+        if (lies_behind(geometry, feature, touch)) free = std::max(free, moving.time_before_plane(touch, nodes, time));
+        time += advance * free;
+        if (!(time <= 1)) return std::nullopt;
+        nodes = moving.at(time);
+        touch = nearest_touch(geometry, feature, nodes);
+    }
+    if (!touch.in_face) return std::nullopt;
+    touch.within = touches_within(feature, touch, nodes);
+    return touch;
+}
+
+}  // namespace skerry

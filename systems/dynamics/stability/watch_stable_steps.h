@@ -1,0 +1,38 @@
+// The looks at the stable steps of bodies that are taken beside the steps (docs/methods/stable_step.md 6).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/node_table.h"
+#include "components/step_watch.h"
+#include "jobs/access.h"
+#include "systems/dynamics/elements/compute_element_forces.h"
+
+namespace skerry {
+
+struct WatchInputs {
+    ElementInputs elements;
+    std::span<const Range> body_blocks;  // BodyTable
+    std::span<const std::array<Index, element_level_count>> level_count;
+    std::span<const Real> mass;  // kg, by node
+
+    static WatchInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
+                            const MaterialTable& material, const BodyTable& body, const NodeTable& node) {
+        return {.elements = ElementInputs::bind(binder, element, nodes, material, body),
+                .body_blocks = binder.read(body.blocks),
+                .level_count = binder.read(body.level_count),
+                .mass = binder.read(node.mass)};
+    }
+};
+
+/// Pieces of the look at one body; none where it has no elements.
+std::uint64_t pieces_of_body(Range blocks, const std::array<Index, element_level_count>& level_count);
+
+/// Takes the pieces that are due by the end of this step, of bodies whose shape is kept. Called again for the same step
+/// it does nothing. One block: it runs beside the other stages.
+void watch_stable_steps(const WatchInputs& inputs, StepWatch& watch);
+
+}  // namespace skerry

@@ -1,0 +1,143 @@
+// The stable steps of bodies are found in parts, beside the steps that rely on them (docs/methods/stable_step.md 6).
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <deque>
+#include <map>
+
+#include "engine/world/step/step.h"
+#include "systems/dynamics/stability/watch_stable_steps.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+
+namespace {
+
+constexpr std::size_t two_rounds = 256;  // steps
+
+/// What a look without a break finds of each body, by its slot, after each of the last steps.
+class History {
+public:
+    explicit History(World& world) : world_(world) {}
+
+    /// After a step or an edit: every body's step is one of those that it really had not long ago.
+    void look() {
+        Model& model = WorldAccess::state_of(world_).model;
+        for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+            if (model.bodies.tetrahedron_count[b] == 0) continue;
+            std::deque<Real>& known = found_[model.bodies.slot[b]];
+            known.push_back(look_at_stable_step(model, b, model.nodes.position, scratch_));
+            if (known.size() > two_rounds + 1) known.pop_front();
+            CAPTURE(model.body_records[b].name, known.size());
+            REQUIRE(std::ranges::count(known, model.bodies.stable_step[b]) > 0);
+        }
+    }
+    void take_steps(int count) {
+        for (int i = 0; i < count; ++i) {
+            REQUIRE(world_.advance(0.999 * world_.stable_step() * world_.settings().step_safety).steps == 1);
+            look();
+        }
+    }
+
+private:
+    World& world_;
+    Column<Real> scratch_;
+    std::map<std::uint32_t, std::deque<Real>> found_;
+};
+
+/// Balls that are stretched and pressed by a half at first, and swing.
+struct Swinging {
+    World world;
+    MaterialHandle rubber;
+    std::vector<BodyHandle> balls;
+
+    explicit Swinging(Settings settings) : world(settings) {
+        // without losses: what relaxes goes on while a shape that was kept is looked at
+        rubber = world.add_material(
+            {.young_modulus = 1e5, .loss_factor = 0, .bulk_viscosity = 0, .model = MaterialModel::stable_neo_hookean});
+        for (const int cells : {3, 5, 4}) add(cells);
+    }
+    void add(int cells) {
+        const Real at = static_cast<Real>(balls.size());
+        balls.push_back(world.add_body(mesh::ball(0.1, cells), {.material = rubber, .position = {at, 0, 0}}));
+        std::vector<Vec3> stretched(world.positions(balls.back()).begin(), world.positions(balls.back()).end());
+        for (Vec3& x : stretched) x.x() = at + (x.x() - at) * 1.2, x.y() *= 0.85;
+        world.set_positions(balls.back(), stretched);
+    }
+};
+
+Settings without_clusters() {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.clusters = false;
+    settings.max_strain_step = 10;
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("a step relies on what bodies stood at most two rounds ago", "[scene]") {
+    Swinging scene(without_clusters());
+    History history(scene.world);
+    history.look();
+    const Real first = WorldAccess::state_of(scene.world).model.bodies.stable_step[0];
+    history.take_steps(600);
+    CHECK(WorldAccess::state_of(scene.world).model.bodies.stable_step[0] != first);
+}
+
+TEST_CASE("bodies that come, go and change while they are looked at leave the looks at others right", "[scene]") {
+    Swinging scene(without_clusters());
+    World& world = scene.world;
+    History history(world);
+    history.look();
+    history.take_steps(150);
+    world.remove(scene.balls[0]);  // which has been looked at in this round
+    history.take_steps(40);
+    scene.add(4);
+    history.look();
+    history.take_steps(50);
+    std::vector<Vec3> at_rest = mesh::ball(0.1, 5).nodes;
+    for (Vec3& x : at_rest) x.x() += 1;
+    world.set_positions(scene.balls[1], at_rest);  // whose look is under way
+    history.look();
+    history.take_steps(60);
+    world.remove(scene.balls[2]);
+    history.take_steps(400);
+}
+
+TEST_CASE("no step takes more than its share of the looks", "[scene]") {
+    Swinging scene(without_clusters());
+    World& world = scene.world;
+    REQUIRE(world.advance(1e-3).ok());
+    Model& model = WorldAccess::state_of(world).model;
+    std::uint64_t all = 0;
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
+        all += pieces_of_body(model.bodies.blocks[b], model.bodies.level_count[b]);
+    REQUIRE(all > 128);
+    const auto done = [&] { return model.watch.before + model.watch.look.piece; };
+    std::uint64_t before = done(), greatest = 0;
+    int rounds = 0;
+    for (int i = 0; i < 300; ++i) {
+        const std::uint64_t steps = model.watch.steps;
+        REQUIRE(world.advance(0.999 * world.stable_step() * world.settings().step_safety).steps == 1);
+        rounds += model.watch.steps < steps;
+        if (model.watch.steps > steps) greatest = std::max(greatest, done() - before);
+        before = model.watch.steps > 0 ? done() : 0;
+    }
+    CHECK(rounds >= 2);
+    CHECK(greatest > 0);
+    CHECK(greatest <= all / 128 + 1);
+}
+
+TEST_CASE("bodies at rest are not looked at", "[scene]") {
+    World world({.sleep_speed = 0.01, .sleep_time = 0.02});
+    const auto rubber = world.add_material({.young_modulus = 1e5});
+    world.add_collider(Plane{});
+    world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = rubber, .position = {0, 0, 0.0501}});
+    REQUIRE(world.advance(1).ok());
+    Model& model = WorldAccess::state_of(world).model;
+    REQUIRE(model.bodies.asleep[0]);
+    for (int i = 0; i < 200; ++i) {
+        REQUIRE(world.advance(0.999 * world.stable_step() * world.settings().step_safety).steps == 1);
+        if (i > 130) CHECK(model.watch.look.piece == 0);
+    }
+}

@@ -1,0 +1,79 @@
+// Jobs in processes of their own.
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/program/sweep/process_pool.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+struct Told {
+    skerry::PoolEnd end;
+    int most_running = 0;
+};
+
+Told run(int count, int at_once, skerry::FunctionRef<int(int)> job, bool after_failure = true) {
+    Told told;
+    const auto goes_on = [&](int, int code) { return after_failure || code == 0; };
+    const auto show = [&](int, int running) { told.most_running = std::max(told.most_running, running); };
+    told.end = skerry::run_in_processes(count, at_once, {job, goes_on, show});
+    return told;
+}
+
+}  // namespace
+
+TEST_CASE("every job runs once, so many at a time", "[unit]") {
+    const skerry::TemporaryFolder folder;
+    const auto job = [&](int index) {
+        std::ofstream(folder.path() / std::to_string(index), std::ios::app) << index;
+        return 0;
+    };
+    const Told told = run(20, 3, job);
+    CHECK(told.end.done == 20);
+    CHECK(told.most_running == 3);
+    for (int i = 0; i < 20; ++i) {
+        std::string text;
+        std::ifstream(folder.path() / std::to_string(i)) >> text;
+        CHECK(text == std::to_string(i));
+    }
+    CHECK(run(0, 3, job).end.done == 0);
+}
+
+TEST_CASE("a job that ends badly, by itself or by a signal, takes no other with it", "[unit]") {
+    const auto job = [](int index) {
+        if (index == 1) raise(SIGKILL);
+        return index == 3 ? 7 : 0;
+    };
+    const Told told = run(6, 2, job);
+    CHECK(told.end.done == 4);
+    REQUIRE(told.end.lost.size() == 2);
+    for (const auto& [index, how] : told.end.lost)
+        CHECK_THAT(how, Catch::Contains(index == 1 ? "signal 9" : "ended with 7"));
+}
+
+TEST_CASE("no job begins after one that says so", "[unit]") {
+    const Told told = run(
+        100, 1, [](int index) { return index == 4 ? 3 : 0; }, false);
+    CHECK(told.end.done == 4);
+    CHECK(told.end.lost.size() == 1);
+}
+
+TEST_CASE("a signal ends what is under way, and nothing begins after it", "[unit]") {
+    const pid_t parent = getpid();
+    const auto job = [&](int index) {
+        if (index == 1) kill(parent, SIGINT);
+        if (index > 0) pause();
+        return 0;
+    };
+    const Told told = run(100, 2, job);
+    CHECK(told.end.signal == SIGINT);
+    CHECK(told.end.lost.empty());
+    // the first may have ended before, and made room for one more
+    CHECK(told.end.done <= 1);
+    CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) >= 2);
+    CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) <= 3);
+}
