@@ -18,6 +18,7 @@ struct StepLook {
     Index broken = no_index;                           // the first element whose bound is no number
     std::array<Real, element_level_count> highest{};   // 1/s^2, by level: bound of omega^2
     std::array<Index, element_level_count> element{};  // by level, where the bound is not zero: whose it is
+    Real known = 0;  // 1/s^2, the bound that was known when the present wave of blocks began
 };
 
 /// The looks go round over all bodies. State, of which the hash needs only the steps: what is done of a look before and

@@ -33,9 +33,9 @@ public:
     int worker_count() const override { return workers_; }
 
     void run_blocks(Index count, FunctionRef<void(Index)> body) override {
-        BlockJob job(count, body);
+        BlockJob job(count, body, workers_);
         if (count <= 1 || workers_ == 1) {
-            job.drain();
+            job.drain(0);
         } else if (team_of_thread == this) {
             drain_in_team(job, std::min(count, workers_) - 1);
         } else {
@@ -44,7 +44,7 @@ public:
 #pragma omp parallel num_threads(workers_)
             {
                 const TeamScope scope(this);
-                job.drain();
+                job.drain(omp_get_thread_num());
             }
         }
         job.rethrow();
@@ -74,9 +74,9 @@ private:
         {
             for (int i = 0; i < helpers; ++i) {
 #pragma omp task shared(job)
-                job.drain();
+                job.drain(omp_get_thread_num());
             }
-            job.drain();
+            job.drain(omp_get_thread_num());
         }
     }
 

@@ -12,8 +12,8 @@ public:
     int worker_count() const override { return 1; }
 
     void run_blocks(Index count, FunctionRef<void(Index)> body) override {
-        BlockJob job(count, body);
-        job.drain();
+        BlockJob job(count, body, 1);
+        job.drain(0);
         job.rethrow();
     }
 

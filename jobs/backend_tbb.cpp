@@ -28,10 +28,10 @@ public:
     }
 
     void run_blocks(Index count, FunctionRef<void(Index)> body) override {
-        BlockJob job(count, body);
-        const int workers = std::min(count, worker_count());
+        const int all = worker_count(), workers = std::min(count, all);
+        BlockJob job(count, body, all);
         if (workers <= 1) {
-            job.drain();
+            job.drain(0);
         } else {
             // Isolated: a worker that waits for the last block must not start a long stage meanwhile, which would hold
             // up everything that waits for these blocks, and would be counted as time of this stage.
@@ -63,7 +63,10 @@ private:
     static void drain_together(BlockJob& job, int workers) {
         tbb::task_group_context context(tbb::task_group_context::isolated);
         tbb::parallel_for(
-            tbb::blocked_range<int>(0, workers, 1), [&](const tbb::blocked_range<int>&) { job.drain(); },
+            tbb::blocked_range<int>(0, workers, 1),
+            [&](const tbb::blocked_range<int>&) {
+                job.drain(std::max(0, tbb::this_task_arena::current_thread_index()));
+            },
             tbb::simple_partitioner(), context);
     }
 

@@ -18,6 +18,9 @@ using Clock = std::chrono::steady_clock;
 // A step has a dozen stages in 100 us: a worker that slept between two of them would wake too late for the second.
 constexpr std::chrono::microseconds spin_time{50};
 
+// Among the workers of its executor; callers are all number 0.
+thread_local int own_number = 0;
+
 /// Waits without sleeping, not longer than spin_time, until ready() is true.
 bool spin_until(bool may_spin, auto&& ready) {
     if (!may_spin) return ready();
@@ -40,7 +43,11 @@ public:
           may_spin_(workers_ <= static_cast<int>(std::thread::hardware_concurrency())) {
         threads_.reserve(static_cast<std::size_t>(workers_ - 1));
         try {
-            for (int i = 1; i < workers_; ++i) threads_.emplace_back([this] { work_until([this] { return stop_; }); });
+            for (int i = 1; i < workers_; ++i)
+                threads_.emplace_back([this, i] {
+                    own_number = i;
+                    work_until([this] { return stop_; });
+                });
         } catch (...) {
             stop();
             throw;
@@ -52,9 +59,9 @@ public:
     int worker_count() const override { return workers_; }
 
     void run_blocks(Index count, FunctionRef<void(Index)> body) override {
-        BlockJob job(count, body);
+        BlockJob job(count, body, workers_);
         if (count <= 1 || workers_ == 1) {
-            job.drain();
+            job.drain(0);
         } else {
             OpenJob open{job};
             {
@@ -64,7 +71,7 @@ public:
                 ++announced_;
             }
             wake(count - 1);
-            job.drain();
+            job.drain(own_number);
             close(open);
         }
         job.rethrow();
@@ -122,7 +129,7 @@ private:
             if (open->job.exhausted()) continue;
             open->helpers.fetch_add(1, std::memory_order_relaxed);
             lock.unlock();
-            open->job.drain();
+            open->job.drain(own_number);
             lock.lock();
             // An owner that does not sleep may leave, and its job with it, as soon as the count is zero.
             const bool owner_sleeps = open->owner_sleeps;

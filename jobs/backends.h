@@ -1,7 +1,9 @@
 // What the backends share: the work of one call, which any number of workers do together.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -41,36 +43,59 @@ private:
     std::exception_ptr error_;
 };
 
-/// The blocks of one run_blocks call. Workers take the next number from one counter: as cheap as a task for each worker
-/// instead of one for each block, and a slow block holds nobody up. After an exception the other blocks still run, so
-/// that which one is the lowest does not depend on timing.
+/// The blocks of one run_blocks call, as a contiguous share for each worker: it begins with its own, so that it finds
+/// in its caches what it wrote in the loop before, and then helps the next ones out. A share is a counter, as cheap as
+/// a task for each worker instead of one for each block, and a slow block holds nobody up. After an exception the other
+/// blocks still run, so that which one is the lowest does not depend on timing.
 class BlockJob {
 public:
-    BlockJob(Index count, FunctionRef<void(Index)> body) : body_(body), count_(count), watch_(current_access_watch()) {}
+    BlockJob(Index count, FunctionRef<void(Index)> body, int workers)
+        : body_(body),
+          count_(count),
+          shares_(std::clamp(count, 1, std::clamp(workers, 1, most_shares))),
+          watch_(current_access_watch()) {
+        for (int share = 0; share < shares_; ++share) share_[share].next = begin_of(share);
+    }
 
-    void drain() noexcept {
+    /// `worker`: its number among those of the executor.
+    void drain(int worker) noexcept {
         const ArithmeticScope arithmetic;
         const AccessScope access(watch_);  // whose blocks they are may touch what the stage may, whoever's thread it is
-        for (Index block = take(); block < count_; block = take()) {
-            try {
-                body_(block);
-            } catch (...) {
-                error_.keep(block);
+        for (int i = 0; i < shares_; ++i) {
+            const int share = (worker + i) % shares_;
+            const Index end = begin_of(share + 1);
+            std::atomic_ref<Index> next(share_[share].next);
+            if (next.load(std::memory_order_relaxed) >= end) continue;
+            for (Index block = take(next); block < end; block = take(next)) {
+                try {
+                    body_(block);
+                } catch (...) {
+                    error_.keep(block);
+                }
             }
         }
+        exhausted_.store(true, std::memory_order_relaxed);
     }
-    bool exhausted() const noexcept { return next_.load(std::memory_order_relaxed) >= count_; }
+    /// Whether no block is left to be taken; it may say so a little late.
+    bool exhausted() const noexcept { return exhausted_.load(std::memory_order_relaxed); }
     void rethrow() { error_.rethrow(); }
 
 private:
-    Index take() noexcept { return next_.fetch_add(1, std::memory_order_relaxed); }
+    static constexpr int most_shares = 64;
+    struct alignas(64) Share {  // on a cache line of its own: who takes from it writes it, for each block
+        Index next;
+    };
+
+    static Index take(std::atomic_ref<Index> next) noexcept { return next.fetch_add(1, std::memory_order_relaxed); }
+    Index begin_of(int share) const noexcept { return static_cast<Index>(std::int64_t{count_} * share / shares_); }
 
     FunctionRef<void(Index)> body_;
     Index count_;
+    int shares_;
     const AccessWatch* watch_;
-    // All workers write it, for each block: on a cache line of its own, away from what they only read.
-    alignas(64) std::atomic<Index> next_{0};
+    std::atomic<bool> exhausted_{false};
     FirstError error_;
+    Share share_[most_shares];
 };
 
 /// How many predecessors each stage still waits for. Kept by an executor, so that a graph no larger than one before

@@ -1,5 +1,6 @@
 #include "jobs/team.h"
 
+#include <algorithm>
 #include <array>
 #include <thread>
 
@@ -37,17 +38,18 @@ void Team::gather(Executor& executor, FunctionRef<void()> work) {
         work();
         return;
     }
-    const int workers = executor.worker_count();
+    const int workers = std::min(executor.worker_count(), most_members);
     if (workers <= 1) {
         work();
         return;
     }
-    may_spin_ = workers <= static_cast<int>(std::thread::hardware_concurrency());
+    may_spin_ = executor.worker_count() <= static_cast<int>(std::thread::hardware_concurrency());
     members_.store(1, std::memory_order_relaxed);
     dismissed_.store(false, std::memory_order_relaxed);
     together_ = true;
-    executor.run_blocks(workers, [&](Index block) {
-        if (block != 0) {
+    std::atomic<bool> has_leader{false};
+    executor.run_blocks(workers, [&](Index) {
+        if (has_leader.exchange(true)) {  // whoever comes first leads: no block is sure to be the first that is taken
             help();
             return;
         }

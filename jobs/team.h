@@ -22,8 +22,12 @@ class PhaseRunner;
 /// Memory is kept between calls.
 class Team {
 public:
-    /// Calls work() once; run_phases called in it may use all workers of the executor, or is left to it if it is a
-    /// PhaseRunner. Not within itself.
+    /// The leader and who helps. All count what they have done on one cache line, so that from some number on a phase
+    /// takes longer the more they are; the others have their hands free for other stages and regions.
+    static constexpr int most_members = 8;
+
+    /// Calls work() once; run_phases called in it may use most_members workers of the executor, or is left to it if it
+    /// is a PhaseRunner. Not within itself.
     void gather(Executor& executor, FunctionRef<void()> work);
 
     /// Calls body(block) once for every block 0 .. phase_offset.back() - 1, after all blocks of earlier phases have

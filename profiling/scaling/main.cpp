@@ -48,6 +48,8 @@ void add_machine_options(CLI::App& app, MachineModel& machine) {
     add("--bandwidth", machine.bandwidth, "bytes/s, of all memory");
     add("--near-rate", machine.near_rate, "bytes/s, that a core gets from another of its chiplet");
     add("--far-rate", machine.far_rate, "bytes/s, that a core gets from another chiplet");
+    add("--own-from-elsewhere", machine.own_from_elsewhere,
+        "share of what blocks of a core's own share read that others have written");
 }
 
 void add_options(CLI::App& app, ProgramOptions& options) {

@@ -62,7 +62,8 @@ nlohmann::json to_json(const MachineModel& machine) {
             {"cache_per_chiplet_bytes", machine.cache_per_chiplet},
             {"bandwidth_bytes_per_s", machine.bandwidth},
             {"near_rate_bytes_per_s", machine.near_rate},
-            {"far_rate_bytes_per_s", machine.far_rate}};
+            {"far_rate_bytes_per_s", machine.far_rate},
+            {"own_from_elsewhere", machine.own_from_elsewhere}};
 }
 
 nlohmann::json to_json(const MemoryFigures& memory) {

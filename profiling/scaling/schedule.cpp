@@ -5,6 +5,8 @@
 #include <queue>
 #include <vector>
 
+#include "jobs/team.h"
+
 namespace skerry::profiling {
 
 namespace {
@@ -18,14 +20,19 @@ public:
         : demand_(traffic.bytes_per_second), bandwidth_(machine.bandwidth) {
         const int chiplets = (cores + machine.cores_per_chiplet - 1) / machine.cores_per_chiplet;
         in_caches_ = traffic.working_set <= chiplets * machine.cache_per_chiplet;
-        // Any worker may get any block: each core has written what is read as often as any other.
+        // What is read elsewhere each core has written as often as any other.
         const double elsewhere = 1 - 1.0 / cores, far = 1 - 1.0 / chiplets;
-        moved_ = 1 + demand_ * ((elsewhere - far) / machine.near_rate + far / machine.far_rate);
+        moved_ = demand_ * ((elsewhere - far) / machine.near_rate + far / machine.far_rate);
+        moved_of_own_ = machine.own_from_elsewhere * moved_;
     }
-    double operator()(int busy) const { return in_caches_ ? moved_ : std::max(moved_, busy * demand_ / bandwidth_); }
+    /// `own`: a block of the worker's own share.
+    double operator()(int busy, bool own) const {
+        const double alone = 1 + (own ? moved_of_own_ : moved_);
+        return in_caches_ ? alone : std::max(alone, busy * demand_ / bandwidth_);
+    }
 
 private:
-    double demand_, bandwidth_, moved_ = 1;
+    double demand_, bandwidth_, moved_ = 0, moved_of_own_ = 0;
     bool in_caches_ = true;
 };
 
@@ -43,17 +50,23 @@ public:
     double run(std::span<const StageRun> part);
 
 private:
+    /// The blocks of a loop that one worker begins with.
+    struct Share {
+        Range blocks;        // those that nobody has taken
+        int taker = nobody;  // the last
+        double counter_free = 0;
+    };
     /// A loop whose blocks are being taken.
     struct Loop {
         int owner;
-        Range blocks;  // those that nobody has taken
-        int inside;    // workers
-        double counter_free = 0;
+        int inside;  // workers
+        std::vector<Share> shares;
     };
     struct Worker {
         Index stage = no_index;  // row of part_, if it runs one
         Index piece = 0;         // its next
         int loop = nobody;       // owner of the loop that it takes blocks from
+        std::size_t share = 0;   // of that loop, from which it takes them
         bool idle = true, in_team = false;
         double idle_since = 0;
     };
@@ -71,7 +84,7 @@ private:
     int busy() const {
         return static_cast<int>(std::ranges::count_if(workers_, [](const Worker& w) { return !w.idle; }));
     }
-    double longer(double seconds) const { return seconds * slowdown_(busy()); }
+    double longer(double seconds, bool own) const { return seconds * slowdown_(busy(), own); }
     double seconds_of(Index block) const { return recording_.seconds[static_cast<std::size_t>(block)]; }
 
     void go_on(int w, double time);
@@ -81,6 +94,7 @@ private:
     void end_stage(int w, double time);
     void find_work(int w, double time);
     void hand_out(int w, const Piece& piece, double time);
+    void enter(int w, Loop& loop);
     double run_phase(int w, const Piece& piece, double time);
     void dismiss_team(double time);
     void wake(Index most, double time);
@@ -151,7 +165,7 @@ void Cores::next_piece(int w, double time) {
     const Piece& piece = recording_.pieces[static_cast<std::size_t>(self.piece++)];
     switch (piece.kind) {
         case PieceKind::serial:
-            at(time + longer(seconds_of(piece.blocks.begin)), w);
+            at(time + longer(seconds_of(piece.blocks.begin), false), w);
             return;
         case PieceKind::loop:
             hand_out(w, piece, time);
@@ -163,15 +177,27 @@ void Cores::next_piece(int w, double time) {
 }
 
 void Cores::hand_out(int w, const Piece& piece, double time) {
-    loops_.push_back({w, piece.blocks, 1});
-    worker(w).loop = w;
-    wake(piece.blocks.size() - 1, time);
+    const Index count = piece.blocks.size();
+    Loop& loop = loops_.emplace_back(Loop{w, 0, {}});
+    loop.shares.resize(std::min(workers_.size(), static_cast<std::size_t>(count)));
+    const auto begin_of = [&](std::size_t share) {
+        return piece.blocks.begin + static_cast<Index>(static_cast<std::size_t>(count) * share / loop.shares.size());
+    };
+    for (std::size_t s = 0; s < loop.shares.size(); ++s) loop.shares[s].blocks = {begin_of(s), begin_of(s + 1)};
+    enter(w, loop);
+    wake(count - 1, time);
     take_block(w, time);
+}
+
+void Cores::enter(int w, Loop& loop) {
+    worker(w).loop = loop.owner;
+    worker(w).share = static_cast<std::size_t>(w) % loop.shares.size();
+    ++loop.inside;
 }
 
 Cores::Loop* Cores::open_loop() {
     for (Loop& loop : loops_)
-        if (loop.blocks.size() > 0) return &loop;
+        if (std::ranges::any_of(loop.shares, [](const Share& share) { return share.blocks.size() > 0; })) return &loop;
     return nullptr;
 }
 
@@ -179,14 +205,22 @@ Cores::Loop& Cores::loop_of(int owner) {
     return *std::ranges::find_if(loops_, [&](const Loop& loop) { return loop.owner == owner; });
 }
 
-/// The next block of the loop that the worker is in. When there is none the worker leaves, and the last that does lets
-/// the owner go on.
+/// The next block of the loop that the worker is in, of its own share while there is one. When there is none the worker
+/// leaves, and the last that does lets the owner go on.
 void Cores::take_block(int w, double time) {
     Loop& loop = loop_of(worker(w).loop);
-    if (loop.blocks.size() > 0) {
+    const std::size_t count = loop.shares.size(), own = static_cast<std::size_t>(w) % count;
+    for (std::size_t tried = 0; tried < count; ++tried) {
+        Share& share = loop.shares[worker(w).share];
+        if (share.blocks.size() == 0) {
+            worker(w).share = (worker(w).share + 1) % count;
+            continue;
+        }
         double begin = time;
-        if (loop.inside > 1) begin = loop.counter_free = std::max(time, loop.counter_free) + transfer_;
-        at(begin + longer(seconds_of(loop.blocks.begin++)), w);
+        if (share.taker != nobody && share.taker != w)
+            begin = share.counter_free = std::max(time, share.counter_free) + transfer_;
+        share.taker = w;
+        at(begin + longer(seconds_of(share.blocks.begin++), worker(w).share == own), w);
         return;
     }
     const int owner = loop.owner;
@@ -230,8 +264,7 @@ void Cores::find_work(int w, double time) {
         return;
     }
     if (Loop* const loop = open_loop()) {
-        self.loop = loop->owner;
-        ++loop->inside;
+        enter(w, *loop);
         take_block(w, time);
         return;
     }
@@ -261,15 +294,19 @@ double Cores::run_phase(int w, const Piece& piece, double time) {
     const Index count = piece.blocks.size();
     if (team_leader_ == nobody && count > 1) {
         team_leader_ = w;
+        int members = 1;
         for (Worker& other : workers_)
-            if (other.idle) other.in_team = true;
+            if (other.idle && members < Team::most_members) {
+                other.in_team = true;
+                ++members;
+            }
     }
     const auto members = team_leader_ == w ? 1 + std::ranges::count_if(workers_, &Worker::in_team) : 1;
     const auto at_work = std::min<std::ptrdiff_t>(members, count);
     std::priority_queue<double, std::vector<double>, std::greater<>> free;
     for (std::ptrdiff_t m = 0; m < at_work; ++m) free.push(time);
     double end = time;
-    const double slower = slowdown_(static_cast<int>(at_work));
+    const double slower = slowdown_(static_cast<int>(at_work), true);
     for (Index block = piece.blocks.begin; block < piece.blocks.end; ++block) {
         const double done = free.top() + slower * seconds_of(block);
         free.pop();

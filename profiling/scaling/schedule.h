@@ -17,8 +17,8 @@ struct MachineModel {
     double patience = 150e-6;
     // s, what a phase of a Team costs (jobs/team.h)
     double barrier = 0.3e-6;
-    // s, for a cache line to go from core to core, and so for each block that is taken from a counter that others take
-    // from, too: 20 ns within a chiplet, about 100 between them (published measurements of such processors)
+    // s, for a cache line to go from core to core, and so for a block that is taken from a counter from which another
+    // took the one before: 20 ns within a chiplet, about 100 between them (published measurements of such processors)
     double line_transfer = 20e-9, far_line_transfer = 100e-9;
 
     int cores_per_chiplet = 8;
@@ -27,6 +27,9 @@ struct MachineModel {
     // bytes/s that a core gets of what another core of its chiplet has written last: set by the stages of one scene
     // (scenes/table.json) on two threads; of what another chiplet has: half of it, a guess
     double near_rate = 30e9, far_rate = 15e9;
+    // Part of what a block of a core's own share reads that another has written: a guess. Rows stand in the order of
+    // bodies in all tables, so shares of different loops are about the same bodies; pairs reach over to neighbours.
+    double own_from_elsewhere = 0.25;
 
     /// Nothing costs anything: what the work alone allows.
     static MachineModel free_of_cost();
@@ -39,8 +42,9 @@ struct Traffic {
 };
 
 /// Seconds that the recording takes on `cores` cores. A worker takes stages that are ready, then blocks of what is
-/// handed out, one counter a loop, and stays with a loop until it has no more; who handed it out waits for its last
-/// block. A Team has who is free when its first phase begins.
+/// handed out, first those of its own share, then of the next ones, and stays with a loop until it has no more; who
+/// handed it out waits for its last block. A Team has who is free when its first phase begins, up to
+/// Team::most_members.
 double predict_seconds(const Recording& recording, int cores, const MachineModel& machine, const Traffic& traffic = {});
 
 }  // namespace skerry::profiling

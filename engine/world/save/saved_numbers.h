@@ -202,9 +202,9 @@ struct MembersOf<StepLook> {
     static constexpr auto list() {
         using S = StepLook;
         return std::tuple{Member{"piece", &S::piece}, Member{"broken", &S::broken}, Member{"highest", &S::highest},
-                          Member{"element", &S::element}};
+                          Member{"element", &S::element}, Member{"known", &S::known}};
     }
-    static_assert(sizeof(StepLook) == (2 + element_level_count) * sizeof(Real) + element_level_count * sizeof(Index),
+    static_assert(sizeof(StepLook) == (3 + element_level_count) * sizeof(Real) + element_level_count * sizeof(Index),
                   "a member is not saved");
 };
 template <>

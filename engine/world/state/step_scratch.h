@@ -15,6 +15,7 @@
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/motion/update_sleep.h"
+#include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -98,6 +99,7 @@ struct StepScratch {
     WarmStartTable warm_start_next;   // of store_warm_start
     Column<ExternalWork> work_parts;  // of measure_work
     InversionMemory inversions;       // of find_inversions
+    Column<WatchPart> watch_parts;    // of watch_stable_steps
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
     bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }

@@ -41,7 +41,8 @@ void list_scripted_motion(WorldState& w, TaskGraph& g) {
 void list_watch(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/watch_stable_steps", kernels().watch_stable_steps,
-            inputs<WatchInputs>(m.elements, m.element_nodes, m.materials, m.bodies, m.nodes), make(m.watch));
+            inputs<WatchInputs>(m.elements, m.element_nodes, m.materials, m.bodies, m.nodes),
+            make(w.scratch.watch_parts), make(m.watch));
 }
 
 void list_force_branch(WorldState& w, TaskGraph& g) {

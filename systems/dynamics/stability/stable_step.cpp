@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "components/check.h"
+#include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/stability/element_levels.h"
 #include "systems/dynamics/stability/stiffness_share.h"
@@ -32,36 +34,98 @@ Index sums_of(Range blocks) {
     return (blocks.size() + blocks_summed - 1) / blocks_summed;
 }
 
-/// Takes pieces of a look, from the coarsest level down: an element shares masses with those of its level and of
-/// coarser ones alone (element_levels.h). First the sums of a level, then visit(block, bound of omega^2 by lane, level)
-/// for each of its blocks. enough(level): bounds below it need not be known.
-template <class Enough, class Visit>
-void take_pieces(const ElementInputs& elements, Range blocks, int levels, std::span<const Vec3> position,
-                 std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t from, std::uint64_t until,
-                 Enough&& enough, Visit&& visit) {
-    SKERRY_CHECK(stiffness_sum.size() == position.size() && mass.size() == position.size());
-    const auto level_of = [&](std::size_t b) {
-        return elements.schedule.level.empty() ? 0 : int{elements.schedule.level[b]};
-    };
+/// Pieces of a look that do not wait for each other: sums of a level, or bounds of one wave of its blocks. Waves hold
+/// 1, 1, 2, 4, 8... blocks, so that few in each are above all that the waves before have found.
+struct PieceRun {
+    int level;
+    bool bounds, opens_wave;
+    Range blocks;
+    std::uint64_t end;  // the piece after the last
+};
+
+/// Those from the piece `from` on, which is before `until`. Levels come from the coarsest down: an element shares
+/// masses with those of its level and of coarser ones alone (element_levels.h).
+PieceRun run_from(Range blocks, int levels, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
     const auto of_level = static_cast<std::uint64_t>(sums + blocks.size());
-    // The frame of a corotational element starts from the same lane of the block before it: neighbours turn together.
-    const Real8 one = Real8{} + 1.0;
-    LaneQuaternion<Real8> q{one, {}, {}, {}};
-    for (std::uint64_t piece = from; piece < until; ++piece) {
-        const int level = levels - 1 - static_cast<int>(piece / of_level);
-        const auto place = static_cast<Index>(piece % of_level);
-        const bool bounds = place >= sums;
-        const Index first = blocks.begin + (bounds ? place - sums : place * blocks_summed);
-        const Index end = bounds ? first + 1 : std::min(first + blocks_summed, blocks.end);
-        for (auto b = static_cast<std::size_t>(first); b < static_cast<std::size_t>(end); ++b) {
-            if (level_of(b) != level) continue;
+    const int level = levels - 1 - static_cast<int>(from / of_level);
+    const auto place = static_cast<Index>(from % of_level);
+    const auto most = [&](Index pieces) { return static_cast<Index>(std::min<std::uint64_t>(until - from, pieces)); };
+    if (place < sums) {
+        const Index count = most(sums - place);
+        const Index first = blocks.begin + place * blocks_summed;
+        return {level, false, false, {first, std::min(first + count * blocks_summed, blocks.end)}, from + count};
+    }
+    const Index bound = place - sums;
+    const auto wave = static_cast<Index>(std::bit_floor(static_cast<std::uint64_t>(bound)));
+    const Index wave_end = std::min(bound == 0 ? 1 : 2 * wave, blocks.size());
+    const Index count = most(wave_end - bound);
+    const Index first = blocks.begin + bound;
+    return {level, true, bound == wave, {first, first + count}, from + count};
+}
+
+/// The work of a look's pieces.
+struct Pieces {
+    const ElementInputs& elements;
+    std::span<const Vec3> position;
+    std::span<const Real> mass;
+    std::span<Real> stiffness_sum;
+
+    /// visit(block) for each of the level.
+    void for_each_block(Range blocks, int level, auto&& visit) const {
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+            if (elements.schedule.level.empty() ? level == 0 : elements.schedule.level[b] == level) visit(b);
+    }
+    void sum(const PieceRun& run) const {
+        for_each_block(run.blocks, run.level, [&](std::size_t b) {
+            add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
+                          [](std::size_t) { return true; });
+        });
+    }
+    /// visit(block, bound of omega^2 by lane); bounds below `enough` (1/s^2) need not be known.
+    void bound(Range blocks, int level, Real enough, auto&& visit) const {
+        // The frame of a corotational element starts from the same lane of the block before it: neighbours turn
+        // together.
+        LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+        for_each_block(blocks, level, [&](std::size_t b) {
             const LaneMat3<Real8> F = deformation_of(elements, b, position);
-            if (bounds)
-                visit(b, frequency_squared_of(elements, b, F, mass, stiffness_sum, q, enough(level)), level);
-            else
-                add_stiffness(elements, b, F, stiffness_sum, [](std::size_t) { return true; });
+            visit(b, frequency_squared_of(elements, b, F, mass, stiffness_sum, q, enough));
+        });
+    }
+};
+
+/// Adds the greatest bound of a block to what is known of its level.
+void note_bound(std::size_t block, const Real8& bound, std::size_t level, StepLook& look) {
+    for (std::size_t l = 0; l < element_lanes; ++l) {
+        const Index here = static_cast<Index>(block * element_lanes + l);
+        // a shape that is not finite has no stable step
+        if (!(bound[l] <= std::numeric_limits<Real>::max()) && look.broken == no_index) look.broken = here;
+        if (bound[l] > look.highest[level]) {
+            look.highest[level] = bound[l];
+            look.element[level] = here;
         }
+    }
+}
+
+/// Goes on with a look; the blocks of a wave are cut by in_chunks(count, body(begin, end, look of this chunk)).
+template <class InChunks>
+void look_on(const Pieces& pieces, Range blocks, int levels, std::uint64_t until, StepLook& look,
+             InChunks&& in_chunks) {
+    SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
+    SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
+    while (look.piece < until) {
+        const PieceRun run = run_from(blocks, levels, look.piece, until);
+        const auto level = static_cast<std::size_t>(run.level);
+        if (run.opens_wave) look.known = look.highest[level];
+        if (run.bounds) {
+            in_chunks(run.blocks.size(), level, [&](Index begin, Index end, StepLook& found) {
+                pieces.bound({run.blocks.begin + begin, run.blocks.begin + end}, run.level, look.known,
+                             [&](std::size_t b, const Real8& bound) { note_bound(b, bound, level, found); });
+            });
+        } else {
+            pieces.sum(run);
+        }
+        look.piece = run.end;
     }
 }
 
@@ -81,23 +145,31 @@ std::uint64_t pieces_of_look(Range blocks, int levels) {
     return static_cast<std::uint64_t>(levels) * static_cast<std::uint64_t>(sums_of(blocks) + blocks.size());
 }
 
-void continue_look(const ElementInputs& elements, Range blocks, int levels, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look) {
-    const auto highest = [&](int level) { return look.highest[static_cast<std::size_t>(level)]; };
-    const auto note = [&](std::size_t b, const Real8& bound, int level) {
-        const auto at = static_cast<std::size_t>(level);
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            const Index here = static_cast<Index>(b * element_lanes + l);
-            // a shape that is not finite has no stable step
-            if (!(bound[l] <= std::numeric_limits<Real>::max()) && look.broken == no_index) look.broken = here;
-            if (bound[l] > look.highest[at]) {
-                look.highest[at] = bound[l];
-                look.element[at] = here;
-            }
+void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, int levels,
+                   std::span<const Vec3> position, std::span<const Real> mass, std::span<Real> stiffness_sum,
+                   std::uint64_t until, StepLook& look) {
+    constexpr Index least = 8, most_chunks = 64;  // blocks, some 20 us; what fits on the stack
+    const auto in_chunks = [&](Index count, std::size_t level, auto&& body) {
+        const Index size = std::max(least, (count + most_chunks - 1) / most_chunks);
+        if (count <= size) {
+            body(0, count, look);
+            return;
+        }
+        std::array<StepLook, static_cast<std::size_t>(most_chunks)> part;
+        parallel_for(executor, static_cast<std::size_t>(count), static_cast<std::size_t>(size),
+                     [&](std::size_t begin, std::size_t end) {
+                         StepLook& own = part[begin / static_cast<std::size_t>(size)];
+                         body(static_cast<Index>(begin), static_cast<Index>(end), own);
+                     });
+        for (Index c = 0; c * size < count; ++c) {
+            const StepLook& own = part[static_cast<std::size_t>(c)];
+            if (look.broken == no_index) look.broken = own.broken;
+            if (!(own.highest[level] > look.highest[level])) continue;
+            look.highest[level] = own.highest[level];
+            look.element[level] = own.element[level];
         }
     };
-    take_pieces(elements, blocks, levels, position, mass, stiffness_sum, look.piece, until, highest, note);
-    look.piece = until;
+    look_on({elements, position, mass, stiffness_sum}, blocks, levels, until, look, in_chunks);
 }
 
 StableStep result_of(const StepLook& look) {
@@ -116,7 +188,8 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
     clear_stiffness(elements, blocks, stiffness_sum);
     const int levels = levels_of(elements, blocks);
     StepLook look;
-    continue_look(elements, blocks, levels, position, mass, stiffness_sum, pieces_of_look(blocks, levels), look);
+    look_on({elements, position, mass, stiffness_sum}, blocks, levels, pieces_of_look(blocks, levels), look,
+            [&](Index count, std::size_t, auto&& body) { body(0, count, look); });
     return result_of(look);
 }
 
@@ -125,14 +198,21 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     SKERRY_CHECK(step.size() == static_cast<std::size_t>(blocks.size()));
     clear_stiffness(elements, blocks, stiffness_sum);
     const int levels = levels_of(elements, blocks);
-    const auto note = [&](std::size_t b, const Real8& bound, int level) {
-        for (std::size_t l = 0; l < element_lanes; ++l)
-            step[b - static_cast<std::size_t>(blocks.begin)][l] =
-                bound[l] > 0 ? step_of(bound[l], level) : std::numeric_limits<Real>::infinity();
-    };
-    take_pieces(
-        elements, blocks, levels, position, mass, stiffness_sum, 0, pieces_of_look(blocks, levels),
-        [](int) { return Real(0); }, note);
+    const Pieces pieces{elements, position, mass, stiffness_sum};
+    const std::uint64_t count = pieces_of_look(blocks, levels);
+    for (std::uint64_t piece = 0; piece < count;) {
+        const PieceRun run = run_from(blocks, levels, piece, count);
+        piece = run.end;
+        if (!run.bounds) {
+            pieces.sum(run);
+            continue;
+        }
+        pieces.bound(run.blocks, run.level, 0, [&](std::size_t b, const Real8& bound) {
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                step[b - static_cast<std::size_t>(blocks.begin)][l] =
+                    bound[l] > 0 ? step_of(bound[l], run.level) : std::numeric_limits<Real>::infinity();
+        });
+    }
 }
 
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

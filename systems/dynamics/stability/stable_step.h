@@ -6,6 +6,7 @@
 
 #include "components/body_table.h"
 #include "components/step_watch.h"
+#include "jobs/executor.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 
 namespace skerry {
@@ -28,9 +29,10 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
 /// highest level of the elements.
 std::uint64_t pieces_of_look(Range blocks, int levels);
 /// Goes on with a look until `until` of its pieces are done. `stiffness_sum` is zero at the nodes of the body before
-/// the first; all inputs stay the same until the last.
-void continue_look(const ElementInputs& elements, Range blocks, int levels, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look);
+/// the first; all inputs stay the same until the last. Where a look is cut does not change what it finds.
+void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, int levels,
+                   std::span<const Vec3> position, std::span<const Real> mass, std::span<Real> stiffness_sum,
+                   std::uint64_t until, StepLook& look);
 /// What a look has found when all of its pieces are done.
 StableStep result_of(const StepLook& look);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "jobs/parallel_for.h"
 #include "systems/dynamics/stability/stable_step.h"
 
 namespace skerry {
@@ -21,22 +22,34 @@ std::uint64_t pieces_of_body(Range blocks, const std::array<Index, element_level
     return pieces_of_look(blocks, levels_of_body(level_count));
 }
 
-void watch_stable_steps(const WatchInputs& inputs, StepWatch& watch) {
-    for (; watch.body < watch.kept; ++watch.body) {
+void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch) {
+    parts.clear();
+    parts.reserve(inputs.body_blocks.size());  // however many are due in a later step
+    for (bool whole = true; whole && watch.body < watch.kept; watch.body += whole) {
         const auto b = static_cast<std::size_t>(watch.body);
-        const Range blocks = inputs.body_blocks[b];
-        const int levels = levels_of_body(inputs.level_count[b]);
-        const std::uint64_t pieces = pieces_of_look(blocks, levels);
+        const std::uint64_t pieces = pieces_of_body(inputs.body_blocks[b], inputs.level_count[b]);
         if (watch.step[b] != StepWatch::not_looked_at) {
             const std::uint64_t due = watch.target > watch.before ? std::min(pieces, watch.target - watch.before) : 0;
-            if (watch.look.piece < due)
-                continue_look(inputs.elements, blocks, levels, watch.position, inputs.mass, watch.stiffness_sum, due,
-                              watch.look);
-            if (due < pieces) return;
-            watch.step[b] = result_of(watch.look).step;
+            whole = due == pieces;
+            parts.push_back({watch.body, due, whole, watch.look});
         }
+        if (!whole) continue;
         watch.look = {};
         watch.before += pieces;
+    }
+    parallel_for(executor, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            WatchPart& part = parts[p];
+            const auto b = static_cast<std::size_t>(part.body);
+            continue_look(executor, inputs.elements, inputs.body_blocks[b], levels_of_body(inputs.level_count[b]),
+                          watch.position, inputs.mass, watch.stiffness_sum, part.until, part.look);
+        }
+    });
+    for (const WatchPart& part : parts) {
+        if (part.whole)
+            watch.step[static_cast<std::size_t>(part.body)] = result_of(part.look).step;
+        else
+            watch.look = part.look;
     }
 }
 

@@ -31,8 +31,16 @@ struct WatchInputs {
 /// Pieces of the look at one body; none where it has no elements.
 std::uint64_t pieces_of_body(Range blocks, const std::array<Index, element_level_count>& level_count);
 
+/// A body that is looked at in a step.
+struct WatchPart {
+    Index body = no_index;
+    std::uint64_t until = 0;  // pieces done by the end of the step
+    bool whole = false;       // all of them, then
+    StepLook look;
+};
+
 /// Takes the pieces that are due by the end of this step, of bodies whose shape is kept. Called again for the same step
-/// it does nothing. One block: it runs beside the other stages.
-void watch_stable_steps(const WatchInputs& inputs, StepWatch& watch);
+/// it does nothing. `parts` keeps its memory between steps.
+void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry
