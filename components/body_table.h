@@ -61,8 +61,10 @@ struct BodyTable {
     Column<LevelMask> active;
     // at rest: left out of the step until something touches it
     Column<std::uint8_t> asleep;
-    // s, for how long no node has been as fast as sleep_speed
+    // s, for how long the body has been still (update_sleep.h); and, while the limits are the engine's own, how far a
+    // node has come since it was at its still_position, m: in this half of sleep_time and in the one before
     Column<Real> still_time;
+    Column<Real> drift, drift_before;
     Column<Real> max_speed;  // m/s, of this step's motion
     Column<MovingFrame> frame;
     // In the frame:
@@ -104,6 +106,8 @@ struct BodyTable {
         visit("active", active, ColumnRole::scratch);
         visit("asleep", asleep, ColumnRole::state);
         visit("still_time", still_time, ColumnRole::state);
+        visit("drift", drift, ColumnRole::state);
+        visit("drift_before", drift_before, ColumnRole::state);
         visit("max_speed", max_speed, ColumnRole::state);
         visit("frame", frame, ColumnRole::memory);
         visit("frame_speed", frame_speed, ColumnRole::memory);

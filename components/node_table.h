@@ -19,6 +19,7 @@ struct NodeTable {
     Column<Vec3> load;                 // N, set by the user, kept until changed
     Column<Vec3> rest_position;        // m, as added, in the frame of the mesh
     Column<Vec3> displacement_origin;  // m, where the node was when the displacement of its body was last zero
+    Column<Vec3> still_position;       // m, where the node was when the drift of its body was last zero
     Column<Real> mass;                 // kg, lumped
     Column<Real> inverse_mass;         // 1/kg, 0: pinned or kinematic
     Column<Index> body;                // row of BodyTable
@@ -31,6 +32,7 @@ struct NodeTable {
         visit("velocity", velocity, ColumnRole::state);
         visit("load", load, ColumnRole::state);
         visit("rest_position", rest_position, ColumnRole::state);
+        visit("still_position", still_position, ColumnRole::state);
         visit("mass", mass, ColumnRole::state);
         visit("inverse_mass", inverse_mass, ColumnRole::state);
         visit("body", body, ColumnRole::link);

@@ -208,13 +208,16 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step in which F of an element changes by more (Frobenius norm) is tried again, shorter",
                   .limits = above(0)})
+            .key(
+                "sleep", &S::sleep,
+                {.meaning = "bodies that hardly move for sleep_time, and do not move more and more, rest with all that "
+                            "they touch, until something presses on them"})
             .key("sleep_speed", &S::sleep_speed,
-                 {.meaning = "bodies slower than this for sleep_time rest with all that they touch, until something "
-                             "presses on them; 0: never",
+                 {.meaning = "above 0: bodies slower than this for sleep_time rest, in place of what sleep says",
                   .unit = "m/s",
                   .limits = at_least(0)})
             .key("sleep_time", &S::sleep_time,
-                 {.meaning = "how long a body has to be slow to be put to rest", .unit = "s", .limits = at_least(0)})
+                 {.meaning = "how long a body has to be still to be put to rest", .unit = "s", .limits = at_least(0)})
             .key("contact_budgets", &S::contact_budgets,
                  {.meaning = "skip what cannot have come close; false searches everything"})
             .key("continuous_collision", &S::continuous_collision,

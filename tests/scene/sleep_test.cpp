@@ -1,5 +1,6 @@
 // Bodies at rest: left out of the step, and woken by whatever concerns them.
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "tests/support/worlds.h"
 
@@ -10,6 +11,7 @@ namespace {
 
 constexpr Real sleep_speed = 5e-3;  // m/s
 constexpr Real sleep_time = 0.1;    // s
+constexpr Real own_limits = -1;     // in place of a speed: those of the engine
 
 /// A tower of two blocks on a plane, and a block beside it.
 struct Tower {
@@ -29,7 +31,8 @@ struct Tower {
     }
     static Settings settings(Real speed, int threads) {
         Settings settings;
-        settings.sleep_speed = speed;
+        settings.sleep = speed < 0;
+        settings.sleep_speed = std::max<Real>(speed, 0);
         settings.sleep_time = sleep_time;
         settings.threads = threads;
         return settings;
@@ -148,6 +151,92 @@ TEST_CASE("a collider that starts to move wakes what lies on it, and nothing res
     REQUIRE(world.advance(1.1).ok());
     CHECK_FALSE(world.asleep(block));
     CHECK(world.center_of_mass(block).x() - start == Approx(0.2).margin(0.01));  // carried along by friction
+}
+
+TEST_CASE("what hangs on an attachment that moves does not rest, however slowly it moves", "[scene]") {
+    Settings settings;
+    settings.sleep = true;
+    settings.sleep_time = sleep_time;
+    World world(settings);
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    const auto block =
+        world.add_body(mesh, {.material = world.add_material({.young_modulus = 1e6, .density = 500, .damping = 50})});
+    std::vector<Index> top;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (mesh.nodes[n].z() > 0.049) top.push_back(static_cast<Index>(n));
+    world.attach(block, top, {.velocity = {1e-6, 0, 0}});
+    for (int i = 0; i < 50; ++i) {
+        REQUIRE(world.advance(0.02).ok());
+        REQUIRE_FALSE(world.asleep(block));
+    }
+}
+
+// The engine's own limits (docs/methods/skipping.md 3.1)
+
+TEST_CASE("by the engine's own limits what has settled rests close to where it would go on", "[scene]") {
+    Tower tower(own_limits), awake(0);
+    REQUIRE(tower.settle());
+    REQUIRE(awake.world.advance(tower.world.time() + 1).ok());
+    const Real edge = 0.2 / 3;
+    for (const auto body : {&Tower::low, &Tower::high, &Tower::beside})
+        CHECK(distance(tower.copy(tower.*body), awake.copy(awake.*body)) < 5e-3 * edge);
+}
+
+namespace {
+
+/// A block on a plane that is tilted, by gravity that turns.
+struct Slab {
+    World world;
+    BodyHandle block;
+
+    explicit Slab(Real degrees, bool sleep = true) : world(settings(degrees, sleep)) {
+        world.add_collider(Plane{});
+        const auto rubber = world.add_material({.young_modulus = 1e6, .density = 500, .friction = 0.3, .damping = 0});
+        block = world.add_body(mesh::box({0.2, 0.2, 0.1}, {3, 3, 2}),
+                               {.material = rubber, .position = {0, 0, 0.052}, .contact_distance = 0.002});
+    }
+    static Settings settings(Real degrees, bool sleep = true) {
+        const Real angle = degrees * std::numbers::pi / 180;
+        Settings settings;
+        settings.gravity = 9.81 * Vec3(std::sin(angle), 0, -std::cos(angle));
+        settings.sleep = sleep;
+        return settings;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a slab that should slide is never put to rest, one that has come to a stop is", "[scene]") {
+    for (const Real degrees : {16.71, 16.75, 16.8, 17.0, 18.0, 20.0, 22.0}) {  // friction holds 16.699
+        Slab slab(degrees), awake(degrees, false);
+        for (int i = 0; i < 40; ++i) {
+            REQUIRE(slab.world.advance(0.05).ok());
+            REQUIRE(awake.world.advance(0.05).ok());
+            CAPTURE(degrees, slab.world.time());
+            REQUIRE_FALSE(slab.world.asleep(slab.block));
+        }
+        const Vec3 way = slab.world.center_of_mass(slab.block) - awake.world.center_of_mass(awake.block);
+        CHECK(way == Vec3::Zero());
+    }
+    Slab slab(15);
+    REQUIRE(slab.world.advance(3).ok());
+    CHECK(slab.world.asleep(slab.block));
+}
+
+TEST_CASE("a block that begins to tip over is never put to rest", "[scene]") {
+    for (const Real degrees : {14.2, 14.5, 15.5}) {  // a stiff one stands up to 14.04
+        World world(Slab::settings(degrees));
+        world.add_collider(Plane{});
+        const auto stiff = world.add_material({.young_modulus = 1e7, .density = 500, .friction = 1, .damping = 0});
+        const auto block = world.add_body(mesh::box({0.1, 0.1, 0.4}, {2, 2, 6}),
+                                          {.material = stiff, .position = {0, 0, 0.2005}, .contact_distance = 0.001});
+        for (int i = 0; i < 60 && world.center_of_mass(block).z() > 0.1; ++i) {
+            REQUIRE(world.advance(0.05).ok());
+            CAPTURE(degrees, world.time());
+            REQUIRE_FALSE(world.asleep(block));
+        }
+        CHECK(world.center_of_mass(block).z() < 0.1);
+    }
 }
 
 TEST_CASE("rest is the same on any number of threads", "[scene]") {

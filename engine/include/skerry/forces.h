@@ -49,7 +49,7 @@ struct PairForces {
 
 /// A view of a world that measures forces, valid as long as the world is where it is. What was removed since the call
 /// has taken its contacts along. Bodies at rest are held by the mean of what held them while they were still: the sum
-/// over what holds one is its weight and loads to within mass times sleep_speed / sleep_time.
+/// over what holds one is its weight and loads to within mass times its speed over sleep_time.
 ///
 /// The partners of a pair have opposite impulses, to the last bit. Their moments differ by what the distance between
 /// their surfaces makes of friction: each acts on the nodes, or on the point of the collider, which it is applied to.

@@ -28,7 +28,8 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     nodes.for_each_column([end](const char*, auto& column, ColumnRole) { column.resize(end); });
     for (std::size_t n = begin; n < end; ++n) {
         nodes.rest_position[n] = body.nodes[n - begin];
-        nodes.position[n] = nodes.displacement_origin[n] = body.position + body.rotation * body.nodes[n - begin];
+        nodes.position[n] = nodes.displacement_origin[n] = nodes.still_position[n] =
+            body.position + body.rotation * body.nodes[n - begin];
         nodes.velocity[n] = nodes.velocity_next[n] = nodes.push_out[n] = nodes.force[n] = nodes.load[n] = Vec3::Zero();
         nodes.body[n] = row;
     }

@@ -27,7 +27,8 @@ StepParameters step_parameters(const Settings& settings) {
     step.integrator = settings.integrator;
     step.contact_regions = settings.contact_regions;
     step.max_strain_step = settings.max_strain_step;
-    step.sleep = {settings.sleep_speed, settings.sleep_time};
+    step.sleep = {settings.sleep_speed, settings.sleep && settings.sleep_speed == 0, settings.sleep_time,
+                  settings.gravity.norm()};
     step.collision.gravity = settings.gravity.norm();
     step.collision.use_budgets = settings.contact_budgets;
     // forward Euler drifts with velocities that no contact has seen: there is nothing to hold it to

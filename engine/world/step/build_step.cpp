@@ -158,7 +158,7 @@ void list_commit(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     const auto if_taken =
         only_if(can_be_taken, read(found.verdict), read(found.crossings), read(found.inversions), value(p));
-    const auto if_sleepy = only_if([](const SleepSettings& sleep) { return sleep.speed > 0; }, value(p.sleep));
+    const auto if_sleepy = only_if([](const SleepSettings& sleep) { return sleep.on(); }, value(p.sleep));
     g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(c), read(w.scratch.pressed), read(a.body),
             read(a.motion), write(b.asleep), write(b.still_time), if_taken, if_sleepy);
     g.stage("dynamics/advance_positions", kernels().advance_positions,
@@ -167,9 +167,8 @@ void list_commit(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
-                        inputs<RestInputs>(b, n), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
-                        write(b.asleep), write(b.still_time), write(n.velocity), write(n.velocity_next), if_taken,
-                        if_sleepy);
+                        inputs<RestInputs>(a, b, n), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
+                        outputs<RestOutputs>(b, n), if_taken, if_sleepy);
     g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse),
             inputs<IdlePairs>(w.cache.pairs), value(p.h), make(w.cache.warm_start), make(w.scratch.warm_start_next),
             if_taken);

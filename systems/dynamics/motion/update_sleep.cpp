@@ -1,10 +1,17 @@
 #include "systems/dynamics/motion/update_sleep.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "components/check.h"
 
 namespace skerry {
 
 namespace {
+
+bool moves(const RigidMotion& motion) {
+    return motion.velocity != Vec3::Zero() || motion.angular_velocity != Vec3::Zero();
+}
 
 /// Joins what touches, and marks as restless what a moving collider touches.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
@@ -21,17 +28,83 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
     }
 }
 
-void put_to_rest(const RestInputs& bodies, std::size_t body, std::span<Vec3> velocity, std::span<Vec3> velocity_next,
-                 TakenByRest& taken) {
+void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
     for (Index n = bodies.nodes[body].begin; n < bodies.nodes[body].end; ++n) {
         if (bodies.inverse_mass[n] > 0) {
-            taken.energy += bodies.mass[n] * velocity[n].squaredNorm() / 2;
-            taken.momentum += bodies.mass[n] * velocity[n];
+            taken.energy += bodies.mass[n] * state.velocity[n].squaredNorm() / 2;
+            taken.momentum += bodies.mass[n] * state.velocity[n];
         }
-        velocity[n] = velocity_next[n] = Vec3::Zero();
+        state.velocity[n] = state.velocity_next[n] = Vec3::Zero();
     }
+    state.asleep[body] = 1;
     ++taken.bodies;
 }
+
+/// How many of the looks in a half are due at this part of it. They are not evenly spread: an oscillation that is back
+/// at each of them would look still.
+int looks_due(Real part) {
+    constexpr int looks = own_sleep_limits::looks;
+    constexpr Real golden = 0.6180339887498949;
+    if (part >= 1) return looks;
+    const int slot = static_cast<int>(part * looks);
+    const Real place = slot * golden;
+    return slot + (part * looks - slot >= place - std::floor(place));
+}
+
+/// How long one body has been still, by the engine's own limits.
+class Stillness {
+public:
+    Stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, const RestOutputs& state)
+        : bodies_(bodies), settings_(settings), body_(body), state_(state) {}
+
+    void go_on(Real h) const {
+        Real& still = state_.still_time[body_];
+        const Real edge = bodies_.mean_edge[body_];
+        if (!(bodies_.max_speed[body_] < own_sleep_limits::speed * std::sqrt(settings_.gravity * edge))) {
+            still = 0;
+            return;
+        }
+        if (still == 0) {
+            begin_half();
+            state_.drift_before[body_] = 0;
+        }
+        const Real half = settings_.time / 2, before = still;
+        still += h;
+        const auto halves = [&](Real time) { return half > 0 ? std::floor(time / half) : 1; };
+        const bool ends = !(half > 0) || halves(still) > halves(before);
+        const auto part = [&](Real time) { return half > 0 ? time / half - halves(time) : 1; };
+        if (!ends && looks_due(part(still)) == looks_due(part(before))) return;
+        Real& drift = state_.drift[body_];
+        drift = std::max(drift, drift_now());
+        if (drift > own_sleep_limits::drift * edge) {
+            still = 0;
+        } else if (ends) {
+            const Real least = std::max(state_.drift_before[body_], own_sleep_limits::noise * edge);
+            const bool grows = before >= half && drift > own_sleep_limits::growth * least;
+            if (grows) still = 0;
+            state_.drift_before[body_] = drift;
+            begin_half();
+        }
+    }
+
+private:
+    void begin_half() const {
+        state_.drift[body_] = 0;
+        for (Index n = bodies_.nodes[body_].begin; n < bodies_.nodes[body_].end; ++n)
+            state_.still_position[n] = bodies_.position[n];
+    }
+    Real drift_now() const {
+        Real squared = 0;
+        for (Index n = bodies_.nodes[body_].begin; n < bodies_.nodes[body_].end; ++n)
+            squared = std::max(squared, (bodies_.position[n] - state_.still_position[n]).squaredNorm());
+        return std::sqrt(squared);
+    }
+
+    const RestInputs& bodies_;
+    const SleepSettings& settings_;
+    std::size_t body_;
+    const RestOutputs& state_;
+};
 
 }  // namespace
 
@@ -62,38 +135,39 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
     for (std::size_t b = 0; b < pressed.size(); ++b)
         if (pressed[b]) wake(static_cast<Index>(b));
     for (std::size_t a = 0; a < attached_body.size(); ++a)
-        if (attached_motion[a].velocity != Vec3::Zero() || attached_motion[a].angular_velocity != Vec3::Zero())
-            wake(attached_body[a]);
+        if (moves(attached_motion[a])) wake(attached_body[a]);
     return any;
 }
 
 TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, const SleepSettings& settings, Real h,
-                        SleepMemory& memory, std::span<std::uint8_t> asleep, std::span<Real> still_time,
-                        std::span<Vec3> velocity, std::span<Vec3> velocity_next) {
+                        SleepMemory& memory, const RestOutputs& state) {
     const std::size_t count = bodies.kind.size();
-    SKERRY_CHECK(asleep.size() == count && still_time.size() == count);
+    SKERRY_CHECK(state.asleep.size() == count && state.still_time.size() == count);
     TakenByRest taken;
     bool ready = false;
     for (std::size_t b = 0; b < count; ++b) {
-        if (asleep[b] || bodies.kind[b] == BodyKind::kinematic) continue;
-        still_time[b] = bodies.max_speed[b] < settings.speed ? still_time[b] + h : 0;
-        ready |= still_time[b] >= settings.time;
+        if (state.asleep[b] || bodies.kind[b] == BodyKind::kinematic) continue;
+        if (settings.own_limits)
+            Stillness(bodies, settings, b, state).go_on(h);
+        else
+            state.still_time[b] = bodies.max_speed[b] < settings.speed ? state.still_time[b] + h : 0;
+        ready |= state.still_time[b] >= settings.time && state.still_time[b] > 0;
     }
     if (!ready) return taken;
     memory.touching.start(count);
     memory.restless.assign(count, 0);
     for (std::size_t b = 0; b < count; ++b)
-        memory.restless[b] = bodies.kind[b] == BodyKind::deformable && !asleep[b] && still_time[b] < settings.time;
+        memory.restless[b] = bodies.kind[b] == BodyKind::deformable && !state.asleep[b] &&
+                             !(state.still_time[b] >= settings.time && state.still_time[b] > 0);
+    for (std::size_t a = 0; a < bodies.attached_body.size(); ++a)
+        if (moves(bodies.attached_motion[a])) memory.restless[bodies.attached_body[a]] = 1;
     join_touching(touches, bodies, memory);
     for (std::size_t b = 0; b < count; ++b)
         if (memory.restless[b]) memory.restless[memory.touching.root(static_cast<Index>(b))] = 1;
-    for (std::size_t b = 0; b < count; ++b) {
-        if (asleep[b] || bodies.kind[b] == BodyKind::kinematic ||
-            memory.restless[memory.touching.root(static_cast<Index>(b))])
-            continue;
-        asleep[b] = 1;
-        put_to_rest(bodies, b, velocity, velocity_next, taken);
-    }
+    for (std::size_t b = 0; b < count; ++b)
+        if (!state.asleep[b] && bodies.kind[b] == BodyKind::deformable &&
+            !memory.restless[memory.touching.root(static_cast<Index>(b))])
+            put_to_rest(bodies, b, state, taken);
     return taken;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "components/attachment_table.h"
 #include "components/body_table.h"
 #include "components/collider_table.h"
 #include "components/column.h"
@@ -17,9 +18,27 @@
 namespace skerry {
 
 struct SleepSettings {
-    Real speed = 0;   // m/s: a body is still while no node of it is as fast; 0: none ever is
-    Real time = 0.5;  // s: so long a body has to be still, and all that it touches
+    Real speed = 0;           // m/s: a body is still while no node of it is as fast
+    bool own_limits = false;  // or by own_sleep_limits
+    Real time = 0.5;          // s: so long a body has to be still, and all that it touches
+    Real gravity = 0;         // m/s^2
+
+    bool on() const { return speed > 0 || (own_limits && gravity > 0); }
 };
+
+/// What makes a body still where the user gives no speed (docs/methods/skipping.md 3.1).
+namespace own_sleep_limits {
+/// No node is as fast as this times sqrt(gravity times the mean edge),
+inline constexpr Real speed = 0.01;
+/// none comes further in half of the time than this part of the mean edge,
+inline constexpr Real drift = 3e-3;
+/// and none this times as far as in the half before: what begins to slide, to fall or to buckle does.
+inline constexpr Real growth = 2;
+/// Of the mean edge: less is not compared.
+inline constexpr Real noise = 2e-5;
+/// Looks at the drift in each half.
+inline constexpr int looks = 8;
+}  // namespace own_sleep_limits
 
 /// The contacts of this step, after the solve.
 struct TouchInputs {
@@ -64,18 +83,45 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
                  std::span<std::uint8_t> asleep, std::span<Real> still_time);
 
 struct RestInputs {
+    std::span<const Index> attached_body;  // by attachment
+    std::span<const RigidMotion> attached_motion;
     std::span<const BodyKind> kind;
     std::span<const Range> nodes;
+    std::span<const Real> mean_edge;     // m
     std::span<const Real> max_speed;     // m/s, of this step
+    std::span<const Vec3> position;      // m, by node, at the end of the step
     std::span<const Real> mass;          // kg, by node
     std::span<const Real> inverse_mass;  // 1/kg, by node
 
-    static RestInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
-        return {.kind = binder.read(body.kind),
+    static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
+                           const NodeTable& node) {
+        return {.attached_body = binder.read(attachment.body),
+                .attached_motion = binder.read(attachment.motion),
+                .kind = binder.read(body.kind),
                 .nodes = binder.read(body.nodes),
+                .mean_edge = binder.read(body.mean_edge),
                 .max_speed = binder.read(body.max_speed),
+                .position = binder.read(node.position),
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass)};
+    }
+};
+
+struct RestOutputs {
+    std::span<std::uint8_t> asleep;           // by body
+    std::span<Real> still_time;               // s, by body
+    std::span<Real> drift, drift_before;      // m, by body
+    std::span<Vec3> still_position;           // m, by node
+    std::span<Vec3> velocity, velocity_next;  // m/s, by node
+
+    static RestOutputs bind(const Binder& binder, BodyTable& body, NodeTable& node) {
+        return {.asleep = binder.write(body.asleep),
+                .still_time = binder.write(body.still_time),
+                .drift = binder.write(body.drift),
+                .drift_before = binder.write(body.drift_before),
+                .still_position = binder.write(node.still_position),
+                .velocity = binder.write(node.velocity),
+                .velocity_next = binder.write(node.velocity_next)};
     }
 };
 
@@ -92,10 +138,10 @@ struct SleepMemory {
 };
 
 /// Counts for how long each body has been still, and puts those to rest that are still with all that they touch,
-/// directly or through others: their velocities become zero. What touches a collider that moves stays awake.
+/// directly or through others: their velocities become zero. What touches a collider, or is held by an attachment, that
+/// moves stays awake.
 /// Sequential, over bodies and, when a body is ready, contacts.
 TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, const SleepSettings& settings, Real h,
-                        SleepMemory& memory, std::span<std::uint8_t> asleep, std::span<Real> still_time,
-                        std::span<Vec3> velocity, std::span<Vec3> velocity_next);
+                        SleepMemory& memory, const RestOutputs& state);
 
 }  // namespace skerry
