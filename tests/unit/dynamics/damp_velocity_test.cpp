@@ -13,6 +13,7 @@ namespace {
 /// Bodies of loose nodes.
 struct Cloud {
     std::vector<Index> block_begin, block_end, block_body, body_material, pinned;
+    std::vector<std::uint8_t> asleep;
     std::vector<Range> node_blocks;
     std::vector<Real> damping{0, 20}, mass, inverse_mass;  // material 1 is damped
     std::vector<Vec3> position, velocity;
@@ -35,6 +36,7 @@ struct Cloud {
         node_blocks.push_back({first_block, static_cast<Index>(block_begin.size())});
         body_material.push_back(material);
         pinned.push_back(0);
+        asleep.push_back(0);
         sums.resize(block_begin.size());
     }
     bool damp(Executor& executor, Real h) {
@@ -45,8 +47,8 @@ struct Cloud {
     }
     bool damp_from(Executor& executor, Real h, std::vector<Vec3>& velocity_next) {
         return damp_velocity(executor,
-                             {block_begin, block_end, block_body, node_blocks, body_material, pinned, damping, position,
-                              mass, inverse_mass, lag},
+                             {block_begin, block_end, block_body, node_blocks, body_material, pinned, asleep, damping,
+                              position, mass, inverse_mass, lag},
                              velocity, h, sums, velocity_next, dissipated);
     }
 };
