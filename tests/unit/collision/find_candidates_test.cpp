@@ -191,6 +191,59 @@ TEST_CASE("a pair that stays near keeps its list over a broad search, and one th
     CHECK(w.search.pair_searches == narrow);  // nothing else had moved
 }
 
+TEST_CASE("all pairs of what is new or forgotten are searched, and no others", "[unit]") {
+    CollisionWorld w;
+    for (int i = 0; i < 4; ++i) w.add_solid(test::ball_mesh(1, 3), w.at({2.05 * i, 0, 1.02}), 0.02);
+    w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
+    const auto look = [&](std::uint64_t broad, std::uint64_t pairs) {
+        const auto broad_before = w.search.broad_searches, pairs_before = w.search.pair_searches;
+        search(w);
+        CHECK(w.search.broad_searches - broad_before == broad);
+        CHECK(w.search.pair_searches - pairs_before == pairs);
+        check_order(w.pairs);
+    };
+    const std::uint64_t neighbours = 3, on_plane = 4;
+    look(1, neighbours + on_plane);
+    look(0, 0);
+    const Index ball = w.add_collider(ColliderShape::sphere, {0.5, 0, 0}, w.at({0, 1.6, 1}));
+    look(1, 1);
+    look(0, 0);
+    w.collider.motion[ball].position = {50, 0, 0};
+    w.search.forget_collider(static_cast<std::size_t>(ball));
+    look(1, 0);
+    w.search.forget_collider(0);
+    look(1, on_plane);
+    w.search.forget_body(1);
+    look(1, 3);
+    const std::size_t overlapping = 0;
+    w.pairs.state[overlapping] = PairState::overlapping;
+    w.search.forget_body(3);
+    look(1, 2);
+    CHECK(w.pairs.state[overlapping] == PairState::overlapping);
+    w.search.forget_body(0);
+    look(1, 2);
+    CHECK(w.pairs.state[overlapping] == PairState::apart);
+    w.add_solid(test::ball_mesh(1, 3), w.at({2.05 * 4, 0, 1.02}), 0.02);
+    look(1, 2);
+    w.search.body_valid_until.clear();
+    look(1, neighbours + 1 + on_plane + 1);
+}
+
+TEST_CASE("what is forgotten is looked at by velocities that it has now", "[unit]") {
+    CollisionWorld w;
+    const Index low = w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 0}), 0.02);
+    const Index high = w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 2.3}), 0.02);
+    search(w);
+    for (Index n = w.body.nodes[high].begin; n < w.body.nodes[high].end; ++n) w.nodes.velocity[n] = {0, 0, -0.5 / h};
+    w.search.forget_body(static_cast<std::size_t>(high));
+    search(w);
+    REQUIRE(w.pairs.size() == 1);
+    CHECK(w.pairs.first[0] == low);
+    CHECK_FALSE(w.pairs.candidates[0].empty());
+    find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts);
+    CHECK(w.contacts.size() > 0);
+}
+
 TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer than the contact distance at rest",
           "[unit]") {
     CollisionWorld w;
