@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "tests/support/lively_scene.h"
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
@@ -429,5 +430,30 @@ TEST_CASE("a collider put into the way of what rests pushes it", "[scene]") {
         const Real height = field.world.center_of_mass(ball).z();
         REQUIRE(field.world.advance(0.05).ok());
         CHECK(field.world.center_of_mass(ball).z() < height - 0.0005);
+    }
+}
+
+TEST_CASE("clusters go on when mesh colliders come and go", "[scene]") {
+    World world = thrown_slivers();
+    const auto block = world.add_collider(small_block(), {.position = {0, 0, 2}});
+    world.add_body(sliver_box(0.1, 6, 0.01, 0.005, 4),
+                   {.material = MaterialHandle{0, 0, block.world}, .position = {0.5, 0, 0.06}, .velocity = {0, 0, -3}});
+    REQUIRE(world.advance(0.01).ok());
+    const std::size_t clusters = world.report().clusters;
+    REQUIRE(clusters > 0);
+    const TemporaryFolder folder;
+    for (const bool removed : {true, false}) {
+        World untouched = world.clone();
+        if (removed)
+            world.remove(block);
+        else
+            world.add_collider(small_block(), {.position = {0, 0, 3}});
+        world.save(folder.path() / "world.h5");
+        World loaded = World::load(folder.path() / "world.h5");
+        for (World* other : {&world, &loaded, &untouched}) REQUIRE(other->advance(0.01).ok());
+        CHECK(world.report().clusters == untouched.report().clusters);
+        CHECK(loaded.state_hash() == world.state_hash());
+        for (const BodyHandle body : world.bodies())
+            CHECK(std::ranges::equal(world.positions(body), untouched.positions(body)));
     }
 }

@@ -105,6 +105,11 @@ void Model::extend_derived() {
         body_mass[b] = 0;
         for (const Real mass : rows_of(nodes.mass, bodies.nodes[b])) body_mass[b] += mass;
     }
+    if (!watch.step.empty()) {  // a save has all rows, or none
+        watch.position.resize(nodes.position.size(), Vec3::Zero());
+        watch.stiffness_sum.resize(nodes.position.size());
+        watch.step.resize(bodies.slot.size(), StepWatch::not_looked_at);
+    }
     if (!clusters.empty()) {
         clusters.cluster_of.resize(nodes.position.size(), no_index);
         clusters.place.resize(nodes.position.size(), no_index);
