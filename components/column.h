@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "components/access_check.h"
+#include "components/range.h"
 
 namespace skerry {
 
@@ -63,6 +64,18 @@ public:
         Rows& rows = changed();
         rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(first),
                    rows.begin() + static_cast<std::ptrdiff_t>(first + count));
+    }
+    /// Removes ranges of rows, ascending; what of them is beyond the end is not there. One pass over the rows behind.
+    void erase(std::span<const Range> gone) {
+        if (gone.empty() || static_cast<std::size_t>(gone.front().begin) >= size()) return;
+        Rows& rows = changed();
+        const auto place = [&](Index row) {
+            return rows.begin() + std::min(static_cast<std::ptrdiff_t>(row), static_cast<std::ptrdiff_t>(rows.size()));
+        };
+        auto to = place(gone.front().begin);
+        for (std::size_t i = 0; i < gone.size(); ++i)
+            to = std::move(place(gone[i].end), i + 1 < gone.size() ? place(gone[i + 1].begin) : rows.end(), to);
+        rows.erase(to, rows.end());
     }
     void swap(Column& other) noexcept { changed().swap(other.changed()); }
 

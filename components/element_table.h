@@ -116,7 +116,7 @@ using PaddedVec3 = Lanes<Real, 4>;
 
 /// Patches: blocks of one body and one level that lie close together, so that they have few nodes between them. Forces
 /// are summed up within a patch, in cache, before nodes gather what few patches give them. Made from the blocks by
-/// build_patches, all of them at once: the lists grow and nothing points to them.
+/// build_patches, body after body: the lists grow and nothing points to them.
 struct ElementPatches {
     Column<Range> blocks;         // of ElementBlockTable, by patch
     Column<Range> slots;          // rows of the columns below, by patch

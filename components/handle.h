@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <span>
 
 #include "components/column.h"
 #include "components/types.h"
@@ -25,7 +26,7 @@ using BodyHandle = Handle<struct BodyTag>;
 using ColliderHandle = Handle<struct ColliderTag>;
 using AttachmentHandle = Handle<struct AttachmentTag>;
 
-/// Maps handles to rows of a table whose rows move down when an earlier one is erased.
+/// Maps handles to rows of a table whose rows move down when earlier ones are erased.
 template <class HandleType>
 class HandleMap {
 public:
@@ -55,19 +56,17 @@ public:
         return row_[handle.slot];
     }
 
-    /// Forgets a live handle; rows above its row move down by one.
-    void erase(HandleType handle) {
-        const Index erased = row_[handle.slot];
+    /// Forgets a live handle. Its row stays where it is, without a name.
+    void forget(HandleType handle) {
         row_[handle.slot] = no_index;
         ++generation_[handle.slot];
         if (handle.slot < lowest_free_) lowest_free_ = handle.slot;
-        row_erased(erased);
     }
 
-    /// A row that no handle names has gone; rows above it move down by one.
-    void row_erased(Index erased) {
+    /// Rows without a name have gone: `row_now` of each row that there was, no_index for those.
+    void rows_moved(std::span<const Index> row_now) {
         for (Index& row : row_)
-            if (row > erased) --row;
+            if (row != no_index) row = row_now[static_cast<std::size_t>(row)];
     }
 
     bool has_slot(std::uint32_t slot) const { return slot < row_.size() && row_[slot] != no_index; }

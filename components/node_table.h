@@ -26,7 +26,7 @@ struct NodeTable {
     Column<LevelMask> levels;          // levels, within their body, of the elements around the node
 
     /// The only list of columns: resize, erase, hash and save walk it. Derived: velocity_next (zero at rest), push_out
-    /// and levels by Model::rebuild_derived.
+    /// and levels by Model::derive_all.
     void for_each_column(auto&& visit) {
         visit("position", position, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);

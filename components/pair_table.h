@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "components/bvh_table.h"
@@ -123,6 +124,8 @@ struct BoundingSphere {
 
 /// Working memory of the searches, kept between steps so that a steady state allocates nothing.
 struct SearchMemory {
+    // by row, when a step begins: nothing is known of its distances
+    Column<std::uint8_t> body_forgotten, collider_forgotten;
     Column<Real> body_travel_bound;  // m: travel, path of the frame and what this step may close, by body
     // m: what this step may close, by body: in its frame, and with the motion of the frame
     Column<Real> body_frame_reach, body_reach;
@@ -145,15 +148,25 @@ struct SearchMemory {
     std::vector<Column<FoundCandidate>> found;  // by expired pair
 };
 
-/// When the broad search has to run again, and what the searches did. Clear both columns when a body or collider comes,
-/// goes or is moved by hand: everything is then searched afresh.
+/// When the broad search has to run again, and what the searches did. What was moved by hand is forgotten, and all
+/// pairs of it are found and searched afresh; others keep theirs. New rows, for which the columns are too short, are
+/// searched as forgotten ones; rows that go are erased here, too.
 struct SearchState {
+    static constexpr Real forgotten = -std::numeric_limits<Real>::infinity();
+
     Column<Real> body_valid_until;  // m, by body: the list of pairs holds while every body's travel_bound is below this
     Column<Real> collider_valid_until;  // m, by collider
     std::uint64_t broad_searches = 0;
     std::uint64_t pair_searches = 0;
     std::uint64_t candidate_count = 0;  // in all lists, now
     SearchMemory memory;
+
+    void forget_body(std::size_t row) {
+        if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
+    }
+    void forget_collider(std::size_t row) {
+        if (row < collider_valid_until.size()) collider_valid_until[row] = forgotten;
+    }
 };
 
 }  // namespace skerry

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "components/column.h"
 #include "components/range.h"
@@ -49,16 +50,15 @@ struct StepWatch {
     void forget(std::size_t row) {
         if (row < step.size()) step[row] = not_looked_at;
     }
-    /// This row of BodyTable and these of NodeTable are gone.
-    void erase(Index row, Range nodes) {
-        if (static_cast<std::size_t>(row) < step.size()) step.erase(static_cast<std::size_t>(row), 1);
-        if (static_cast<std::size_t>(nodes.end) <= position.size()) {
-            position.erase(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
-            stiffness_sum.erase(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
-        }
-        if (row == body) look = {};
-        body -= row < body;
-        kept -= row < kept;
+    /// These rows of BodyTable and of NodeTable are gone.
+    void erase(std::span<const Range> bodies, std::span<const Range> nodes) {
+        step.erase(bodies);
+        position.erase(nodes);
+        stiffness_sum.erase(nodes);
+        for (const Range& rows : bodies)
+            if (body >= rows.begin && body < rows.end) look = {};
+        body = row_without(body, bodies);
+        kept = row_without(kept, bodies);
     }
 };
 

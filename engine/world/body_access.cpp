@@ -6,24 +6,29 @@
 namespace skerry {
 
 std::span<const Vec3> World::positions(BodyHandle body) const {
+    state_->settle();
     return rows_of(state_->model.nodes.position,
                    state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "positions"))]);
 }
 
 std::span<const Vec3> World::velocities(BodyHandle body) const {
+    state_->settle();
     return rows_of(state_->model.nodes.velocity,
                    state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "velocities"))]);
 }
 
 std::span<const std::array<Index, 3>> World::surface(BodyHandle body) const {
+    state_->settle();
     return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "surface"))].surface;
 }
 
 std::span<const std::array<Index, 4>> World::tetrahedra(BodyHandle body) const {
+    state_->settle();
     return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "tetrahedra"))].tetrahedra;
 }
 
 const std::string& World::name(BodyHandle body) const {
+    state_->settle();
     return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "name"))].name;
 }
 
@@ -69,6 +74,7 @@ void World::wake(BodyHandle body) {
 }
 
 std::vector<BodyHandle> World::bodies() const {
+    state_->settle();
     std::vector<BodyHandle> handles;
     for (std::size_t b = 0; b < state_->model.bodies.slot.size(); ++b)
         if (state_->model.bodies.kind[b] == BodyKind::deformable)
@@ -77,6 +83,7 @@ std::vector<BodyHandle> World::bodies() const {
 }
 
 std::vector<ColliderHandle> World::colliders() const {
+    state_->settle();
     std::vector<ColliderHandle> handles;
     for (std::uint32_t slot : state_->model.colliders.slot)
         handles.push_back(state_->model.collider_map.handle_of_slot(slot));
@@ -91,10 +98,12 @@ MotionKey World::pose(ColliderHandle collider) const {
 }
 
 const Shape& World::shape(ColliderHandle collider) const {
+    state_->settle();
     return state_->model.collider_records[static_cast<std::size_t>(state_->model.row(collider, "shape"))].shape;
 }
 
 const std::string& World::name(ColliderHandle collider) const {
+    state_->settle();
     return state_->model.collider_records[static_cast<std::size_t>(state_->model.row(collider, "name"))].name;
 }
 

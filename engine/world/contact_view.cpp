@@ -1,7 +1,5 @@
 #include "engine/world/contact_view.h"
 
-#include <algorithm>
-
 namespace skerry {
 
 namespace {
@@ -59,16 +57,9 @@ void view_contacts(WorldState& world) {
     record.contact_view_is_current = true;
 }
 
-void forget_contacts_of(BodyHandle body, RunRecord& record) {
-    std::erase_if(record.contact_view, [&](const Contact& c) { return c.first == body || c.second == body; });
-}
-
-void forget_contacts_of(ColliderHandle collider, RunRecord& record) {
-    std::erase_if(record.contact_view, [&](const Contact& c) { return c.collider == collider; });
-}
-
 std::span<const Contact> World::contacts() const {
     WorldState& world = *state_;
+    world.settle();
     // of a step that was not taken: numbers that may not be finite
     if (world.scratch.findings.verdict.fault != StepFault::none) return {};
     view_contacts(world);

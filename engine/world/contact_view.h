@@ -8,8 +8,4 @@ namespace skerry {
 /// Fills the view of the last step's contacts, unless it has been.
 void view_contacts(WorldState& world);
 
-/// What is removed has no contacts any more; the others stay as they were.
-void forget_contacts_of(BodyHandle body, RunRecord& record);
-void forget_contacts_of(ColliderHandle collider, RunRecord& record);
-
 }  // namespace skerry

@@ -7,9 +7,9 @@
 #include <random>
 #include <utility>
 
-#include "engine/world/contact_view.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/erase_gone.h"
 #include "engine/world/edit/material_row.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
@@ -30,9 +30,10 @@ std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh,
     return rows;
 }
 
-/// A mesh is a body, too; other colliders have no nodes.
-EditedRows rows_of(const Shape& shape) {
-    return std::holds_alternative<SurfaceMesh>(shape) ? EditedRows::bodies : EditedRows::colliders;
+void mark(Index row, std::vector<std::uint8_t>& rows) {
+    const auto at = static_cast<std::size_t>(row);
+    if (rows.size() <= at) rows.resize(at + 1, 0);
+    rows[at] = 1;
 }
 
 /// Of no two worlds of this process the same, and hardly the same as that of a world that another process saved.
@@ -64,29 +65,31 @@ void WorldState::require_between_steps(const char* call) const {
         .raise();
 }
 
-void WorldState::begin_edit(const char* call) {
-    require_between_steps(call);
-    view_contacts(*this);  // while rows are where contacts say
-}
-
-void WorldState::end_edit(EditedRows rows) {
-    edited_ = std::max(edited_, rows);
-}
-
 void WorldState::settle() {
-    if (edited_ == EditedRows::none) return;
-    query_trees.forget();
-    if (edited_ == EditedRows::bodies) {
-        model.rebuild_derived();
+    if (!edits.places.empty()) edits.places.wake_near(model);
+    if (!edits.rows) return;
+    if (edits.elements) {
         model.clusters.clear();  // of rows that have moved
         model.clusters_open = true;
     }
-    model.wake_all();
-    cache.drop_pairs(model);
+    erase_gone_rows();
+    model.extend_derived();
+    cache.extend(model);
+    query_trees.forget();
     record.balance.close();
-    scratch.contacts.resize(0);
+    edits.rows = edits.elements = false;
+}
+
+void WorldState::erase_gone_rows() {
+    const RowMoves moves = row_moves(model, edits.bodies_gone, edits.colliders_gone);
+    edits.bodies_gone.clear();
+    edits.colliders_gone.clear();
+    if (!moves.any()) return;
+    erase_gone(moves, cache);
+    erase_gone(moves, model.nodes.body, scratch.contacts);
     scratch.regions = RegionTable{};
-    edited_ = EditedRows::none;
+    record.contact_view_is_current = false;
+    erase_gone(moves, model);
 }
 
 World::StateOwner::StateOwner(std::unique_ptr<WorldState> owned) : owned_(std::move(owned)) {}
@@ -150,7 +153,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     validate(mesh, body);
     const Index material = state_->model.row(body.material, "add_body");
     const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(state_->model, mesh, body);
-    state_->begin_edit("add_body");
+    state_->require_between_steps("add_body");
     const BodyHandle handle = state_->model.body_map.insert(static_cast<Index>(state_->model.bodies.slot.size()));
     append_body(state_->model, state_->scratch.stiffness_sum,
                 {.slot = handle.slot,
@@ -174,23 +177,28 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     try {
         validate_step(state_->model, state_->model.row(handle, "add_body"), name);
     } catch (const SceneError&) {
-        erase_body(state_->model, state_->model.row(handle, "add_body"));
-        state_->model.body_map.erase(handle);
+        Model& model = state_->model;
+        std::vector<std::uint8_t> last;
+        mark(model.row(handle, "add_body"), last);
+        model.body_map.forget(handle);
+        erase_gone(row_moves(model, last, {}), model);
         throw;
     }
-    state_->end_edit(EditedRows::bodies);
+    state_->edits.rows = state_->edits.elements = true;
     return handle;
 }
 
 ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& collider) {
     validate(shape, collider);
-    state_->begin_edit("add_collider");
+    state_->require_between_steps("add_collider");
     const ColliderHandle handle =
         state_->model.collider_map.insert(static_cast<Index>(state_->model.colliders.slot.size()));
-    append_collider(state_->model, state_->scratch.stiffness_sum, handle.slot, shape, collider, state_->clock.time);
+    const Index row =
+        append_collider(state_->model, state_->scratch.stiffness_sum, handle.slot, shape, collider, state_->clock.time);
     std::string& name = state_->model.collider_records.back().name;
     if (name.empty()) name = "collider " + std::to_string(handle.slot);
-    state_->end_edit(rows_of(shape));
+    state_->edits.places.add_collider(state_->model, static_cast<std::size_t>(row), time());
+    state_->edits.rows = true;
     return handle;
 }
 
@@ -207,47 +215,58 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
-    state_->begin_edit("attach");
+    state_->require_between_steps("attach");
     const AttachmentHandle handle =
         state_->model.attachment_map.insert(static_cast<Index>(state_->model.attachments.slot.size()));
     append_attachment(state_->model, handle.slot, row, nodes, {pivot, Mat3::Identity()}, motion, state_->clock.time);
-    state_->end_edit(EditedRows::bodies);
+    state_->model.wake(static_cast<std::size_t>(row));
+    state_->cache.forget_body(state_->model, static_cast<std::size_t>(row));  // its nodes have stopped
+    state_->edits.rows = state_->edits.elements = true;
     return handle;
 }
 
 void World::remove(BodyHandle body) {
-    const Index row = state_->model.row(body, "remove");
-    state_->begin_edit("remove");
-    forget_contacts_of(body, state_->record);
+    state_->require_between_steps("remove");
+    Model& model = state_->model;
+    const Index row = model.row(body, "remove");
     ForceLedger& forces = state_->record.forces;
     forces.forget_body(body.slot);
-    for (std::size_t a = 0; a < state_->model.attachments.slot.size(); ++a)
-        if (state_->model.attachments.body[a] == row) forces.forget_attachment(state_->model.attachments.slot[a]);
-    enable_pairs_of(body, state_->model.disabled_pairs);
-    erase_body(state_->model, row);
-    state_->model.body_map.erase(body);
-    state_->end_edit(EditedRows::bodies);
+    for (std::size_t a = 0; a < model.attachments.slot.size(); ++a) {
+        const std::uint32_t slot = model.attachments.slot[a];
+        if (model.attachments.body[a] != row || !model.attachment_map.has_slot(slot)) continue;
+        forces.forget_attachment(slot);
+        model.attachment_map.forget(model.attachment_map.handle_of_slot(slot));
+    }
+    enable_pairs_of(body, model.disabled_pairs);
+    model.body_map.forget(body);
+    OpenEdits& edits = state_->edits;
+    edits.places.add_body(model, static_cast<std::size_t>(row));
+    mark(row, edits.bodies_gone);
+    edits.rows = edits.elements = true;
 }
 
 void World::remove(ColliderHandle collider) {
+    state_->require_between_steps("remove");
     const Index row = state_->model.row(collider, "remove");
-    state_->begin_edit("remove");
-    forget_contacts_of(collider, state_->record);
     state_->record.forces.forget_collider(collider.slot);
     enable_pairs_of(collider, state_->model.disabled_pairs);
-    const EditedRows rows = rows_of(state_->model.collider_records[static_cast<std::size_t>(row)].shape);
-    erase_collider(state_->model, row);
-    state_->model.collider_map.erase(collider);
-    state_->end_edit(rows);
+    OpenEdits& edits = state_->edits;
+    edits.places.add_collider(state_->model, static_cast<std::size_t>(row), time());
+    mark(row, edits.colliders_gone);
+    if (const Index body = state_->model.colliders.body[static_cast<std::size_t>(row)]; body != no_index)
+        mark(body, edits.bodies_gone);
+    state_->model.collider_map.forget(collider);
+    edits.rows = true;
 }
 
 void World::remove(AttachmentHandle attachment) {
+    state_->require_between_steps("remove");
     const Index row = state_->model.row(attachment, "remove");
-    state_->begin_edit("remove");
     state_->record.forces.forget_attachment(attachment.slot);
+    state_->model.wake(static_cast<std::size_t>(state_->model.attachments.body[static_cast<std::size_t>(row)]));
+    state_->model.attachment_map.forget(attachment);
     erase_attachment(state_->model, row);
-    state_->model.attachment_map.erase(attachment);
-    state_->end_edit(EditedRows::bodies);
+    state_->edits.rows = state_->edits.elements = true;
 }
 
 bool World::alive(BodyHandle body) const {

@@ -119,6 +119,7 @@ std::uint64_t World::state_hash() const {
     return skerry::state_hash(*state_);
 }
 Energy World::energy() const {
+    state_->settle();
     return energy_of(state_->model, state_->record.counters.dissipated);
 }
 

@@ -2,9 +2,12 @@
 // answers for the whole world, takes all of it. Systems get spans of the columns.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "engine/world/edit/changed_places.h"
 #include "engine/world/state/clock.h"
 #include "engine/world/state/contact_cache.h"
 #include "engine/world/state/model.h"
@@ -17,8 +20,13 @@
 
 namespace skerry {
 
-/// What has come or gone: nothing, analytic colliders alone, or rows of nodes and elements, or their freedom.
-enum class EditedRows { none, colliders, bodies };
+/// What has changed since the world was settled.
+struct OpenEdits {
+    bool rows = false;      // bodies, colliders or attachments came or went
+    bool elements = false;  // bodies with elements did, or nodes lost or got their freedom
+    std::vector<std::uint8_t> bodies_gone, colliders_gone;  // by row, not 0: gone; rows beyond the end are there
+    ChangedPlaces places;
+};
 
 struct WorldState {
     explicit WorldState(const Settings& settings);
@@ -32,21 +40,18 @@ struct WorldState {
     QueryTrees query_trees;
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
+    OpenEdits edits;
     bool advancing = false;  // what it calls back must not change what it goes over
 
     /// Refuses a call from what advance calls back.
     void require_between_steps(const char* call) const;
-    /// Before bodies, colliders or attachments come or go.
-    void begin_edit(const char* call);
-    /// After they did. What follows from all rows is left as it was until somebody needs it: many changes in a row cost
-    /// it once.
-    void end_edit(EditedRows rows);
-    /// What follows from all rows, if these have changed: derived columns, pairs, who rests. Called by whatever reads
-    /// any of it, functions that only look included.
+    /// Takes out what is gone, derives what is new, wakes what rests beside either. It is left until somebody needs
+    /// it, so that many changes in a row cost it once. Called by whatever goes over all rows, hands out what lies in
+    /// them or asks who rests, functions that only look included; one row is found without.
     void settle();
 
 private:
-    EditedRows edited_ = EditedRows::none;  // since it was settled
+    void erase_gone_rows();
 };
 
 /// For what stands beside World: tests, and what reads and writes whole worlds.

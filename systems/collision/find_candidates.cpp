@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/check.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/search/find_pairs.h"
@@ -17,12 +18,24 @@ namespace {
 
 constexpr std::size_t trees_per_block = 4;  // a refit takes microseconds
 
-void bound_body_travels(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, bool measure,
+/// Which rows nothing is known of. Returns whether there are any.
+bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Column<std::uint8_t>& forgotten) {
+    if (all) valid_until.clear();
+    SKERRY_CHECK(valid_until.size() <= count);
+    valid_until.resize(count, SearchState::forgotten);
+    forgotten.resize(count);
+    bool any = false;
+    for (std::size_t row = 0; row < count; ++row) any |= forgotten[row] = valid_until[row] == SearchState::forgotten;
+    return any;
+}
+
+void bound_body_travels(const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                         SearchMemory& memory) {
     memory.body_travel_bound.resize(inputs.body.slot.size());
     memory.body_frame_reach.resize(inputs.body.slot.size());
     memory.body_reach.resize(inputs.body.slot.size());
     for (std::size_t b = 0; b < inputs.body.slot.size(); ++b) {
+        const bool measure = memory.body_forgotten[b] != 0;
         const BodyReach reach = body_reach(inputs, settings, static_cast<Index>(b), measure, h);
         memory.body_travel_bound[b] = inputs.body.travel[b] + inputs.body.frame[b].path + reach.in_world;
         memory.body_frame_reach[b] = reach.in_frame;
@@ -32,6 +45,7 @@ void bound_body_travels(const CollisionInputs& inputs, const CollisionSettings& 
 
 void bound_collider_travels(const CollisionInputs& inputs, Real h, SearchMemory& memory) {
     memory.collider_travel_bound.resize(inputs.collider.slot.size());
+    memory.collider_extent.resize(inputs.collider.slot.size());
     for (std::size_t c = 0; c < memory.collider_travel_bound.size(); ++c)
         memory.collider_travel_bound[c] =
             inputs.collider.travel[c] + collider_reach(inputs, static_cast<Index>(c), memory.collider_extent[c], h);
@@ -71,12 +85,12 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     pairs.closing[p] = memory.body_reach[a] + memory.body_reach[b];
 }
 
-void list_expired(const CollisionInputs& inputs, Real h, bool all, SearchMemory& memory, PairTable& pairs) {
+void list_expired(const CollisionInputs& inputs, Real h, SearchMemory& memory, PairTable& pairs) {
     memory.expired.clear();
     pairs.fresh.resize(pairs.size());
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         bound_travel(inputs, memory, h, static_cast<Index>(p), pairs);
-        pairs.fresh[p] = all || !(pairs.travel_bound[p] < pairs.valid_until[p]);
+        pairs.fresh[p] = !(pairs.travel_bound[p] < pairs.valid_until[p]);
         if (pairs.fresh[p]) memory.expired.push_back(static_cast<Index>(p));
     }
     // A tree that several expired pairs share is fitted once.
@@ -153,20 +167,17 @@ void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& sett
 bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<Aabb> box, std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs) {
     SearchMemory& memory = search.memory;
-    const std::size_t body_count = inputs.body.slot.size(), collider_count = inputs.collider.slot.size();
-    const bool afresh = !settings.use_budgets || search.body_valid_until.size() != body_count ||
-                        search.collider_valid_until.size() != collider_count;
-    bound_body_travels(inputs, settings, h, afresh, memory);
-    bool broad = afresh;
-    if (!afresh) {
-        bound_collider_travels(inputs, h, memory);
-        broad = !all_below(memory.body_travel_bound, search.body_valid_until) || !colliders_below(inputs, search);
-    }
+    const bool all = !settings.use_budgets;
+    bool broad = mark_forgotten(inputs.body.slot.size(), all, search.body_valid_until, memory.body_forgotten);
+    broad |= mark_forgotten(inputs.collider.slot.size(), all, search.collider_valid_until, memory.collider_forgotten);
+    bound_body_travels(inputs, settings, h, memory);
+    bound_collider_travels(inputs, h, memory);
+    broad |= !all_below(memory.body_travel_bound, search.body_valid_until) || !colliders_below(inputs, search);
     if (broad) {
-        find_pairs(executor, inputs, settings, h, afresh, search, pairs);
+        find_pairs(executor, inputs, settings, h, search, pairs);
         bound_collider_travels(inputs, h, memory);  // of a plane that turns, by where the bodies are now
     }
-    list_expired(inputs, h, afresh, memory, pairs);
+    list_expired(inputs, h, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
     refit_trees(executor, inputs, box, leaf_box, memory);

@@ -56,8 +56,8 @@ public:
     static World load(const std::filesystem::path& file, const LoadSettings& settings = {});
 
     // Building. Allowed between calls of advance, and refused with SceneError in what these call; handles to everything
-    // else stay valid. What is derived of all bodies is made anew when it is next asked for: adding many costs no more
-    // than adding each.
+    // else stay valid. A change costs what it changes; all that is removed in a row is taken out of the tables at once,
+    // when they are next needed.
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});

@@ -68,6 +68,7 @@ void require_upright(const Model& model, std::size_t body, std::span<const Vec3>
 
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
+    world.edits.places.add_body(model, body);  // what lay on it
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
     for (std::size_t n = 0; n < position.size(); ++n) {
@@ -80,9 +81,10 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     model.watch.forget(body);
     model.body_records[body].settled = model.settled = false;
     world.query_trees.forget();
-    world.cache.search_afresh(model);
+    world.cache.forget_body(model, body);
     world.record.balance.close();
-    model.wake_all();  // of what lay on it, or is in it now
+    model.wake(body);
+    world.edits.places.add_body(model, body);  // what is in it now
 }
 
 void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
@@ -112,7 +114,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
         changed = true;
     }
     if (!changed) return;
-    state_->cache.search_afresh(model);  // the search counts on the speed of the last step
+    state_->cache.forget_body(model, row);  // the search counts on the speed of the last step
     state_->record.balance.close();
     model.wake(row);
 }

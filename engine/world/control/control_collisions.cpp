@@ -24,13 +24,6 @@ RowPair rows_of(const Model& model, BodyHandle body, ColliderHandle collider, co
     return {PairKind::collider, model.row(body, call), model.row(collider, call)};
 }
 
-/// Pairs are found again, and what they overlap in is looked at as at a start.
-void look_afresh(WorldState& world) {
-    world.settle();
-    world.cache.drop_pairs(world.model);
-    world.model.wake_all();
-}
-
 void look_for_overlaps(Model& model, Index body) {
     model.body_records[static_cast<std::size_t>(body)].settled = model.settled = false;
 }
@@ -39,6 +32,14 @@ void look_for_overlaps_of_collider(Model& model, Index collider) {
     const auto c = static_cast<std::size_t>(collider);
     model.collider_records[c].settled = model.settled = false;
     if (model.colliders.body[c] != no_index) look_for_overlaps(model, model.colliders.body[c]);
+}
+
+/// Its pairs are found again, and it and what it touches or will touch do not rest.
+void find_pairs_of(WorldState& world, Index body) {
+    const auto b = static_cast<std::size_t>(body);
+    world.cache.forget_body(world.model, b);
+    world.edits.places.add_body(world.model, b);
+    world.model.wake(b);
 }
 
 void set_collision(WorldState& world, const RowPair& pair, bool on) {
@@ -56,7 +57,7 @@ void set_collision(WorldState& world, const RowPair& pair, bool on) {
         disabled.push_back(key);
         std::rotate(disabled.begin() + static_cast<std::ptrdiff_t>(at), disabled.end() - 1, disabled.end());
     }
-    look_afresh(world);
+    find_pairs_of(world, pair.first);
 }
 
 bool collide(const Model& model, const RowPair& pair) {
@@ -89,7 +90,7 @@ void World::set_collision_groups(BodyHandle body, std::uint32_t group, std::uint
     if (filter == CollisionFilter{group, mask}) return;
     filter = {group, mask};
     look_for_overlaps(model, row);
-    look_afresh(*state_);
+    find_pairs_of(*state_, row);
 }
 
 void World::set_collision_groups(ColliderHandle collider, std::uint32_t group, std::uint32_t mask) {
@@ -100,7 +101,8 @@ void World::set_collision_groups(ColliderHandle collider, std::uint32_t group, s
     if (filter == CollisionFilter{group, mask}) return;
     filter = {group, mask};
     look_for_overlaps_of_collider(model, row);
-    look_afresh(*state_);
+    state_->cache.forget_collider(model, static_cast<std::size_t>(row));
+    state_->edits.places.add_collider(model, static_cast<std::size_t>(row), time());
 }
 
 void World::set_collision(BodyHandle a, BodyHandle b, bool on) {
@@ -110,7 +112,7 @@ void World::set_collision(BodyHandle a, BodyHandle b, bool on) {
     std::uint8_t& self_contact = state_->model.bodies.self_contact[static_cast<std::size_t>(pair.first)];
     if ((self_contact != 0) == on) return;
     self_contact = on;
-    look_afresh(*state_);
+    find_pairs_of(*state_, pair.first);
 }
 
 void World::set_collision(BodyHandle body, ColliderHandle collider, bool on) {

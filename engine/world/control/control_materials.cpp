@@ -179,7 +179,7 @@ void World::set_surface_properties(ColliderHandle collider, const SurfaceSetting
     const SurfaceProperties next = surface_properties(surface);
     if (model.colliders.surface[row] == next) return;
     model.colliders.surface[row] = next;
-    model.wake_all();  // of what rests on it
+    state_->edits.places.add_collider(model, row, time());  // what rests on it
 }
 
 }  // namespace skerry

@@ -1,7 +1,6 @@
 // How colliders and attachments move from now on. Both have a script: constant velocities since a time, or keys.
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <vector>
 
 #include "engine/world/control/control.h"
@@ -111,10 +110,8 @@ void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, R
     scripted.start_keys({now, from.position, rotation}, {end, pose.position, nearest_turn(pose.rotation, rotation)});
 }
 
-/// Returns the pose where it was not there.
 template <class Table>
-std::optional<RigidPose> set_pose(const Scripted<Table>& scripted, const Pose& pose, Real now) {
-    if (is_at(scripted.pose(now), pose)) return std::nullopt;
+RigidPose set_pose(const Scripted<Table>& scripted, const Pose& pose, Real now) {
     const RigidPose there{pose.position, rotation_matrix(pose.rotation)};
     const Vec3 velocity = scripted.script().velocity, angular_velocity = scripted.script().angular_velocity;
     scripted.start(there, velocity, angular_velocity, now);
@@ -226,17 +223,18 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     const Index row = model.row(collider, "set_pose");
     require_pose([&] { return title_of(model, row); }, pose);
     const auto c = static_cast<std::size_t>(row);
-    const std::optional<RigidPose> there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
-    if (!there) return;
+    if (is_at(Scripted{model.colliders, c}.pose(time()), pose)) return;
+    state_->edits.places.add_collider(model, c, time());  // what it was under
+    const RigidPose there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
     if (const Index a = attachment_of(model, row); a != no_index) {
         const auto of_mesh = static_cast<std::size_t>(a);
         skerry::set_pose(Scripted{model.attachments, of_mesh}, pose, time());
-        place_nodes(*state_, static_cast<std::size_t>(model.colliders.body[c]), carried_nodes(model, of_mesh, *there));
+        place_nodes(*state_, static_cast<std::size_t>(model.colliders.body[c]), carried_nodes(model, of_mesh, there));
     }
-    model.colliders.motion[c] = {there->position, there->rotation, Vec3::Zero(), Vec3::Zero()};
+    model.colliders.motion[c] = {there.position, there.rotation, Vec3::Zero(), Vec3::Zero()};
     model.collider_records[c].settled = model.settled = false;
-    state_->cache.search_afresh(model);
-    model.wake_all();  // of what it was under, or is in now
+    state_->cache.forget_collider(model, c);
+    state_->edits.places.add_collider(model, c, time());  // what it is in now
 }
 
 void World::set_pose(AttachmentHandle attachment, const Pose& pose) {

@@ -1,4 +1,4 @@
-// Bodies come and go between steps. A body is a range of rows in every table; rows behind a removed body move down.
+// Bodies come between steps. A body is a range of rows in every table.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,9 @@
 namespace skerry {
 
 namespace {
+
+// m, of what find_inversions knows
+constexpr Real not_looked_at = -std::numeric_limits<Real>::infinity();
 
 constexpr Real default_contact_distance = 0.02;  // of the mean surface edge: thin against what the mesh can resolve
 
@@ -97,9 +100,7 @@ std::array<Index, element_level_count> level_count_of(const ElementBlockTable& e
 
 /// Takes rows `gone` out of every column of a table.
 void erase_rows(auto& table, Range gone) {
-    table.for_each_column([gone](const char*, auto& column, ColumnRole) {
-        column.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
-    });
+    table.for_each_column([gone](const char*, auto& column, ColumnRole) { column.erase({&gone, 1}); });
 }
 
 /// A new body as the tables have it: rows, and which element of the list stands at each place of its blocks.
@@ -160,89 +161,6 @@ std::vector<std::array<Index, 3>> outline(const NewBody& body) {
     return triangles;
 }
 
-void shift(Index& row, Range gone) {
-    if (row >= gone.end) row -= gone.size();
-}
-
-void shift(Range& range, Range gone) {
-    shift(range.begin, gone);
-    shift(range.end, gone);
-}
-
-/// Renumbers everything that points behind the rows that one body had.
-struct Renumber {
-    Range nodes, node_blocks, blocks, element_nodes, tetrahedron_blocks, triangles, edges, vertices, vertex_triangles,
-        bvh_nodes, bvh_leaves, bodies;
-
-    Range tetrahedra() const {
-        return {tetrahedron_blocks.begin * element_lanes, tetrahedron_blocks.end * element_lanes};
-    }
-
-    void apply(Model& model) const {
-        for (Index& body : model.nodes.body) shift(body, bodies);
-        for (Index& n : model.node_blocks.begin) shift(n, nodes);
-        for (Index& n : model.node_blocks.end) shift(n, nodes);
-        for (Index& body : model.node_blocks.body) shift(body, bodies);
-        for (TetrahedronNodes& corner : model.tetrahedra.node)
-            for (NodeLane& lanes : corner)
-                for (Index& n : lanes.lane) shift(n, nodes);
-        for (NodeLane& lanes : model.element_nodes.node)
-            for (Index& n : lanes.lane) shift(n, nodes);
-        for (Index& first : model.elements.first) shift(first, element_nodes);
-        for (Index& body : model.elements.body) shift(body, bodies);
-        surface(model.surface);
-        for (BvhNode& node : model.bvh.node) {
-            shift(node.skip, bvh_nodes);
-            if (node.right != no_index) shift(node.right, bvh_nodes);
-            if (node.leaf != no_index) shift(node.leaf, bvh_leaves);
-        }
-        for (LeafTriangles& leaf : model.bvh_leaves.triangle)
-            for (Index& t : leaf)
-                if (t != no_index) shift(t, triangles);
-        ranges(model.bodies);
-        for (Index& body : model.colliders.body)
-            if (body != no_index) shift(body, bodies);
-        for (Index& body : model.attachments.body) shift(body, bodies);
-        for (Index& n : model.attachments.node) shift(n, nodes);
-    }
-
-private:
-    void surface(SurfaceTables& tables) const {
-        for (auto& corner : tables.triangles.node)
-            for (Index& n : corner) shift(n, nodes);
-        for (auto& edge : tables.triangles.edge)
-            for (Index& e : edge) shift(e, edges);
-        for (auto& vertex : tables.triangles.vertex)
-            for (Index& v : vertex) shift(v, vertices);
-        for (Index& element : tables.triangles.element)
-            if (element != no_index) shift(element, tetrahedra());
-        for (auto& corner : tables.edges.node)
-            for (Index& n : corner) shift(n, nodes);
-        for (auto& side : tables.edges.triangle)
-            for (Index& t : side)
-                if (t != no_index) shift(t, triangles);
-        for (Index& n : tables.vertices.node) shift(n, nodes);
-        for (Index& item : tables.vertices.triangle_begin) shift(item, vertex_triangles);
-        for (Index& item : tables.vertices.triangle_end) shift(item, vertex_triangles);
-        for (Index& t : tables.vertex_triangle) shift(t, triangles);
-    }
-
-    void ranges(BodyTable& table) const {
-        for (std::size_t b = 0; b < table.slot.size(); ++b) {
-            shift(table.nodes[b], nodes);
-            shift(table.node_blocks[b], node_blocks);
-            shift(table.blocks[b], blocks);
-            shift(table.element_nodes[b], element_nodes);
-            shift(table.tetrahedron_blocks[b], tetrahedron_blocks);
-            shift(table.triangles[b], triangles);
-            shift(table.edges[b], edges);
-            shift(table.vertices[b], vertices);
-            shift(table.bvh_nodes[b], bvh_nodes);
-            shift(table.bvh_leaves[b], bvh_leaves);
-        }
-    }
-};
-
 }  // namespace
 
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body) {
@@ -275,6 +193,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.element_nodes[b] = rows.elements.nodes;
     bodies.tetrahedron_blocks[b] = rows.tetrahedra;
     bodies.tetrahedron_count[b] = static_cast<Index>(body.tetrahedra.size());
+    bodies.uninverted_until[b] = not_looked_at;
+    std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_looked_at);
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(model.elements, blocks);
     model.body_records.push_back({.name = {},
@@ -290,44 +210,6 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.min_altitude[b] = smallest_altitude(body);
     find_steps(model, row, body, zones, model.nodes.position, stiffness_sum);
     return row;
-}
-
-void erase_body(Model& model, Index row) {
-    const auto b = static_cast<std::size_t>(row);
-    for (std::size_t a = model.attachments.slot.size(); a-- > 0;)
-        if (model.attachments.body[a] == row) {
-            if (model.attachments.slot[a] != no_slot)
-                model.attachment_map.erase(model.attachment_map.handle_of_slot(model.attachments.slot[a]));
-            else
-                model.attachment_map.row_erased(static_cast<Index>(a));
-            erase_attachment(model, static_cast<Index>(a));
-        }
-
-    const BodyTable& bodies = model.bodies;
-    Renumber renumber{bodies.nodes[b],         bodies.node_blocks[b],        bodies.blocks[b],
-                      bodies.element_nodes[b], bodies.tetrahedron_blocks[b], bodies.triangles[b],
-                      bodies.edges[b],         bodies.vertices[b],           {},
-                      bodies.bvh_nodes[b],     bodies.bvh_leaves[b],         {row, row + 1}};
-    if (renumber.vertices.size() > 0)
-        renumber.vertex_triangles = {
-            model.surface.vertices.triangle_begin[static_cast<std::size_t>(renumber.vertices.begin)],
-            model.surface.vertices.triangle_end[static_cast<std::size_t>(renumber.vertices.end) - 1]};
-    erase_rows(model.nodes, renumber.nodes);
-    erase_rows(model.node_blocks, renumber.node_blocks);
-    erase_rows(model.tetrahedra, renumber.tetrahedron_blocks);
-    erase_rows(model.elements, renumber.blocks);
-    erase_rows(model.element_nodes, renumber.element_nodes);
-    erase_rows(model.surface.triangles, renumber.triangles);
-    erase_rows(model.surface.edges, renumber.edges);
-    erase_rows(model.surface.vertices, renumber.vertices);
-    model.surface.vertex_triangle.erase(static_cast<std::size_t>(renumber.vertex_triangles.begin),
-                                        static_cast<std::size_t>(renumber.vertex_triangles.size()));
-    erase_rows(model.bvh, renumber.bvh_nodes);
-    erase_rows(model.bvh_leaves, renumber.bvh_leaves);
-    erase_rows(model.bodies, renumber.bodies);
-    model.body_records.erase(model.body_records.begin() + row);
-    model.watch.erase(row, renumber.nodes);
-    renumber.apply(model);
 }
 
 }  // namespace skerry

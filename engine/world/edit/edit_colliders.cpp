@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/erase_gone.h"
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/geometry/rotation.h"
 
@@ -21,18 +22,6 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
 RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
     return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
             Vec3::Zero(), Vec3::Zero()};
-}
-
-/// Erases one row of a table with a ragged key list.
-void erase_scripted_row(auto& table, std::size_t row) {
-    const Index begin = table.script[row].key_begin, count = table.script[row].key_end - begin;
-    table.keyframe.erase(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
-    table.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.erase(row, 1); });
-    for (MotionScript& script : table.script)
-        if (script.key_begin > begin) {
-            script.key_begin -= count;
-            script.key_end -= count;
-        }
 }
 
 struct GeometryOf {
@@ -118,27 +107,26 @@ Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<
 void erase_attachment(Model& model, Index row) {
     AttachmentTable& table = model.attachments;
     const auto r = static_cast<std::size_t>(row);
-    const Range gone = table.nodes[r];
     const auto body = static_cast<std::size_t>(table.body[r]);
-    for (Index i = gone.begin; i < gone.end; ++i) {
+    for (Index i = table.nodes[r].begin; i < table.nodes[r].end; ++i) {
         const Index node = table.node[static_cast<std::size_t>(i)];
         bool held_elsewhere = false;
-        for (std::size_t other = 0; other < table.slot.size() && !held_elsewhere; ++other)
-            for (Index j = table.nodes[other].begin; other != r && j < table.nodes[other].end; ++j)
+        for (std::size_t other = 0; other < table.slot.size() && !held_elsewhere; ++other) {
+            if (other == r || table.body[other] != table.body[r]) continue;
+            for (Index j = table.nodes[other].begin; j < table.nodes[other].end; ++j)
                 held_elsewhere |= table.node[static_cast<std::size_t>(j)] == node;
+        }
         const auto n = static_cast<std::size_t>(node);
         if (held_elsewhere || model.nodes.mass[n] <= 0) continue;
         model.nodes.inverse_mass[n] = 1 / model.nodes.mass[n];
         --model.bodies.pinned_count[body];
     }
-    table.node.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
-    table.anchor.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
-    erase_scripted_row(table, r);
-    for (Range& range : table.nodes)
-        if (range.begin >= gone.end) {
-            range.begin -= gone.size();
-            range.end -= gone.size();
-        }
+    std::vector<Index> row_now;
+    for (Index i = 0; i < static_cast<Index>(table.slot.size()); ++i)
+        row_now.push_back(i == row ? no_index : i - (i > row));
+    const Range gone{row, row + 1};
+    erase_scripted_rows({&gone, 1}, table);
+    model.attachment_map.rows_moved(row_now);
 }
 
 Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t slot, const Shape& shape,
@@ -182,18 +170,6 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
         append_attachment(model, no_slot, table.body[row], all, placed, settings.motion, now);
     }
     return static_cast<Index>(row);
-}
-
-void erase_collider(Model& model, Index row) {
-    const auto c = static_cast<std::size_t>(row);
-    if (const Index body = model.colliders.body[c]; body != no_index) {
-        erase_body(model, body);
-        model.body_map.row_erased(body);  // no handle names it, as World::remove(BodyHandle) would erase
-    }
-    erase_scripted_row(model.colliders, c);
-    model.collider_records.erase(model.collider_records.begin() + row);
-    for (Index& collider : model.bodies.collider)
-        if (collider != no_index && collider > row) --collider;
 }
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Rows of the tables come and go between steps. The caller says so to what is derived from all of them
-// (WorldState::settle).
+// Rows of the tables come between steps, behind those that are there, and change (those that go: erase_gone.h). The
+// caller says so to what is derived of them (WorldState::settle).
 #pragma once
 
 #include <array>
@@ -34,7 +34,6 @@ struct NewBody {
 /// Appends a surface with or without tetrahedra as a body; returns its row. `stiffness_sum` is memory to work in, by
 /// node: kept from body to body, so that each costs what it has itself.
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body);
-void erase_body(Model& model, Index row);
 
 // body_steps.cpp
 /// Tetrahedra by material, in the order in which the mesh comes to their materials.
@@ -54,9 +53,9 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
 SurfaceProperties surface_properties(const SurfaceSettings& settings);
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,
                         const RigidPose& pose, const Motion& motion, Real now);
+/// Its nodes are free again, where nothing else holds them. No handle names it any more.
 void erase_attachment(Model& model, Index row);
 Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t slot, const Shape& shape,
                       const ColliderSettings& settings, Real now);
-void erase_collider(Model& model, Index row);
 
 }  // namespace skerry

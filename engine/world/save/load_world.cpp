@@ -135,7 +135,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.elements.rotation_next = model.elements.rotation;
     model.elements.viscous_strain_next = model.elements.viscous_strain;
     model.rebuild_outlines();
-    model.rebuild_derived();
+    model.derive_all();
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);

@@ -186,7 +186,8 @@ void World::settle_start() {
     if (!overlaps.empty() && wanted == StartOverlaps::resolve) {
         MoveApart(model, search).run(overlaps);
         moves = take_over_shifts(search, model);
-        world.cache.drop_pairs(model);
+        for (const StartMove& move : moves)
+            world.cache.forget_body(model, static_cast<std::size_t>(model.row(move.body, "settle_start")));
         world.query_trees.forget();
         world.record.balance.close();
         for (StartOverlap& report : reports) report.resolved = true;

@@ -5,17 +5,24 @@
 
 namespace skerry {
 
-void ContactCache::search_afresh(Model& model) {
-    search.body_valid_until.clear();
-    search.collider_valid_until.clear();
+void ContactCache::forget_body(Model& model, std::size_t body) {
+    search.forget_body(body);
     constexpr Real long_ago = -std::numeric_limits<Real>::infinity();
-    std::ranges::fill(model.bodies.uninverted_until, long_ago);
-    std::ranges::fill(model.tetrahedra.uninverted_until, long_ago);
+    model.bodies.uninverted_until[body] = long_ago;
+    std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, model.bodies.tetrahedron_blocks[body]), long_ago);
 }
 
-void ContactCache::drop_pairs(Model& model) {
-    pairs = PairTable{};
-    search_afresh(model);
+void ContactCache::forget_collider(const Model& model, std::size_t collider) {
+    search.forget_collider(collider);
+    if (const Index body = model.colliders.body[collider]; body != no_index)
+        search.forget_body(static_cast<std::size_t>(body));
+}
+
+void ContactCache::extend(const Model& model) {
+    search.body_valid_until.resize(model.bodies.slot.size(), SearchState::forgotten);
+    search.collider_valid_until.resize(model.colliders.slot.size(), SearchState::forgotten);
+    search.memory.rebase.resize(model.bodies.slot.size());
+    search.memory.collider_extent.resize(model.colliders.slot.size());
 }
 
 }  // namespace skerry

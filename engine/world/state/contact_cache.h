@@ -13,10 +13,12 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Forgets what the search believes of distances.
-    void search_afresh(Model& model);
-    /// Rows have moved: pairs are found again. Impulses stay, since their keys name bodies by slot.
-    void drop_pairs(Model& model);
+    /// Forgets what is believed of distances: of a body and within it, which was moved by hand, or of a collider. All
+    /// pairs of it are found and searched again in the next step, and no others.
+    void forget_body(Model& model, std::size_t body);
+    void forget_collider(const Model& model, std::size_t collider);
+    /// Bodies and colliders have come, of which nothing is known.
+    void extend(const Model& model);
 };
 
 }  // namespace skerry

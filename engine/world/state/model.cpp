@@ -92,16 +92,34 @@ void Model::note_loads(std::size_t body, bool before) {
     loaded = loaded_bodies > 0;
 }
 
-void Model::rebuild_derived() {
+void Model::extend_derived() {
+    const std::size_t first_node = patches.slots_of_node.size(), first_body = body_mass.size();
     build_patches(elements, nodes.position.size(), element_nodes, patches);
-    for (std::size_t n = 0; n < nodes.position.size(); ++n) {
+    for (std::size_t n = first_node; n < nodes.position.size(); ++n) {
         unsigned levels = 0;
         for (const Index slot : patches.slots_of_node[n]) levels |= 1u << patches.level[static_cast<std::size_t>(slot)];
         nodes.levels[n] = static_cast<LevelMask>(levels);
     }
-    body_mass.assign(bodies.slot.size(), 0);
-    for (std::size_t n = 0; n < nodes.mass.size(); ++n)
-        body_mass[static_cast<std::size_t>(nodes.body[n])] += nodes.mass[n];
+    body_mass.resize(bodies.slot.size());
+    for (std::size_t b = first_body; b < bodies.slot.size(); ++b) {
+        body_mass[b] = 0;
+        for (const Real mass : rows_of(nodes.mass, bodies.nodes[b])) body_mass[b] += mass;
+    }
+    if (!watch.step.empty()) {  // a save has all rows, or none
+        watch.position.resize(nodes.position.size(), Vec3::Zero());
+        watch.stiffness_sum.resize(nodes.position.size());
+        watch.step.resize(bodies.slot.size(), StepWatch::not_looked_at);
+    }
+    if (!clusters.empty()) {
+        clusters.cluster_of.resize(nodes.position.size(), no_index);
+        clusters.place.resize(nodes.position.size(), no_index);
+    }
+}
+
+void Model::derive_all() {
+    patches = {};
+    body_mass.clear();
+    extend_derived();
     loaded_bodies = 0;
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) note_loads(b, false);
     // What a step leaves where it has nothing to do: nodes at rest, and nodes that no contact pushes.

@@ -60,7 +60,7 @@ struct Model {
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
-    ElementPatches patches;  // derived: rebuild_derived
+    ElementPatches patches;  // derived: extend_derived
     // Of the implicit elements. State: the matrices of elements that have stiffened were updated, not made anew.
     NodeClusters clusters;
     SurfaceTables surface;
@@ -79,12 +79,12 @@ struct Model {
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
 
-    Column<Real> body_mass;  // kg, of all nodes of a body, held ones, too; derived: rebuild_derived
+    Column<Real> body_mass;  // kg, of all nodes of a body, held ones, too; derived: extend_derived
     // bodies, colliders or settings have changed since it was last decided which elements are implicit
     bool clusters_open = true;
     bool settled = true;      // all bodies and colliders are
-    bool loaded = false;      // some node has a load; derived: rebuild_derived, note_loads
-    Index loaded_bodies = 0;  // that have one; derived: rebuild_derived, note_loads
+    bool loaded = false;      // some node has a load; derived: derive_all, note_loads
+    Index loaded_bodies = 0;  // that have one; derived: derive_all, note_loads
     bool any_asleep = false;  // some body rests; derived: note_rest. While none does, no stage asks
 
     /// The number that its handles bear.
@@ -110,8 +110,10 @@ struct Model {
     /// After loads were set: those of one body, which had some before or not.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
-    /// After bodies or colliders came or went: what is derived from all of them.
-    void rebuild_derived();
+    /// What is derived of the rows that came last; those that have it keep it.
+    void extend_derived();
+    /// The same of all rows, and of loads, and what a step leaves of velocities where it has nothing to do.
+    void derive_all();
     /// After elements became implicit or explicit.
     void rebuild_clusters();
 

@@ -209,9 +209,14 @@ private:
     SearchMemory& memory_;
 };
 
-/// Puts memory.pairs in place of the old rows. Pairs that stay take their lists along; the memory of those that went
-/// serves new ones.
-void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
+bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
+    const auto& of_second = pair.kind == PairKind::collider ? memory.collider_forgotten : memory.body_forgotten;
+    return memory.body_forgotten[pair.first] || of_second[pair.second];
+}
+
+/// Puts memory.pairs in place of the old rows. Pairs that stay take their lists along, unless one of the two is
+/// forgotten; the memory of those that went serves new ones.
+void replace_rows(SearchMemory& memory, PairTable& pairs) {
     const std::size_t old_count = pairs.size(), count = memory.pairs.size();
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
     pairs.candidates.resize(lists);
@@ -223,9 +228,10 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
         memory.asleep_until[to].swap(pairs.asleep_until[from]);
     };
     memory.moved.assign(lists, 0);
-    for (std::size_t row = 0, old = 0; row < count && !afresh; ++row) {
+    for (std::size_t row = 0, old = 0; row < count; ++row) {
         while (old < old_count && pairs.key[old] < memory.pairs[row].key) ++old;
         if (old == old_count || pairs.key[old] != memory.pairs[row].key) continue;
+        if (is_forgotten(memory, memory.pairs[row])) continue;
         memory.pairs[row].valid_until = pairs.valid_until[old];
         memory.pairs[row].state = pairs.state[old];
         memory.pairs[row].frame_apart = pairs.frame_apart[old];
@@ -272,7 +278,7 @@ void replace_rows(bool afresh, SearchMemory& memory, PairTable& pairs) {
 }  // namespace
 
 void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
-                bool afresh, SearchState& search, PairTable& pairs) {
+                SearchState& search, PairTable& pairs) {
     const std::size_t body_count = inputs.body.slot.size(), collider_count = inputs.collider.slot.size();
     search.body_valid_until.resize(body_count);
     search.collider_valid_until.resize(collider_count);
@@ -285,7 +291,7 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);
     Sweep(inputs, search).run();
-    replace_rows(afresh, search.memory, pairs);
+    replace_rows(search.memory, pairs);
     ++search.broad_searches;
 }
 

@@ -181,30 +181,37 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
 
 namespace {
 
-/// For every row the list of items that name it, in their order.
+/// The list of items that name each row, in their order, for the rows behind those that have theirs, which the items
+/// behind theirs name.
 void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragged<Index>& items) {
     // Counting sort: count, sum up, fill.
-    items.offset.assign(row_count + 1, 0);
-    for (const Index row : row_of_item) ++items.offset[static_cast<std::size_t>(row) + 1];
-    for (std::size_t r = 0; r < row_count; ++r) items.offset[r + 1] += items.offset[r];
+    if (items.offset.empty()) items.offset.push_back(0);
+    const std::size_t first_row = items.size(), first_item = items.item.size();
+    items.offset.resize(row_count + 1, 0);
+    for (std::size_t i = first_item; i < row_of_item.size(); ++i)
+        ++items.offset[static_cast<std::size_t>(row_of_item[i]) + 1];
+    for (std::size_t r = first_row; r < row_count; ++r) items.offset[r + 1] += items.offset[r];
     items.item.resize(row_of_item.size());
-    for (std::size_t i = 0; i < row_of_item.size(); ++i)
+    for (std::size_t i = first_item; i < row_of_item.size(); ++i)
         items.item[static_cast<std::size_t>(items.offset[static_cast<std::size_t>(row_of_item[i])]++)] =
             static_cast<Index>(i);
-    for (std::size_t r = row_count; r > 0; --r) items.offset[r] = items.offset[r - 1];
-    items.offset[0] = 0;
+    for (std::size_t r = row_count; r > first_row; --r) items.offset[r] = items.offset[r - 1];
+    items.offset[first_row] = static_cast<Index>(first_item);
 }
 
 }  // namespace
 
 void build_patches(const ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
                    ElementPatches& patches) {
-    patches.blocks.clear();
-    patches.slots.clear();
-    patches.node.clear();
-    patches.level.clear();
-    std::vector<Index> slot_of_node(node_count, no_index);
-    for (std::size_t begin = 0; begin < blocks.first.size();) {
+    const std::size_t first_node = patches.slots_of_node.size();
+    std::vector<Index> slot_of_node(node_count - first_node, no_index);
+    const auto slot_of = [&](Index node) -> Index& {
+        SKERRY_CHECK(static_cast<std::size_t>(node) >= first_node);
+        return slot_of_node[static_cast<std::size_t>(node) - first_node];
+    };
+    const std::size_t first_block =
+        patches.blocks.empty() ? 0 : static_cast<std::size_t>(patches.blocks[patches.blocks.size() - 1].end);
+    for (std::size_t begin = first_block; begin < blocks.first.size();) {
         std::size_t end = begin + 1;
         while (end < blocks.first.size() && !blocks.opens_patch[end]) ++end;
         const auto first_slot = static_cast<Index>(patches.node.size());
@@ -214,7 +221,7 @@ void build_patches(const ElementBlockTable& blocks, std::size_t node_count, Elem
             for (std::size_t row = first; row < first + static_cast<std::size_t>(blocks.count[b]); ++row)
                 for (std::size_t l = 0; l < element_lanes; ++l) {
                     const Index n = nodes.node[row][l];
-                    Index& slot = slot_of_node[static_cast<std::size_t>(n)];
+                    Index& slot = slot_of(n);
                     if (slot == no_index) {
                         slot = static_cast<Index>(patches.node.size()) - first_slot;
                         patches.node.push_back(n);
@@ -223,8 +230,7 @@ void build_patches(const ElementBlockTable& blocks, std::size_t node_count, Elem
                 }
         }
         const Range slots{first_slot, static_cast<Index>(patches.node.size())};
-        for (Index s = slots.begin; s < slots.end; ++s)
-            slot_of_node[static_cast<std::size_t>(patches.node[static_cast<std::size_t>(s)])] = no_index;
+        for (Index s = slots.begin; s < slots.end; ++s) slot_of(patches.node[static_cast<std::size_t>(s)]) = no_index;
         patches.level.resize(patches.node.size(), blocks.level[begin]);
         patches.blocks.push_back({static_cast<Index>(begin), static_cast<Index>(end)});
         patches.slots.push_back(slots);
@@ -233,6 +239,21 @@ void build_patches(const ElementBlockTable& blocks, std::size_t node_count, Elem
     patches.position.resize(patches.node.size());
     patches.force.resize(patches.node.size());
     sort_by_row(patches.node, node_count, patches.slots_of_node);
+}
+
+void truncate_patches(Index block_count, Index node_count, ElementPatches& patches) {
+    const auto of_patch = [](const Range& blocks) { return blocks.begin; };
+    const auto kept = static_cast<std::size_t>(std::ranges::lower_bound(patches.blocks, block_count, {}, of_patch) -
+                                               patches.blocks.begin());
+    const std::size_t slots = kept > 0 ? static_cast<std::size_t>(patches.slots[kept - 1].end) : 0;
+    patches.blocks.resize(kept);
+    patches.slots.resize(kept);
+    patches.node.resize(slots);
+    patches.level.resize(slots);
+    Ragged<Index>& of_node = patches.slots_of_node;
+    if (static_cast<std::size_t>(node_count) < of_node.size())
+        of_node.offset.resize(static_cast<std::size_t>(node_count) + 1);
+    of_node.item.resize(slots);
 }
 
 }  // namespace skerry

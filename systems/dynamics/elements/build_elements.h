@@ -41,8 +41,12 @@ AppendedElements append_elements(const ElementList& list, std::span<const Vec3> 
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass);
 
-/// Patches, their nodes, and the slots of the nodes of elements. A node has its slots in element order.
+/// Patches, their nodes, and the slots of the nodes of elements, for the blocks and nodes behind those that have
+/// theirs: of bodies that were added, or of all. A node has its slots in element order.
 void build_patches(const ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
                    ElementPatches& patches);
+
+/// Leaves the patches of the first blocks and nodes, which are those of whole bodies.
+void truncate_patches(Index block_count, Index node_count, ElementPatches& patches);
 
 }  // namespace skerry

@@ -191,6 +191,76 @@ TEST_CASE("a pair that stays near keeps its list over a broad search, and one th
     CHECK(w.search.pair_searches == narrow);  // nothing else had moved
 }
 
+TEST_CASE("all pairs of what is new or forgotten are searched, and no others", "[unit]") {
+    CollisionWorld w;
+    for (int i = 0; i < 4; ++i) w.add_solid(test::ball_mesh(1, 3), w.at({2.05 * i, 0, 1.02}), 0.02);
+    w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
+    // `concerned`: whether a row of PairTable is to be searched
+    const auto look = [&](std::uint64_t broad, auto&& concerned) {
+        const auto broad_before = w.search.broad_searches, pairs_before = w.search.pair_searches;
+        search(w);
+        CHECK(w.search.broad_searches - broad_before == broad);
+        std::uint64_t pairs = 0;
+        for (std::size_t p = 0; p < w.pairs.size(); ++p) {
+            pairs += concerned(p);
+            CHECK((w.pairs.fresh[p] != 0) == concerned(p));
+        }
+        CHECK(w.search.pair_searches - pairs_before == pairs);
+        check_order(w.pairs);
+        return pairs;
+    };
+    const auto all = [](std::size_t) { return true; };
+    const auto none = [](std::size_t) { return false; };
+    const auto of_body = [&](Index body) {
+        return [&, body](std::size_t p) {
+            return w.pairs.first[p] == body || (w.pairs.kind[p] != PairKind::collider && w.pairs.second[p] == body);
+        };
+    };
+    const auto of_collider = [&](Index collider) {
+        return [&, collider](std::size_t p) {
+            return w.pairs.kind[p] == PairKind::collider && w.pairs.second[p] == collider;
+        };
+    };
+    CHECK(look(1, all) >= 7);
+    look(0, none);
+    const Index ball = w.add_collider(ColliderShape::sphere, {0.5, 0, 0}, w.at({0, 1.6, 1}));
+    CHECK(look(1, of_collider(ball)) >= 1);
+    look(0, none);
+    w.collider.motion[ball].position = {50, 0, 0};
+    w.search.forget_collider(static_cast<std::size_t>(ball));
+    CHECK(look(1, of_collider(ball)) == 0);
+    w.search.forget_collider(0);
+    CHECK(look(1, of_collider(0)) == 4);
+    // a pair that overlaps is taken to do so until one of the two is forgotten
+    REQUIRE(w.pairs.key[0] == body_pair_key(w.body.slot[0], w.body.slot[1]));
+    w.pairs.state[0] = PairState::overlapping;
+    w.search.forget_body(3);
+    CHECK(look(1, of_body(3)) >= 2);
+    CHECK(w.pairs.state[0] == PairState::overlapping);
+    w.search.forget_body(1);
+    CHECK(look(1, of_body(1)) >= 3);
+    CHECK(w.pairs.state[0] == PairState::apart);
+    const Index late = w.add_solid(test::ball_mesh(1, 3), w.at({2.05 * 4, 0, 1.02}), 0.02);
+    CHECK(look(1, of_body(late)) >= 2);
+    w.search.body_valid_until.clear();
+    CHECK(look(1, all) >= 9);
+}
+
+TEST_CASE("what is forgotten is looked at by velocities that it has now", "[unit]") {
+    CollisionWorld w;
+    const Index low = w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 0}), 0.02);
+    const Index high = w.add_solid(test::ball_mesh(1, 3), w.at({0, 0, 2.3}), 0.02);
+    search(w);
+    for (Index n = w.body.nodes[high].begin; n < w.body.nodes[high].end; ++n) w.nodes.velocity[n] = {0, 0, -0.5 / h};
+    w.search.forget_body(static_cast<std::size_t>(high));
+    search(w);
+    REQUIRE(w.pairs.size() == 1);
+    CHECK(w.pairs.first[0] == low);
+    CHECK_FALSE(w.pairs.candidates[0].empty());
+    find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts);
+    CHECK(w.contacts.size() > 0);
+}
+
 TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer than the contact distance at rest",
           "[unit]") {
     CollisionWorld w;

@@ -49,6 +49,28 @@ TEST_CASE("erase keeps the order of the rows that are left", "[unit]") {
     REQUIRE(column.empty());
 }
 
+TEST_CASE("ranges that are erased at once leave what one by one they leave", "[unit]") {
+    std::vector<Range> gone;
+    for (const Range rows : {Range{1, 2}, Range{2, 2}, Range{2, 4}, Range{5, 6}, Range{9, 12}}) append_gone(rows, gone);
+    REQUIRE(gone == std::vector<Range>{{1, 4}, {5, 6}, {9, 12}});
+    const std::vector<int> left{0, 4, 6, 7, 8, 12};
+    for (const int count : {13, 10, 9, 5, 3, 1, 0}) {
+        CAPTURE(count);
+        Column<int> column = counting(count);
+        column.erase(gone);
+        std::vector<int> expected;
+        for (const int row : left)
+            if (row < count) expected.push_back(row);
+        REQUIRE(std::vector<int>(column.begin(), column.end()) == expected);
+    }
+    Column<int> whole = counting(3);
+    whole.erase(std::vector<Range>{});
+    REQUIRE(whole.size() == 3);
+    for (std::size_t now = 0; now < left.size(); ++now)
+        REQUIRE(row_without(static_cast<Index>(left[now]), gone) == static_cast<Index>(now));
+    REQUIRE(row_without(2, gone) == 1);
+}
+
 TEST_CASE("a column that shrinks and grows again stays where it is", "[unit]") {
     Column<Vec3> column;
     column.resize(1000);

@@ -6,6 +6,19 @@
 
 using namespace skerry;
 
+namespace {
+
+/// Forgets a handle and takes its row out of `count`.
+void erase(HandleMap<BodyHandle>& map, BodyHandle handle, std::size_t count) {
+    const Index row = map.row(handle);
+    std::vector<Index> row_now;
+    for (Index r = 0; r < static_cast<Index>(count); ++r) row_now.push_back(r == row ? no_index : r - (r > row));
+    map.forget(handle);
+    map.rows_moved(row_now);
+}
+
+}  // namespace
+
 TEST_CASE("a default handle names nothing", "[unit]") {
     HandleMap<BodyHandle> map;
     REQUIRE(map.row(BodyHandle{}) == no_index);
@@ -16,17 +29,32 @@ TEST_CASE("a default handle names nothing", "[unit]") {
 TEST_CASE("a handle follows its row when earlier rows are erased", "[unit]") {
     HandleMap<BodyHandle> map;
     const BodyHandle a = map.insert(0), b = map.insert(1), c = map.insert(2);
-    map.erase(a);
+    erase(map, a, 3);
     REQUIRE(map.row(b) == 0);
     REQUIRE(map.row(c) == 1);
-    map.erase(c);
+    erase(map, c, 2);
     REQUIRE(map.row(b) == 0);
+}
+
+TEST_CASE("a forgotten handle is stale before its row goes, and others keep their rows until then", "[unit]") {
+    HandleMap<BodyHandle> map;
+    const BodyHandle a = map.insert(0), b = map.insert(1), c = map.insert(2);
+    map.forget(a);
+    map.forget(b);
+    REQUIRE(map.row(a) == no_index);
+    REQUIRE(map.row(c) == 2);
+    const BodyHandle d = map.insert(3);
+    REQUIRE(d.slot == a.slot);
+    map.rows_moved(std::vector<Index>{no_index, no_index, 0, 1});
+    REQUIRE(map.row(c) == 0);
+    REQUIRE(map.row(d) == 1);
+    REQUIRE(map.row(a) == no_index);
 }
 
 TEST_CASE("a handle to an erased row is stale, also when its slot is used again", "[unit]") {
     HandleMap<BodyHandle> map;
     const BodyHandle old = map.insert(0);
-    map.erase(old);
+    erase(map, old, 1);
     REQUIRE(map.row(old) == no_index);
     const BodyHandle fresh = map.insert(0);
     REQUIRE(fresh.slot == old.slot);
@@ -39,8 +67,8 @@ TEST_CASE("a handle to an erased row is stale, also when its slot is used again"
 TEST_CASE("freed slots are used again, the lowest first", "[unit]") {
     HandleMap<BodyHandle> map;
     const BodyHandle a = map.insert(0), b = map.insert(1), c = map.insert(2);
-    map.erase(b);
-    map.erase(a);
+    erase(map, b, 3);
+    erase(map, a, 2);
     REQUIRE(map.insert(1).slot == a.slot);
     REQUIRE(map.insert(2).slot == b.slot);
     REQUIRE(map.insert(3).slot == 3);
@@ -58,7 +86,7 @@ TEST_CASE("handles agree with a plain list of rows over random insertions and er
             rows.push_back(map.insert(static_cast<Index>(rows.size())));
         } else {
             const auto erased = rows.begin() + static_cast<std::ptrdiff_t>(random() % rows.size());
-            map.erase(*erased);
+            erase(map, *erased, rows.size());
             dead.push_back(*erased);
             rows.erase(erased);
         }

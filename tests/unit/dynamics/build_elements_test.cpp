@@ -142,3 +142,46 @@ TEST_CASE("a patch has one level", "[unit]") {
         for (Index s = patches.slots[p].begin; s < patches.slots[p].end; ++s)
             CHECK(patches.level[static_cast<std::size_t>(s)] == p);
 }
+
+TEST_CASE("patches of bodies that come one after the other, and go again, are those of all at once", "[unit]") {
+    ElementBlockTable blocks;
+    ElementNodeTable nodes;
+    ElementPatches grown;
+    std::vector<ElementPatches> after;
+    std::vector<std::array<Index, 2>> ends;  // blocks, nodes
+    Index node_count = 0;
+    const auto check_same = [](const ElementPatches& a, const ElementPatches& b) {
+        CHECK(std::ranges::equal(a.blocks, b.blocks));
+        CHECK(std::ranges::equal(a.slots, b.slots));
+        CHECK(std::ranges::equal(a.node, b.node));
+        CHECK(std::ranges::equal(a.level, b.level));
+        CHECK(std::ranges::equal(a.slots_of_node.offset, b.slots_of_node.offset));
+        CHECK(std::ranges::equal(a.slots_of_node.item, b.slots_of_node.item));
+    };
+    for (Index body = 0; body < 4; ++body) {
+        const test::TetMesh mesh = jittered_box({3 + body, 4, 3}, 0.1, 0.1, 1);
+        const ElementKind kind = body % 2 == 0 ? ElementKind::linear : ElementKind::edge_node_smoothed;
+        append_elements(elements_of({mesh.tetrahedra, mesh.nodes}, kind), mesh.nodes, {}, node_count, body, blocks,
+                        nodes);
+        node_count += static_cast<Index>(mesh.nodes.size());
+        if (body == 1) ++node_count;  // a node without elements
+        build_patches(blocks, static_cast<std::size_t>(node_count), nodes, grown);
+        const Column<NodeLane> slots = nodes.slot;
+        ElementPatches whole;
+        build_patches(blocks, static_cast<std::size_t>(node_count), nodes, whole);
+        check_same(grown, whole);
+        for (std::size_t row = 0; row < slots.size(); ++row)
+            CHECK(std::ranges::equal(slots[row].lane, nodes.slot[row].lane));
+        after.push_back(whole);
+        ends.push_back({static_cast<Index>(blocks.first.size()), node_count});
+    }
+    for (std::size_t body = 4; body-- > 0;) {
+        truncate_patches(ends[body][0], ends[body][1], grown);
+        check_same(grown, after[body]);
+    }
+    truncate_patches(0, 0, grown);
+    CHECK(grown.blocks.empty());
+    CHECK(grown.slots_of_node.size() == 0);
+    build_patches(blocks, static_cast<std::size_t>(node_count), nodes, grown);
+    check_same(grown, after.back());
+}

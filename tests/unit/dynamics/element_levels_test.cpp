@@ -38,6 +38,7 @@ struct SliverBody : ElasticBody {
             elements.level[b] = static_cast<std::uint8_t>(level_of(b));
             elements.opens_patch[b] = 1;
         }
+        patches = {};
         build_patches(elements, position.size(), element_nodes, patches);
     }
 };

@@ -1,0 +1,215 @@
+#include "engine/world/edit/erase_gone.h"
+
+#include <algorithm>
+
+#include "systems/dynamics/elements/build_elements.h"
+
+namespace skerry {
+
+namespace {
+
+void lower(Index& row, Index by) {
+    if (row != no_index) row -= by;
+}
+void lower(Range& range, Index by) {
+    range.begin -= by;
+    range.end -= by;
+}
+
+/// What the rows of one body name, all of it rows of its own.
+class RowsOfBody {
+public:
+    RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Index>& down)
+        : model_(model), body_(body), has_(rows_of_body(model, body)), down_(down) {}
+
+    void renumber() const {
+        nodes();
+        elements();
+        surface();
+        tree();
+        ranges();
+    }
+
+private:
+    void nodes() const {
+        for (Index& body : rows_of(model_.nodes.body, has_.nodes)) lower(body, down_.bodies);
+        for (Index& node : rows_of(model_.node_blocks.begin, has_.node_blocks)) lower(node, down_.nodes);
+        for (Index& node : rows_of(model_.node_blocks.end, has_.node_blocks)) lower(node, down_.nodes);
+        for (Index& body : rows_of(model_.node_blocks.body, has_.node_blocks)) lower(body, down_.bodies);
+    }
+
+    void elements() const {
+        for (TetrahedronNodes& corner : rows_of(model_.tetrahedra.node, has_.tetrahedron_blocks))
+            for (NodeLane& lanes : corner)
+                for (Index& node : lanes.lane) lower(node, down_.nodes);
+        for (NodeLane& lanes : rows_of(model_.element_nodes.node, has_.element_nodes))
+            for (Index& node : lanes.lane) lower(node, down_.nodes);
+        for (Index& first : rows_of(model_.elements.first, has_.blocks)) lower(first, down_.element_nodes);
+        for (Index& body : rows_of(model_.elements.body, has_.blocks)) lower(body, down_.bodies);
+    }
+
+    void surface() const {
+        TriangleTable& triangles = model_.surface.triangles;
+        EdgeTable& edges = model_.surface.edges;
+        VertexTable& vertices = model_.surface.vertices;
+        const auto lower_all = [](auto& column, Range range, Index by) {
+            for (auto& items : rows_of(column, range))
+                for (Index& item : items) lower(item, by);
+        };
+        lower_all(triangles.node, has_.triangles, down_.nodes);
+        lower_all(triangles.edge, has_.triangles, down_.edges);
+        lower_all(triangles.vertex, has_.triangles, down_.vertices);
+        constexpr auto in_block = static_cast<Index>(element_lanes);
+        for (Index& t : rows_of(triangles.element, has_.triangles)) lower(t, down_.tetrahedron_blocks * in_block);
+        lower_all(edges.node, has_.edges, down_.nodes);
+        lower_all(edges.triangle, has_.edges, down_.triangles);
+        for (Index& node : rows_of(vertices.node, has_.vertices)) lower(node, down_.nodes);
+        for (Index& item : rows_of(vertices.triangle_begin, has_.vertices)) lower(item, down_.vertex_triangles);
+        for (Index& item : rows_of(vertices.triangle_end, has_.vertices)) lower(item, down_.vertex_triangles);
+        for (Index& t : rows_of(model_.surface.vertex_triangle, has_.vertex_triangles)) lower(t, down_.triangles);
+    }
+
+    void tree() const {
+        for (BvhNode& node : rows_of(model_.bvh.node, has_.bvh_nodes)) {
+            lower(node.skip, down_.bvh_nodes);
+            lower(node.right, down_.bvh_nodes);
+            lower(node.leaf, down_.bvh_leaves);
+        }
+        for (LeafTriangles& leaf : rows_of(model_.bvh_leaves.triangle, has_.bvh_leaves))
+            for (Index& t : leaf) lower(t, down_.triangles);
+    }
+
+    void ranges() const {
+        BodyTable& table = model_.bodies;
+        lower(table.nodes[body_], down_.nodes);
+        lower(table.node_blocks[body_], down_.node_blocks);
+        lower(table.blocks[body_], down_.blocks);
+        lower(table.element_nodes[body_], down_.element_nodes);
+        lower(table.tetrahedron_blocks[body_], down_.tetrahedron_blocks);
+        lower(table.triangles[body_], down_.triangles);
+        lower(table.edges[body_], down_.edges);
+        lower(table.vertices[body_], down_.vertices);
+        lower(table.bvh_nodes[body_], down_.bvh_nodes);
+        lower(table.bvh_leaves[body_], down_.bvh_leaves);
+    }
+
+    Model& model_;
+    std::size_t body_;
+    OfBodyTables<Range> has_;
+    OfBodyTables<Index> down_;
+};
+
+void erase_rows(auto& table, std::span<const Range> gone) {
+    table.for_each_column([gone](const char*, auto& column, ColumnRole) { column.erase(gone); });
+}
+
+/// Takes rows out of what has one entry a row.
+template <class Record>
+void erase_records(std::span<const Index> row_now, std::vector<Record>& records) {
+    std::size_t row = 0;
+    std::erase_if(records, [&](const Record&) { return row_now[row++] == no_index; });
+}
+
+/// Keys of the scripts that go; ranges of others that have none may lie anywhere.
+void erase_scripts(std::span<const Range> gone, auto& table) {
+    std::vector<Range> keys, merged;
+    for (const Range& rows : gone)
+        for (auto row = static_cast<std::size_t>(rows.begin); row < static_cast<std::size_t>(rows.end); ++row)
+            keys.push_back({table.script[row].key_begin, table.script[row].key_end});
+    std::ranges::sort(keys, {}, &Range::begin);
+    for (const Range& of_script : keys) append_gone(of_script, merged);
+    table.keyframe.erase(merged);
+    table.for_each_row_column([gone](const char*, auto& column, ColumnRole) { column.erase(gone); });
+    for (MotionScript& script : table.script) {
+        script.key_begin = row_without(script.key_begin, merged);
+        script.key_end = row_without(script.key_end, merged);
+    }
+}
+
+void erase_attachments(const RowMoves& moves, Model& model) {
+    AttachmentTable& table = model.attachments;
+    erase_scripted_rows(moves.attachments_gone, table);
+    for (std::size_t a = 0; a < table.slot.size(); ++a) {
+        const OfBodyTables<Index>& down = moves.down[static_cast<std::size_t>(table.body[a])];
+        for (Index& node : rows_of(table.node, table.nodes[a])) lower(node, down.nodes);
+        lower(table.body[a], down.bodies);
+    }
+    model.attachment_map.rows_moved(moves.attachment_now);
+}
+
+void erase_colliders(const RowMoves& moves, Model& model) {
+    erase_scripted_rows(moves.colliders_gone, model.colliders);
+    erase_records(moves.collider_now, model.collider_records);
+    model.collider_map.rows_moved(moves.collider_now);
+    for (Index& body : model.colliders.body)
+        if (body != no_index) body = moves.body_now[static_cast<std::size_t>(body)];
+    for (Index& collider : model.bodies.collider)
+        if (collider != no_index) collider = moves.collider_now[static_cast<std::size_t>(collider)];
+}
+
+/// Clusters are of other bodies: where one goes that has elements, all are found anew.
+void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
+    if (clusters.empty()) return;
+    for (Index& node : clusters.nodes.item)
+        lower(node, moves.down[static_cast<std::size_t>(model.nodes.body[static_cast<std::size_t>(node)])].nodes);
+    for (Index& body : clusters.body) lower(body, moves.down[static_cast<std::size_t>(body)].bodies);
+    clusters.cluster_of.erase(moves.gone.nodes);
+    clusters.place.erase(moves.gone.nodes);
+}
+
+void erase_bodies(const RowMoves& moves, Model& model) {
+    const auto first = static_cast<std::size_t>(moves.gone.bodies.front().begin);
+    for (std::size_t b = first; b < moves.body_now.size(); ++b)
+        if (moves.body_now[b] == no_index && model.has_loads(b)) --model.loaded_bodies;
+    model.loaded = model.loaded_bodies > 0;
+    truncate_patches(model.bodies.blocks[first].begin, model.bodies.nodes[first].begin, model.patches);
+    renumber_clusters(moves, model, model.clusters);
+    for (std::size_t b = first; b < moves.body_now.size(); ++b)
+        if (moves.body_now[b] != no_index) RowsOfBody(model, b, moves.down[b]).renumber();
+    const OfBodyTables<std::vector<Range>>& gone = moves.gone;
+    erase_rows(model.nodes, gone.nodes);
+    erase_rows(model.node_blocks, gone.node_blocks);
+    erase_rows(model.tetrahedra, gone.tetrahedron_blocks);
+    erase_rows(model.elements, gone.blocks);
+    erase_rows(model.element_nodes, gone.element_nodes);
+    erase_rows(model.surface.triangles, gone.triangles);
+    erase_rows(model.surface.edges, gone.edges);
+    erase_rows(model.surface.vertices, gone.vertices);
+    model.surface.vertex_triangle.erase(gone.vertex_triangles);
+    erase_rows(model.bvh, gone.bvh_nodes);
+    erase_rows(model.bvh_leaves, gone.bvh_leaves);
+    erase_rows(model.bodies, gone.bodies);
+    erase_records(moves.body_now, model.body_records);
+    model.body_mass.erase(gone.bodies);
+    model.watch.erase(gone.bodies, gone.nodes);
+    model.body_map.rows_moved(moves.body_now);
+}
+
+}  // namespace
+
+void erase_scripted_rows(std::span<const Range> gone, ColliderTable& table) {
+    erase_scripts(gone, table);
+}
+
+void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
+    std::vector<Range> nodes;
+    for (const Range& rows : gone)
+        for (auto row = static_cast<std::size_t>(rows.begin); row < static_cast<std::size_t>(rows.end); ++row)
+            append_gone(table.nodes[row], nodes);
+    table.node.erase(nodes);
+    table.anchor.erase(nodes);
+    erase_scripts(gone, table);
+    Index end = 0;  // lists lie one behind the other
+    for (Range& of_row : table.nodes) {
+        of_row = {end, end + of_row.size()};
+        end = of_row.end;
+    }
+}
+
+void erase_gone(const RowMoves& moves, Model& model) {
+    if (!moves.gone.bodies.empty()) erase_attachments(moves, model);
+    if (!moves.gone.bodies.empty()) erase_bodies(moves, model);
+    if (!moves.colliders_gone.empty() || !moves.gone.bodies.empty()) erase_colliders(moves, model);
+}
+
+}  // namespace skerry

@@ -1,0 +1,459 @@
+// Bodies and colliders come, go and change while others move and rest: what the search knows of the others stays valid,
+// who rests beside them wakes, and nobody else is looked at.
+#include <catch2/catch.hpp>
+#include <functional>
+#include <optional>
+
+#include "tests/support/lively_scene.h"
+#include "tests/support/random.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+constexpr Real radius = 0.05;  // m, of the balls
+
+Settings edited(bool budgets, int threads = 1, Real sleep_speed = 0.05) {
+    Settings settings;
+    settings.threads = threads;
+    settings.contact_budgets = budgets;
+    settings.sleep_speed = sleep_speed;
+    settings.sleep_time = 0.02;
+    return settings;
+}
+
+/// A pile in a world that is changed at random: everything that can be done to bodies and colliders between steps.
+class EditedPile {
+public:
+    EditedPile(const Settings& settings, std::uint64_t seed) : world(settings), random_(seed) {
+        soft_ = world.add_material({.young_modulus = 2e4, .friction = 0.5, .damping = 30});
+        world.add_collider(Plane{});
+        for (int i = 0; i < 6; ++i) add_body({0.12 * (i % 3), 0.03 * i, 0.056 + 0.12 * (i / 3)});
+    }
+    EditedPile(const EditedPile& other, World copy)
+        : world(std::move(copy)),
+          random_(other.random_),
+          soft_(other.soft_),
+          bodies_(other.bodies_),
+          colliders_(other.colliders_),
+          held_(other.held_) {}
+
+    void edit() {
+        for (int edits = below(4) - 1; edits > 0; --edits) edit_once();
+    }
+    /// Twins whose clones and files go on.
+    EditedPile clone() const { return {*this, world.clone()}; }
+    EditedPile saved_and_loaded() const {
+        const TemporaryFolder folder;
+        world.save(folder.path() / "world.h5");
+        return {*this, World::load(folder.path() / "world.h5")};
+    }
+
+    World world;
+
+private:
+    struct PlacedCollider {
+        ColliderHandle handle;
+        Real room;  // m, around its middle: what it needs
+    };
+
+    int below(int count) { return std::min(count - 1, static_cast<int>((random_.number() + 1) / 2 * count)); }
+    template <class Handle>
+    Handle any(const std::vector<Handle>& of) {
+        return of[static_cast<std::size_t>(below(static_cast<int>(of.size())))];
+    }
+    template <class Handle>
+    Handle take(std::vector<Handle>& of) {
+        const auto at = of.begin() + below(static_cast<int>(of.size()));
+        const Handle taken = *at;
+        of.erase(at);
+        return taken;
+    }
+    void add_body(const Vec3& where) {
+        bodies_.push_back(world.add_body(mesh::ball(radius, 3), {.material = soft_, .position = where}));
+    }
+    /// Above everything, so that nothing begins in something else.
+    Vec3 above() {
+        Real top = 0.3;
+        for (const BodyHandle body : bodies_) top = std::max(top, world.center_of_mass(body).z());
+        return {0.15 + 0.15 * random_.number(), 0.1 * random_.number(), top + 0.15};
+    }
+    /// In the pile, where nothing is within a distance (m).
+    std::optional<Vec3> beside(Real distance) {
+        const Vec3 place(0.15 + 0.4 * random_.number(), 0.3 * random_.number(), 0.15 + 0.15 * random_.number());
+        if (world.nearest_point(place, distance)) return std::nullopt;
+        return place;
+    }
+    /// Where a body all but touches another from above, and nothing else; or above everything.
+    Vec3 close_above(BodyHandle body) {
+        const BodyHandle under = any(bodies_);
+        const Vec3 place = world.center_of_mass(under) + Vec3(0, 0, 2.15 * radius);
+        const bool is_free = under != body && !world.nearest_point(place, 1.12 * radius, {.except_bodies = {body}});
+        return is_free ? place : above();
+    }
+
+    void edit_once() {
+        switch (below(12)) {
+            case 0:
+                if (bodies_.size() < 9) add_body(above());
+                break;
+            case 1:
+                if (bodies_.size() > 3) world.remove(take(bodies_));
+                break;
+            case 2:
+            case 3: {
+                const int kind = below(4);
+                const Real room = kind == 0 ? 0.042 : 0.08;
+                const std::optional<Vec3> place = beside(room);
+                if (!place || colliders_.size() > 5) break;
+                const ColliderSettings at{.position = *place, .motion = {.velocity = 0.1 * random_.vector()}};
+                if (kind == 0) colliders_.push_back({world.add_collider(Sphere{0.04}, at), room});
+                if (kind == 1) colliders_.push_back({world.add_collider(Box{{0.1, 0.1, 0.05}}, at), room});
+                if (kind > 1)
+                    colliders_.push_back(
+                        {world.add_collider(mesh::boundary(mesh::box({0.1, 0.1, 0.05}, {2, 2, 1})), at), room});
+                break;
+            }
+            case 4:
+                if (!colliders_.empty()) world.remove(take(colliders_).handle);
+                break;
+            case 5:
+                if (!colliders_.empty()) {
+                    const PlacedCollider moved = any(colliders_);
+                    if (const auto place = beside(moved.room)) world.set_pose(moved.handle, {.position = *place});
+                }
+                break;
+            case 6:
+                if (!colliders_.empty()) world.set_velocity(any(colliders_).handle, Vec3::Zero());
+                break;
+            case 7: {
+                const BodyHandle body = any(bodies_);
+                world.set_velocities(body, std::vector<Vec3>(world.velocities(body).size(), 0.5 * random_.vector()));
+                break;
+            }
+            case 8: {
+                const BodyHandle body = any(bodies_);
+                std::vector<Vec3> x(world.positions(body).begin(), world.positions(body).end());
+                const Vec3 shift = close_above(body) - world.center_of_mass(body);
+                for (Vec3& node : x) node += shift;
+                world.set_positions(body, x);
+                break;
+            }
+            case 9: {
+                const BodyHandle first = any(bodies_), second = any(bodies_);
+                if (first != second) world.set_collision(first, second, !world.may_collide(first, second));
+                break;
+            }
+            case 10:
+                if (!colliders_.empty()) world.set_collision_groups(any(colliders_).handle, 1 + below(2), 1);
+                break;
+            default:
+                if (!held_.empty() && world.alive(held_.back()))
+                    world.remove(take(held_));
+                else
+                    held_ = {world.attach(any(bodies_), std::array<Index, 3>{0, 1, 2})};
+        }
+    }
+
+    Random random_;
+    MaterialHandle soft_;
+    std::vector<BodyHandle> bodies_;
+    std::vector<PlacedCollider> colliders_;
+    std::vector<AttachmentHandle> held_;
+};
+
+/// Balls that rest on a floor, `side` by `side`, too far from each other to touch.
+struct Field {
+    World world;
+    MaterialHandle soft;
+    ColliderHandle floor;
+    std::vector<BodyHandle> balls;
+
+    explicit Field(int side, Real apart = 0.11) : world(edited(true)) {
+        soft = world.add_material({.young_modulus = 2e4, .friction = 0.5, .damping = 30});
+        floor = world.add_collider(Plane{});
+        for (int i = 0; i < side * side; ++i)
+            balls.push_back(
+                world.add_body(mesh::ball(radius, 3),
+                               {.material = soft, .position = {apart * (i % side), apart * (i / side), 0.0505}}));
+        for (int i = 0; i < 100 && world.report().asleep < balls.size(); ++i) REQUIRE(world.advance(0.01).ok());
+        REQUIRE(world.report().asleep == balls.size());
+    }
+    std::size_t asleep() const { return world.report().asleep; }
+};
+
+struct Searches {
+    std::uint64_t broad, pairs;
+};
+
+/// What a change and the step after it search.
+Searches searches_of(World& world, const std::function<void()>& change) {
+    const WorldReport before = world.report();
+    change();
+    REQUIRE(world.advance(0.5 * world.stable_step()).ok());
+    const WorldReport after = world.report();
+    return {after.broad_searches - before.broad_searches, after.pair_searches - before.pair_searches};
+}
+
+SurfaceMesh small_block() {
+    return mesh::boundary(mesh::box({0.04, 0.04, 0.04}, {1, 1, 1}));
+}
+
+}  // namespace
+
+TEST_CASE("a world that is changed at random goes on as one that searches everything in every step", "[scene]") {
+    std::uint64_t contacts = 0, asleep = 0;
+    for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
+        CAPTURE(seed);
+        EditedPile pile(edited(true, 1, 0.2), seed), twin(edited(false, 1, 0.2), seed);
+        for (int call = 0; call < 100; ++call) {
+            CAPTURE(call);
+            pile.edit();
+            twin.edit();
+            REQUIRE(pile.world.advance(0.01).ok());
+            REQUIRE(twin.world.advance(0.01).ok());
+            REQUIRE(pile.world.state_hash() == twin.world.state_hash());
+            contacts += pile.world.contacts().size();
+            asleep += pile.world.report().asleep;
+        }
+        const WorldReport of_pile = pile.world.report(), of_twin = twin.world.report();
+        CHECK(of_pile.pair_searches < of_twin.pair_searches / 4);
+        CHECK(of_pile.crossed == 0);
+    }
+    CHECK(contacts > 3000);
+    CHECK(asleep > 50);
+}
+
+TEST_CASE("a changed world goes on with the same bits on all threads, cloned, and saved and loaded", "[scene]") {
+    EditedPile one(edited(true, 1, 0.2), 7), four(edited(true, 4, 0.2), 7);
+    for (int call = 0; call < 40; ++call) {
+        CAPTURE(call);
+        one.edit();
+        four.edit();
+        if (call % 8 == 3) {  // before and after the step that comes after a change
+            EditedPile copy = one.clone(), loaded = one.saved_and_loaded();
+            for (EditedPile* other : {&copy, &loaded}) {
+                EditedPile here = one.clone();
+                for (int more = 0; more < 2; ++more) {
+                    REQUIRE(here.world.advance(5e-3).ok());
+                    REQUIRE(other->world.advance(5e-3).ok());
+                    REQUIRE(other->world.state_hash() == here.world.state_hash());
+                    REQUIRE(other->world.report().pair_searches == here.world.report().pair_searches);
+                    here.edit();
+                    other->edit();
+                }
+            }
+        }
+        REQUIRE(one.world.advance(5e-3).ok());
+        REQUIRE(four.world.advance(5e-3).ok());
+        REQUIRE(one.world.state_hash() == four.world.state_hash());
+    }
+}
+
+TEST_CASE("many removed at once leave what the same removed one by one leave", "[scene]") {
+    const auto scene = [] {
+        Field field(4, 0.101);
+        std::vector<ColliderHandle> blocks;
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 where(0.1 * i, 0.1, 0.13);
+            blocks.push_back(field.world.add_collider(small_block(), {.position = where}));
+            field.world.add_collider(Sphere{0.02}, {.position = where + Vec3(0, 0.1, 0)});
+        }
+        field.world.attach(field.balls[3], std::array<Index, 2>{0, 1});
+        field.world.attach(field.balls[9], std::array<Index, 2>{2, 3}, {.keys = {{0, {0, 0, 0}, {0, 0, 0}}}});
+        field.world.set_loads(field.balls[5],
+                              std::vector<Vec3>(field.world.positions(field.balls[5]).size(), Vec3(0, 0, -1e-3)));
+        REQUIRE(field.world.advance(0.01).ok());
+        return std::pair(std::move(field), blocks);
+    };
+    auto [at_once, blocks] = scene();
+    auto [one_by_one, others] = scene();
+    const auto remove_all = [&](Field& field, const std::vector<ColliderHandle>& of, auto&& after_each) {
+        for (const int i : {15, 3, 0, 6, 7, 11, 5}) {
+            field.world.remove(field.balls[static_cast<std::size_t>(i)]);
+            after_each();
+        }
+        field.world.remove(of[1]);
+        after_each();
+        field.world.remove(of[0]);
+        after_each();
+        // a slot that is free again names another body at once
+        const BodyHandle late =
+            field.world.add_body(mesh::ball(radius, 3), {.material = field.soft, .position = {0, 0, 0.3}});
+        CHECK(late.slot == field.balls[0].slot);
+        after_each();
+        field.world.remove(field.balls[1]);
+        after_each();
+        CHECK(field.world.name(late) == "body " + std::to_string(late.slot));
+    };
+    remove_all(at_once, blocks, [] {});
+    remove_all(one_by_one, others, [&] { (void)one_by_one.world.bodies(); });
+    const auto slots = [](const World& world) {
+        std::vector<std::uint32_t> of_bodies;
+        for (const BodyHandle body : world.bodies()) of_bodies.push_back(body.slot);
+        return of_bodies;
+    };
+    CHECK(slots(at_once.world) == slots(one_by_one.world));
+    CHECK(at_once.world.bodies().size() == 9);
+    CHECK(at_once.world.colliders().size() == 5);
+    CHECK(at_once.world.contacts().size() == one_by_one.world.contacts().size());
+    CHECK(at_once.world.state_hash() == one_by_one.world.state_hash());
+    for (Field* field : {&at_once, &one_by_one}) REQUIRE(field->world.advance(0.05).ok());
+    CHECK(at_once.world.state_hash() == one_by_one.world.state_hash());
+    CHECK(at_once.world.report().pair_searches == one_by_one.world.report().pair_searches);
+}
+
+TEST_CASE("a change searches the pairs of what changed, as many in a large world as in a small one", "[scene]") {
+    std::vector<std::vector<std::uint64_t>> found;
+    for (const int side : {3, 9}) {
+        Field field(side);
+        World& world = field.world;
+        ColliderHandle ball, block;
+        BodyHandle body;
+        const Vec3 on_top(0.11, 0.11, 0.135), beside(0, 0.11, 0.135);
+        std::vector<std::uint64_t> of_side;
+        // whether something is near a ball now that was not, or is not known to be as it was
+        const auto look = [&](bool is_new, const std::function<void()>& change) {
+            const Searches searches = searches_of(world, change);
+            CHECK(searches.broad == (is_new ? 1 : 0));
+            CHECK((searches.pairs > 0) == is_new);
+            CHECK(searches.pairs <= 10);
+            of_side.push_back(searches.pairs);
+        };
+        look(true, [&] { ball = world.add_collider(Sphere{0.02}, {.position = on_top}); });
+        look(true, [&] { world.set_pose(ball, {.position = beside}); });
+        look(true, [&] { world.set_collision_groups(ball, 2, 1); });
+        look(false, [&] { world.set_surface_properties(ball, {.friction = 0.1}); });
+        look(false, [&] { world.remove(ball); });
+        look(true, [&] { block = world.add_collider(small_block(), {.position = on_top}); });
+        look(true, [&] { world.set_pose(block, {.position = beside}); });
+        look(false, [&] { world.remove(block); });
+        look(true, [&] {
+            body = world.add_body(mesh::ball(radius, 3), {.material = field.soft, .position = {0.11, 0.11, 0.2}});
+        });
+        look(true,
+             [&] { world.set_velocities(body, std::vector<Vec3>(world.velocities(body).size(), Vec3(0, 0, -1))); });
+        look(true, [&] {
+            std::vector<Vec3> x(world.positions(body).begin(), world.positions(body).end());
+            for (Vec3& node : x) node.z() -= 0.02;
+            world.set_positions(body, x);
+        });
+        look(true, [&] { world.attach(body, std::array<Index, 1>{0}); });
+        look(false, [&] {
+            world.remove(body);
+            for (const int i : {0, 2, 1}) world.remove(field.balls[static_cast<std::size_t>(i)]);
+        });
+        found.push_back(of_side);
+    }
+    CHECK(found[0] == found[1]);
+}
+
+TEST_CASE("who rests beside what comes, goes or changes wakes, and nobody else", "[scene]") {
+    Field field(5, 0.2);
+    World& world = field.world;
+    const std::size_t all = field.balls.size();
+    const auto rest = [&] {
+        for (int i = 0; i < 100 && field.asleep() < world.bodies().size(); ++i) REQUIRE(world.advance(0.01).ok());
+        REQUIRE(field.asleep() == world.bodies().size());
+    };
+    const BodyHandle middle = field.balls[12];
+    const Vec3 above_it = world.center_of_mass(middle) + Vec3(0, 0, 0.08), far(0, 0, 2);
+    SECTION("a collider that comes, is moved, and goes") {
+        for (const bool is_mesh : {false, true}) {
+            const ColliderHandle collider = is_mesh ? world.add_collider(small_block(), {.position = above_it})
+                                                    : world.add_collider(Sphere{0.025}, {.position = above_it});
+            CHECK_FALSE(world.asleep(middle));
+            CHECK(field.asleep() == all - 1);
+            rest();
+            world.set_surface_properties(collider, {.friction = 0.1});
+            CHECK(field.asleep() == all - 1);
+            rest();
+            world.set_pose(collider, {.position = far});
+            CHECK_FALSE(world.asleep(middle));
+            CHECK(field.asleep() == all - 1);
+            rest();
+            world.set_pose(collider, {.position = above_it});
+            CHECK(field.asleep() == all - 1);
+            rest();
+            world.remove(collider);
+            CHECK_FALSE(world.asleep(middle));
+            CHECK(field.asleep() == all - 1);
+            rest();
+        }
+    }
+    SECTION("the floor, and a plane far below") {
+        const ColliderHandle below = world.add_collider(Plane{.point = {0, 0, -1}});
+        CHECK(field.asleep() == all);
+        world.remove(field.floor);
+        CHECK(field.asleep() == 0);
+        REQUIRE(world.advance(0.1).ok());
+        CHECK(world.center_of_mass(middle).z() < 0.02);
+        CHECK(world.alive(below));
+    }
+    SECTION("the body under another, removed, moved or let through") {
+        const BodyHandle upper =
+            world.add_body(mesh::box({0.09, 0.09, 0.03}, {2, 2, 1}),
+                           {.material = field.soft, .position = world.center_of_mass(middle) + Vec3(0, 0, 0.068)});
+        const auto x = [&] {
+            return std::vector<Vec3>(world.positions(middle).begin(), world.positions(middle).end());
+        };
+        CHECK(field.asleep() == all);
+        rest();
+        const Real height = world.center_of_mass(upper).z();
+        const int way = GENERATE(0, 1, 2);
+        if (way == 0) world.remove(middle);
+        if (way == 1) {
+            std::vector<Vec3> moved = x();
+            for (Vec3& node : moved) node.z() += 1;
+            world.set_positions(middle, moved);
+        }
+        if (way == 2) world.set_collision(upper, middle, false);
+        CHECK_FALSE(world.asleep(upper));
+        CHECK(field.asleep() >= world.bodies().size() - 2);
+        REQUIRE(world.advance(0.05).ok());
+        CHECK(world.center_of_mass(upper).z() < height - 0.005);
+    }
+}
+
+TEST_CASE("a collider put into the way of what rests pushes it", "[scene]") {
+    Field field(2, 0.2);
+    for (const bool is_mesh : {false, true}) {
+        const BodyHandle ball = field.balls[is_mesh ? 0 : 1];
+        const Vec3 at = field.world.center_of_mass(ball) + Vec3(0, 0, 0.075);
+        if (is_mesh)
+            field.world.add_collider(small_block(), {.position = at, .motion = {.velocity = {0, 0, -0.2}}});
+        else
+            field.world.add_collider(Sphere{0.02}, {.position = at, .motion = {.velocity = {0, 0, -0.2}}});
+        const Real height = field.world.center_of_mass(ball).z();
+        REQUIRE(field.world.advance(0.05).ok());
+        CHECK(field.world.center_of_mass(ball).z() < height - 0.0005);
+    }
+}
+
+TEST_CASE("clusters go on when mesh colliders come and go", "[scene]") {
+    World world = thrown_slivers();
+    const auto block = world.add_collider(small_block(), {.position = {0, 0, 2}});
+    world.add_body(sliver_box(0.1, 6, 0.01, 0.005, 4),
+                   {.material = MaterialHandle{0, 0, block.world}, .position = {0.5, 0, 0.06}, .velocity = {0, 0, -3}});
+    REQUIRE(world.advance(0.01).ok());
+    const std::size_t clusters = world.report().clusters;
+    REQUIRE(clusters > 0);
+    const TemporaryFolder folder;
+    for (const bool removed : {true, false}) {
+        World untouched = world.clone();
+        if (removed)
+            world.remove(block);
+        else
+            world.add_collider(small_block(), {.position = {0, 0, 3}});
+        world.save(folder.path() / "world.h5");
+        World loaded = World::load(folder.path() / "world.h5");
+        for (World* other : {&world, &loaded, &untouched}) REQUIRE(other->advance(0.01).ok());
+        CHECK(world.report().clusters == untouched.report().clusters);
+        CHECK(loaded.state_hash() == world.state_hash());
+        for (const BodyHandle body : world.bodies())
+            CHECK(std::ranges::equal(world.positions(body), untouched.positions(body)));
+    }
+}
