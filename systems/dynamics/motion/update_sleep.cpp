@@ -45,7 +45,6 @@ void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& 
 int looks_due(Real part) {
     constexpr int looks = own_sleep_limits::looks;
     constexpr Real golden = 0.6180339887498949;
-    if (part >= 1) return looks;
     const int slot = static_cast<int>(part * looks);
     const Real place = slot * golden;
     return slot + (part * looks - slot >= place - std::floor(place));
@@ -68,11 +67,11 @@ public:
             begin_half();
             state_.drift_before[body_] = 0;
         }
-        const Real half = settings_.time / 2, before = still;
+        const Real half = std::max(settings_.time / 2, h), before = still;
         still += h;
-        const auto halves = [&](Real time) { return half > 0 ? std::floor(time / half) : 1; };
-        const bool ends = !(half > 0) || halves(still) > halves(before);
-        const auto part = [&](Real time) { return half > 0 ? time / half - halves(time) : 1; };
+        const auto halves = [&](Real time) { return std::floor(time / half); };
+        const auto part = [&](Real time) { return time / half - halves(time); };
+        const bool ends = halves(still) > halves(before);
         if (!ends && looks_due(part(still)) == looks_due(part(before))) return;
         Real& drift = state_.drift[body_];
         drift = std::max(drift, drift_now());
@@ -143,6 +142,10 @@ TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, co
                         SleepMemory& memory, const RestOutputs& state) {
     const std::size_t count = bodies.kind.size();
     SKERRY_CHECK(state.asleep.size() == count && state.still_time.size() == count);
+    // a body that moves is not ready even where no time is asked for
+    const auto is_ready = [&](std::size_t b) {
+        return state.still_time[b] >= settings.time && state.still_time[b] > 0;
+    };
     TakenByRest taken;
     bool ready = false;
     for (std::size_t b = 0; b < count; ++b) {
@@ -151,14 +154,13 @@ TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, co
             Stillness(bodies, settings, b, state).go_on(h);
         else
             state.still_time[b] = bodies.max_speed[b] < settings.speed ? state.still_time[b] + h : 0;
-        ready |= state.still_time[b] >= settings.time && state.still_time[b] > 0;
+        ready |= is_ready(b);
     }
     if (!ready) return taken;
     memory.touching.start(count);
     memory.restless.assign(count, 0);
     for (std::size_t b = 0; b < count; ++b)
-        memory.restless[b] = bodies.kind[b] == BodyKind::deformable && !state.asleep[b] &&
-                             !(state.still_time[b] >= settings.time && state.still_time[b] > 0);
+        memory.restless[b] = bodies.kind[b] == BodyKind::deformable && !state.asleep[b] && !is_ready(b);
     for (std::size_t a = 0; a < bodies.attached_body.size(); ++a)
         if (moves(bodies.attached_motion[a])) memory.restless[bodies.attached_body[a]] = 1;
     join_touching(touches, bodies, memory);
