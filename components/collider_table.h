@@ -28,6 +28,8 @@ struct RigidMotion {
     Mat3 rotation;          // shape frame to world
     Vec3 velocity;          // m/s, of the origin, mean of the step
     Vec3 angular_velocity;  // rad/s, mean of the step
+
+    bool stands_still() const { return velocity.isZero(0) && angular_velocity.isZero(0); }
 };
 
 /// One key of a script; between keys position is linear and rotation turns about a fixed axis.

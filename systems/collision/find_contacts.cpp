@@ -18,8 +18,7 @@ constexpr Index candidates_worth_of_a_pair = 16;
 constexpr std::size_t rows_per_block = 256;
 
 bool collider_stands_still(const CollisionInputs& inputs, Index collider) {
-    const RigidMotion& motion = inputs.collider.motion[collider];
-    return motion.velocity == Vec3::Zero() && motion.angular_velocity == Vec3::Zero();
+    return inputs.collider.motion[collider].stands_still();
 }
 
 bool body_stands_still(const CollisionInputs& inputs, Index body) {

@@ -18,10 +18,6 @@ Real surface_speed(const CollisionInputs& inputs, Index body, const Vec3& frame)
     return std::sqrt(squared);
 }
 
-bool stands_still(const RigidMotion& motion) {
-    return motion.velocity.isZero(0) && motion.angular_velocity.isZero(0);
-}
-
 }  // namespace
 
 BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure,
@@ -29,7 +25,7 @@ BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& set
     Real in_frame = inputs.body.frame_speed[body], in_world = inputs.body.max_speed[body];
     const Index collider = inputs.body.collider[body];
     const bool scripted =
-        inputs.body.kind[body] == BodyKind::kinematic && !stands_still(inputs.collider.motion[collider]);
+        inputs.body.kind[body] == BodyKind::kinematic && !inputs.collider.motion[collider].stands_still();
     if (measure || scripted) {
         in_frame = std::max(in_frame, surface_speed(inputs, body, inputs.body.frame[body].velocity));
         in_world = std::max(in_world, surface_speed(inputs, body, Vec3::Zero()));

@@ -9,10 +9,6 @@ namespace skerry {
 
 namespace {
 
-bool moves(const RigidMotion& motion) {
-    return motion.velocity != Vec3::Zero() || motion.angular_velocity != Vec3::Zero();
-}
-
 /// Joins what touches, and marks as restless what a moving collider touches.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
     for (std::size_t c = 0; c < touches.state.size(); ++c) {
@@ -134,7 +130,7 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
     for (std::size_t b = 0; b < pressed.size(); ++b)
         if (pressed[b]) wake(static_cast<Index>(b));
     for (std::size_t a = 0; a < attached_body.size(); ++a)
-        if (moves(attached_motion[a])) wake(attached_body[a]);
+        if (!attached_motion[a].stands_still()) wake(attached_body[a]);
     return any;
 }
 
@@ -162,7 +158,7 @@ TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, co
     for (std::size_t b = 0; b < count; ++b)
         memory.restless[b] = bodies.kind[b] == BodyKind::deformable && !state.asleep[b] && !is_ready(b);
     for (std::size_t a = 0; a < bodies.attached_body.size(); ++a)
-        if (moves(bodies.attached_motion[a])) memory.restless[bodies.attached_body[a]] = 1;
+        if (!bodies.attached_motion[a].stands_still()) memory.restless[bodies.attached_body[a]] = 1;
     join_touching(touches, bodies, memory);
     for (std::size_t b = 0; b < count; ++b)
         if (memory.restless[b]) memory.restless[memory.touching.root(static_cast<Index>(b))] = 1;
