@@ -41,6 +41,7 @@ struct BodyTable {
     Column<Range> blocks;         // of ElementBlockTable
     Column<Range> element_nodes;  // of ElementNodeTable
     Column<Range> tetrahedron_blocks;
+    Column<Range> rigid;  // of RigidBodyTable: one row, or none where the body deforms
     Column<Range> triangles;
     Column<Range> edges;
     Column<Range> vertices;
@@ -88,6 +89,7 @@ struct BodyTable {
         visit("blocks", blocks, ColumnRole::link);
         visit("element_nodes", element_nodes, ColumnRole::link);
         visit("tetrahedron_blocks", tetrahedron_blocks, ColumnRole::link);
+        visit("rigid", rigid, ColumnRole::link);
         visit("triangles", triangles, ColumnRole::derived);
         visit("edges", edges, ColumnRole::derived);
         visit("vertices", vertices, ColumnRole::derived);

@@ -26,6 +26,8 @@ std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     std::vector<bool> is_coupled(contacts.inverse_mass.size(), false);
     for (const CoupledNodes& group : contacts.coupled)
         for (const Index node : group.node) is_coupled[static_cast<std::size_t>(node)] = true;
+    for (const RigidPoints& body : contacts.rigid)
+        for (const Index node : body.node) is_coupled[static_cast<std::size_t>(node)] = true;
     std::vector<Touch> touches;
     for (std::size_t i = 0; i < contacts.node.size(); ++i)
         for (std::size_t a = 0; a < 4; ++a) {
@@ -38,19 +40,59 @@ std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     return touches;
 }
 
+/// Where contacts touch one of a group of nodes; Touch::node is its place in the group.
+class GroupTouches {
+public:
+    explicit GroupTouches(const LumpedContacts& contacts) : contacts_(contacts), place_(contacts.inverse_mass.size()) {}
+
+    std::vector<Touch> of(const std::vector<Index>& group) {
+        const std::size_t count = group.size();
+        std::ranges::fill(place_, count);
+        for (std::size_t k = 0; k < count; ++k) place_[static_cast<std::size_t>(group[k])] = k;
+        std::vector<Touch> touches;
+        for (std::size_t i = 0; i < contacts_.node.size(); ++i)
+            for (std::size_t a = 0; a < 4; ++a)
+                if (const std::size_t at = place_[static_cast<std::size_t>(contacts_.node[i][a])];
+                    contacts_.weight[i][a] != 0 && at < count)
+                    touches.push_back({static_cast<Index>(at), static_cast<Index>(i), contacts_.weight[i][a]});
+        return touches;
+    }
+
+private:
+    const LumpedContacts& contacts_;
+    std::vector<std::size_t> place_;
+};
+
+/// Adds the blocks between contacts on one rigid body.
+void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
+    GroupTouches find(contacts);
+    const auto crossing = [](const Vec3& v) {
+        Mat3 matrix;
+        matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+        return matrix;
+    };
+    for (const RigidPoints& body : contacts.rigid) {
+        const std::vector<Touch> touches = find.of(body.node);
+        for (const Touch& a : touches)
+            for (const Touch& b : touches) {
+                const Mat3 arm = crossing(body.arm[static_cast<std::size_t>(a.node)]),
+                           other = crossing(body.arm[static_cast<std::size_t>(b.node)]);
+                const Mat3 block =
+                    a.weight * b.weight *
+                    (body.inverse_mass * Mat3::Identity() + arm * body.inverse_inertia * other.transpose());
+                parts.push_back({a.contact, b.contact,
+                                 frame[static_cast<std::size_t>(a.contact)].transpose() * block *
+                                     frame[static_cast<std::size_t>(b.contact)]});
+            }
+    }
+}
+
 /// Adds the blocks between contacts on nodes that move together.
 void add_coupled(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
-    std::vector<std::size_t> place(contacts.inverse_mass.size());
+    GroupTouches find(contacts);
     for (const CoupledNodes& group : contacts.coupled) {
         const std::size_t count = group.node.size();
-        std::ranges::fill(place, count);
-        for (std::size_t k = 0; k < count; ++k) place[static_cast<std::size_t>(group.node[k])] = k;
-        std::vector<Touch> touches;  // node: place in the group
-        for (std::size_t i = 0; i < contacts.node.size(); ++i)
-            for (std::size_t a = 0; a < 4; ++a)
-                if (const std::size_t at = place[static_cast<std::size_t>(contacts.node[i][a])];
-                    contacts.weight[i][a] != 0 && at < count)
-                    touches.push_back({static_cast<Index>(at), static_cast<Index>(i), contacts.weight[i][a]});
+        const std::vector<Touch> touches = find.of(group.node);
         for (const Touch& a : touches)
             for (const Touch& b : touches) {
                 const Real inverse =
@@ -94,6 +136,7 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
             }
     }
     add_coupled(contacts, frame, parts);
+    add_rigid(contacts, frame, parts);
     gather_blocks(std::move(parts), problem);
     return problem;
 }

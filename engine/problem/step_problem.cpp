@@ -1,5 +1,9 @@
 #include "engine/problem/step_problem.h"
 
+#include <map>
+#include <set>
+#include <utility>
+
 #include "systems/solver/local/load_contact.h"
 
 namespace skerry {
@@ -41,6 +45,25 @@ std::vector<CoupledNodes> coupled_nodes(const RegionInputs& contacts) {
     return coupled;
 }
 
+/// The rigid bodies that contacts touch, by their nodes that do.
+std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
+    const RigidInputs& rigid = contacts.rigid;
+    std::map<Index, std::set<Index>> touched;
+    for (const Stencil& stencil : contacts.stencil)
+        for (std::size_t a = 0; a < 4; ++a)
+            if (const Index row = rigid.nodes.row(stencil.node[a]); stencil.weight[a] != 0 && row != no_index)
+                touched[row].insert(stencil.node[a]);
+    std::vector<RigidPoints> bodies;
+    for (const auto& [row, nodes] : touched) {
+        const auto r = static_cast<std::size_t>(row);
+        RigidPoints points{{nodes.begin(), nodes.end()}, {}, 1 / rigid.mass[r], rigid.inverse_inertia[r]};
+        for (const Index node : nodes)
+            points.arm.push_back(rigid.position[static_cast<std::size_t>(node)] - rigid.center[r]);
+        bodies.push_back(std::move(points));
+    }
+    return bodies;
+}
+
 }  // namespace
 
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h) {
@@ -50,9 +73,15 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     lumped.velocity.assign(step.free_velocity.begin(), step.free_velocity.end());
     std::vector<Vec3> impulse;
     for (std::size_t row = 0; row < step.contacts.stencil.size(); ++row) {
-        const LumpedContact contact = load_contact(step.contacts, static_cast<Index>(row), step.free_velocity, settings,
-                                                   h, [](Index node) { return node; });
-        if (contact.node_count == 0) continue;
+        bool on_rigid_body = false;
+        const LumpedContact contact = load_contact(
+            step.contacts, static_cast<Index>(row), step.free_velocity, settings, h, [](Index node) { return node; },
+            [&](Index node, Real) {
+                const bool rigid = step.contacts.rigid.nodes.row(node) != no_index;
+                on_rigid_body |= rigid;
+                return rigid;
+            });
+        if (contact.node_count == 0 && !on_rigid_body) continue;
         lumped.node.push_back(step.contacts.stencil[row].node);
         lumped.weight.push_back(step.contacts.stencil[row].weight);
         lumped.normal.push_back(step.contacts.normal[row]);
@@ -64,6 +93,7 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         result.region.push_back(step.region[row]);
     }
     lumped.coupled = coupled_nodes(step.contacts);
+    lumped.rigid = rigid_points(step.contacts);
     result.problem = assemble_problem(lumped, {});
     result.problem.description = description_of(step, settings);
     result.impulse = in_contact_frames(lumped, impulse);

@@ -134,6 +134,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
+        body.settings.dynamics = entry.dynamics;
         body.settings.collision_group = entry.collision_group;
         body.settings.collision_mask = entry.collision_mask;
         body.settings.element = entry.element;

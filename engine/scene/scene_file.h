@@ -87,6 +87,7 @@ struct BodyEntry {
     Vec3 angular_velocity = Vec3::Zero();
     std::optional<Real> contact_distance;
     bool self_contact = false;
+    BodyDynamics dynamics = BodySettings{}.dynamics;
     std::uint32_t collision_group = BodySettings{}.collision_group, collision_mask = BodySettings{}.collision_mask;
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;

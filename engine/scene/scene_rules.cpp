@@ -55,7 +55,7 @@ const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
 template <>
 const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
-        Rule<BodyEntry>("body", "A deformable body. The rotation is applied before the position.")
+        Rule<BodyEntry>("body", "A body. The rotation is applied before the position.")
             .key("name", &BodyEntry::name, {.meaning = "for messages, output and probes; body_NUMBER by default"})
             .key("mesh", &BodyEntry::mesh, {.meaning = "its tetrahedra", .required = true})
             .key("material", &BodyEntry::material, {.meaning = "the name of one of the materials", .required = true})
@@ -75,6 +75,8 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                   .unit = "m",
                   .limits = at_least(0)})
             .key("self_contact", &BodyEntry::self_contact, {.meaning = "whether it touches itself; false by default"})
+            .key("dynamics", &BodyEntry::dynamics,
+                 {.meaning = "how it moves: \"rigid\" as a whole, with the mass and inertia of its mesh"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "what carries its stress"})

@@ -1,4 +1,5 @@
 // Reading the state of single bodies and colliders.
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/geometry/rotation.h"
@@ -88,6 +89,17 @@ std::vector<ColliderHandle> World::colliders() const {
     for (std::uint32_t slot : state_->model.colliders.slot)
         handles.push_back(state_->model.collider_map.handle_of_slot(slot));
     return handles;
+}
+
+MotionKey World::pose(BodyHandle body) const {
+    state_->settle();
+    const RigidPose pose = pose_of_body(state_->model, static_cast<std::size_t>(state_->model.row(body, "pose")));
+    return {time(), pose.position, rotation_vector(pose.rotation)};
+}
+
+BodyDynamics World::dynamics(BodyHandle body) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "dynamics"));
+    return state_->model.is_rigid(row) ? BodyDynamics::rigid : BodyDynamics::explicit_elastic;
 }
 
 MotionKey World::pose(ColliderHandle collider) const {

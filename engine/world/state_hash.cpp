@@ -184,6 +184,10 @@ std::uint64_t body_hash(Model& model, std::size_t body) {
     add_nodes(hash, model, body);
     add_elements(hash, model, body);
     add_clusters(hash, model, body);
+    if (const Range rigid = bodies.rigid[body]; rigid != Range{rigid.begin, rigid.begin}) {
+        add_row(hash, rigid.size());
+        if (rigid.size() == 1) add_state(hash, model.rigid_bodies, rigid);
+    }
     return hash.value();
 }
 

@@ -159,6 +159,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
                 {.slot = handle.slot,
                  .kind = BodyKind::deformable,
                  .self_contact = body.self_contact,
+                 .dynamics = body.dynamics,
                  .filter = {body.collision_group, body.collision_mask},
                  .element = body.element,
                  .material = material,
@@ -204,6 +205,14 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 
 AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion, const Vec3& pivot) {
     const Index row = state_->model.row(body, "attach");
+    if (state_->model.is_rigid(static_cast<std::size_t>(row)))
+        Complaint{.file = {},
+                  .object = "attach",
+                  .field = "body",
+                  .found = "the rigid body '" + state_->model.body_records[static_cast<std::size_t>(row)].name + "'",
+                  .expected = "a body that deforms",
+                  .hint = "what stands still or follows a script is a collider: one can have the same mesh"}
+            .raise();
     validate(motion, pivot);
     const Index count = state_->model.bodies.nodes[static_cast<std::size_t>(row)].size();
     for (Index node : nodes)

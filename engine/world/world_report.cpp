@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
@@ -16,9 +17,11 @@ Energy energy_of(const Model& model, Real dissipated) {
     Energy energy;
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
-        energy.kinetic += nodes.mass[n] * nodes.velocity[n].squaredNorm() / 2;
         energy.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
+        if (!model.node_is_rigid(n)) energy.kinetic += nodes.mass[n] * nodes.velocity[n].squaredNorm() / 2;
     }
+    for (const Index body : model.rigid_bodies.body)
+        energy.kinetic += rigid_sums(model, static_cast<std::size_t>(body)).kinetic;
     energy.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
     energy.dissipated = dissipated;
     return energy;
@@ -56,7 +59,7 @@ Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        if (model.bodies.tetrahedron_count[b] == 0) continue;
+        if (model.bodies.blocks[b].size() == 0) continue;
         Real farthest = 0;  // m
         for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n)
             farthest = std::max(farthest, model.nodes.position[static_cast<std::size_t>(n)].norm());
@@ -167,13 +170,19 @@ WorldReport World::report() const {
     report.crossings_found = world.cache.crossings.hits;
     report.crossed = world.cache.crossings.let_through;
     report.energy = energy_of(world.model, report.dissipated);
+    for (const Index body : world.model.rigid_bodies.body) {
+        const RigidSums sums = rigid_sums(world.model, static_cast<std::size_t>(body));
+        report.momentum += sums.momentum;
+        report.angular_momentum += sums.angular_momentum;
+    }
     for (std::size_t n = 0; n < world.model.nodes.position.size(); ++n) {
+        if (world.model.node_is_rigid(n)) continue;
         const Vec3 momentum = world.model.nodes.mass[n] * world.model.nodes.velocity[n];
         report.momentum += momentum;
         report.angular_momentum += world.model.nodes.position[n].cross(momentum);
     }
     for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b) {
-        if (world.model.bodies.tetrahedron_count[b] == 0) continue;
+        if (world.model.bodies.blocks[b].size() == 0) continue;
         const VolumeRatios ratios =
             tetrahedron_volume_ratios(world.model.tetrahedra.node, world.model.tetrahedra.volume,
                                       world.model.bodies.tetrahedron_blocks[b], world.model.nodes.position);

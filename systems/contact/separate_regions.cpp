@@ -11,7 +11,7 @@
 namespace skerry {
 namespace {
 
-/// Joins the moving nodes of a contact, each with its cluster: `leader(node)` stands for that. Returns their root, or
+/// Joins the moving nodes of a contact, each with its group: `leader(node)` stands for that. Returns their root, or
 /// no_index.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, UnionFind& sets) {
@@ -90,9 +90,8 @@ void resize_results(Index region_count, RegionTable& regions) {
 
 }  // namespace
 
-bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
-                      const NodeClusters& clusters, ContactRegions mode, UnionFind& memory, RegionTable& regions,
-                      std::span<Index> contact_region) {
+bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
+                      ContactRegions mode, UnionFind& memory, RegionTable& regions, std::span<Index> contact_region) {
     SKERRY_CHECK(contact_region.size() == stencil.size());
     regions.independent = true;
     if (stencil.empty()) {
@@ -103,11 +102,11 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
     Index region_count = 0;
     switch (mode) {
         case ContactRegions::separate:
-            region_count = clusters.empty()
+            region_count = groups.empty()
                                ? label_by_union_find(
                                      stencil, inverse_mass, [](Index node) { return node; }, memory, contact_region)
                                : label_by_union_find(
-                                     stencil, inverse_mass, [&](Index node) { return clusters.leader(node); }, memory,
+                                     stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, memory,
                                      contact_region);
             break;
         case ContactRegions::global:

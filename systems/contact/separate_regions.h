@@ -2,22 +2,21 @@
 #pragma once
 
 #include "components/contact_table.h"
-#include "components/node_clusters.h"
 #include "components/options.h"
 #include "components/region_table.h"
 #include "components/union_find.h"
 #include "jobs/executor.h"
+#include "systems/contact/node_groups.h"
 
 namespace skerry {
 
 /// Fills `regions.contacts` and `contact_region`. Two contacts are in one region if a chain of shared moving nodes
-/// (inverse mass > 0) joins them; nodes of one of the `clusters` count as shared. Regions are numbered by their first
+/// (inverse mass > 0) joins them; nodes of one of the `groups` count as shared. Regions are numbered by their first
 /// contact and hold their contacts in contact order; contacts without a moving node belong to none. `mode` global puts
 /// all into one region; paper_algorithm_1 follows the paper to the letter, with its error (docs/methods/regions.md 2:
-/// areas that share a node stay apart) and without clusters. Returns false when there are no contacts (skipped).
-bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
-                      const NodeClusters& clusters, ContactRegions mode, UnionFind& memory, RegionTable& regions,
-                      std::span<Index> contact_region);
+/// areas that share a node stay apart) and without groups. Returns false when there are no contacts (skipped).
+bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
+                      ContactRegions mode, UnionFind& memory, RegionTable& regions, std::span<Index> contact_region);
 
 /// How many pairs of different regions share a moving node: 0 for a correct separation.
 Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,

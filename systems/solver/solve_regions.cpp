@@ -4,7 +4,9 @@
 
 #include "components/check.h"
 #include "systems/solver/regions/lane_queue.h"
+#include "systems/solver/regions/region_blocks.h"
 #include "systems/solver/regions/solve_clustered.h"
+#include "systems/solver/regions/solve_freedom.h"
 #include "systems/solver/regions/solve_large_regions.h"
 #include "systems/solver/schedule_regions.h"
 
@@ -17,6 +19,10 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
         const Index number = regions.order[k];
         const std::span<const Index> row = regions.contacts[number];
         if (is_large(stage, regions, number)) continue;
+        if (touches_rigid(stage.memory, number)) {
+            write_outcome(solve_freedom(stage, row, number, regions.contacts.offset[number]), number, regions);
+            continue;
+        }
         if (touches_cluster(stage.memory, number)) {
             write_outcome(solve_clustered(stage, row, number, regions.contacts.offset[number]), number, regions);
             continue;
@@ -86,8 +92,9 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
         remember_regions(data, regions);
         return false;
     }
-    const std::size_t region_nodes = find_region_clusters(contacts, regions, data);
+    const std::size_t region_nodes = find_region_blocks(contacts, regions, data);
     data.make_room_for(regions.contacts.item.size(), region_nodes, contacts.inverse_mass.size(), settings);
+    if (contacts.rigid.any()) data.make_room_for_rigid(regions.contacts.item.size(), region_nodes);
     schedule_regions(settings, executor.worker_count(), data, regions);
     solve_tasks(executor, {contacts, settings, h, out, data}, regions);
     regions.pushed = data.pushed.load(std::memory_order_relaxed);

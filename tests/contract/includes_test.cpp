@@ -41,9 +41,9 @@ int inner_floor(const std::string& path) {
         {"systems/collision/colliders/", 3}, {"systems/collision/overlap/", 4}, {"systems/collision/search/", 4},
         {"systems/dynamics/kinds/", 1},      {"systems/dynamics/elements/", 2}, {"systems/dynamics/stability/", 3},
         {"systems/dynamics/motion/", 4},     {"systems/dynamics/checks/", 5},   {"systems/dynamics/clusters/", 4},
-        {"systems/solver/inputs/", 1},       {"systems/solver/local/", 2},      {"systems/solver/operators/", 3},
-        {"systems/solver/methods/", 4},      {"systems/solver/lanes/", 5},      {"systems/solver/coloured/", 5},
-        {"systems/solver/regions/", 6},
+        {"systems/dynamics/rigid/", 3},      {"systems/dynamics/implicit/", 4}, {"systems/solver/inputs/", 1},
+        {"systems/solver/local/", 2},        {"systems/solver/operators/", 3},  {"systems/solver/methods/", 4},
+        {"systems/solver/lanes/", 5},        {"systems/solver/coloured/", 5},   {"systems/solver/regions/", 6},
     };
     constexpr int top = 100;
     for (const Place& place : places)

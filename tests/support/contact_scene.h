@@ -1,13 +1,16 @@
 // Small contact problems: point masses, stencils, and sheets of points lying on each other.
 #pragma once
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <memory>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "jobs/executor.h"
 #include "systems/contact/separate_regions.h"
+#include "systems/solver/inputs/region_inputs.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -15,6 +18,43 @@ namespace skerry {
 struct SolvedScene {
     RegionTable regions;
     std::vector<Vec3> impulse, velocity, push_out;
+    std::vector<Vec3> contact_impulse, contact_moment, push_velocity, push_spin;  // by rigid body
+};
+
+/// Rigid bodies of a scene: body 0 of the tables deforms and has the nodes of no rigid body.
+struct RigidScene {
+    std::vector<Index> node_body;
+    std::vector<Range> body_nodes, body_rigid;
+    std::vector<Vec3> position, center, momentum, angular_momentum, kick, moment_kick;
+    std::vector<Real> mass;
+    std::vector<Mat3> inverse_inertia;
+
+    RigidNodes nodes() const { return mass.empty() ? RigidNodes{} : RigidNodes{node_body, body_nodes, body_rigid}; }
+    RigidInputs inputs() const {
+        return {nodes(), position, center, mass, inverse_inertia, momentum, angular_momentum, kick, moment_kick};
+    }
+    /// The nodes first .. first + places - 1 of a scene of `count` nodes; at rest.
+    void add(std::size_t count, Index first, std::span<const Vec3> places, const Vec3& at, Real weight,
+             const Mat3& inertia) {
+        if (body_nodes.empty()) {
+            body_nodes.push_back({0, 0});
+            body_rigid.push_back({0, 0});
+        }
+        node_body.resize(count, 0);
+        position.resize(count, Vec3::Zero());
+        const auto row = static_cast<Index>(mass.size());
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            node_body[static_cast<std::size_t>(first) + k] = static_cast<Index>(body_nodes.size());
+            position[static_cast<std::size_t>(first) + k] = places[k];
+        }
+        body_nodes.push_back({first, first + static_cast<Index>(places.size())});
+        body_rigid.push_back({row, row + 1});
+        center.push_back(at);
+        mass.push_back(weight);
+        inverse_inertia.push_back(inertia.inverse());
+        for (std::vector<Vec3>* column : {&momentum, &angular_momentum, &kick, &moment_kick})
+            column->push_back(Vec3::Zero());
+    }
 };
 
 struct ContactScene {
@@ -25,6 +65,7 @@ struct ContactScene {
     std::vector<Real> gap, static_friction, dynamic_friction, restitution;
     Real gravity = 9.81, h = 1e-3;
     NodeClusters clusters;
+    RigidScene rigid;
 
     Index add_node(Real mass, const Vec3& v) {
         inverse_mass.push_back(mass > 0 ? 1 / mass : 0);
@@ -55,20 +96,25 @@ struct ContactScene {
         SolvedScene result;
         UnionFind memory;
         std::vector<Index> region(stencil.size());
-        separate_regions(stencil, inverse_mass, clusters, mode, memory, result.regions, region);
+        separate_regions(stencil, inverse_mass, NodeGroups{&clusters, rigid.nodes()}, mode, memory, result.regions,
+                         region);
         result.impulse = impulse;
         result.velocity = velocity;
         result.push_out.assign(velocity.size(), Vec3::Zero());
         SolverMemory solver;
         const auto executor = make_executor(backend, workers);
+        const std::vector<Vec3> none(rigid.mass.size(), Vec3::Zero());
+        result.contact_impulse = result.contact_moment = result.push_velocity = result.push_spin = none;
         solve_regions(*executor, inputs(), settings, h, solver, result.regions,
-                      {result.impulse, result.velocity, result.push_out});
+                      {result.impulse, result.velocity, result.push_out, result.contact_impulse, result.contact_moment,
+                       result.push_velocity, result.push_spin});
         return result;
     }
     RegionInputs inputs() const {
         RegionInputs all{stencil,          normal,      gap,          surface_velocity, static_friction,
                          dynamic_friction, restitution, inverse_mass, velocity_before,  gravity};
         all.clusters = &clusters;
+        all.rigid = rigid.inputs();
         return all;
     }
     Vec3 relative_velocity(std::size_t contact, const std::vector<Vec3>& v) const {

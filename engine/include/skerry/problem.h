@@ -84,6 +84,14 @@ struct CoupledNodes {
     std::vector<Real> inverse;  // 1/kg, by what, row by row, symmetric
 };
 
+/// Nodes of a rigid body.
+struct RigidPoints {
+    std::vector<Index> node;
+    std::vector<Vec3> arm;                // m, from the centre of mass
+    Real inverse_mass = 0;                // 1/kg
+    Mat3 inverse_inertia = Mat3::Zero();  // 1/(kg m^2)
+};
+
 /// Contacts between points of mass: u_i = sum_a weight[a] velocity[node[a]] + offset_i, in world axes. An impulse r_i
 /// adds weight[a] inverse_mass[node[a]] r_i to the velocity of node a.
 struct LumpedContacts {
@@ -94,9 +102,11 @@ struct LumpedContacts {
     std::vector<Vec3> offset;    // m/s: what gaps leave and colliders bring, less half of what a step turns the slip by
     std::vector<Real> friction;  // mu
     // by node
-    std::vector<Real> inverse_mass;       // 1/kg, 0: moved by no impulse
-    std::vector<Vec3> velocity;           // m/s, without the contacts
-    std::vector<CoupledNodes> coupled{};  // nodes of these have no use for inverse_mass, but that it is not 0
+    std::vector<Real> inverse_mass;  // 1/kg, 0: moved by no impulse
+    std::vector<Vec3> velocity;      // m/s, without the contacts
+    // nodes of these have no use for inverse_mass, but that it is not 0
+    std::vector<CoupledNodes> coupled{};
+    std::vector<RigidPoints> rigid{};
 };
 
 /// The same as general blocks: the frame of a contact is its normal and two tangents that depend on the normal alone,

@@ -2,10 +2,13 @@
 // initialiser, so that naming some of them warns about none.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -37,6 +40,18 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };
 
+/// How a body moves. explicit_elastic: it deforms, in steps that its stiffest element stands. rigid: as a whole, with
+/// the mass and the inertia of its mesh. Of its material only density, friction and restitution count, and it sets no
+/// step; it has one material, cannot be attached and does not touch itself (docs/methods/rigid_bodies.md).
+enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid };
+template <>
+struct EnumNames<BodyDynamics> {
+    static constexpr std::array<std::pair<BodyDynamics, std::string_view>, 2> table{{
+        {BodyDynamics::explicit_elastic, "explicit"},
+        {BodyDynamics::rigid, "rigid"},
+    }};
+};
+
 /// Where a body is put. The rotation is applied first.
 struct BodySettings {
     // Of all that `materials` does not name. Friction, restitution and damping of the whole body are those of this one,
@@ -50,6 +65,7 @@ struct BodySettings {
     Vec3 angular_velocity = Vec3::Zero();    // rad/s, about the centre of mass
     std::optional<Real> contact_distance{};  // m, >= 0; by default 2 % of the mean surface edge
     bool self_contact = false;
+    BodyDynamics dynamics = BodyDynamics::explicit_elastic;
     // Two touch each other if each is in a group that the mask of the other has. A bit is a group.
     std::uint32_t collision_group = 1;
     std::uint32_t collision_mask = 0xffffffffu;
@@ -113,7 +129,8 @@ struct ColliderSettings {
 /// Settings of the world and its step. Defaults work.
 struct Settings {
     Vec3 gravity = {0, 0, -9.81};  // m/s^2
-    // s, at most; by default the stable step of the stiffest body, which is never exceeded
+    // s, at most; by default the stable step of the stiffest body, which is never exceeded, and no more than 1/120
+    // where a body is rigid
     std::optional<Real> step_size{};
     Real step_safety = 1.0;  // fraction of the stable step that is used, in (0, 1]
     Integrator integrator = Integrator::symplectic_euler;

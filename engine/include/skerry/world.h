@@ -114,6 +114,10 @@ public:
     const std::string& name(BodyHandle body) const;
     /// What it has. `smoothed` is told as what it stands for: where that differs by material, as edge_node_smoothed.
     ElementKind element(BodyHandle body) const;
+    BodyDynamics dynamics(BodyHandle body) const;
+    /// Where the frame of its mesh is now, to which BodySettings took it at first: of a body that deforms the nearest
+    /// one, which its centre of mass and its mean rotation have.
+    MotionKey pose(BodyHandle body) const;
     Real mass(BodyHandle body) const;              // kg
     Vec3 center_of_mass(BodyHandle body) const;    // m
     Real contact_distance(BodyHandle body) const;  // m
@@ -151,6 +155,11 @@ public:
     /// they are put. What overlaps then is treated as at a start. Refused where it inverts elements.
     void set_positions(BodyHandle body, std::span<const Vec3> position);
     void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
+    /// The same as a whole: moved and turned as it is to another pose, and the velocities (m/s, rad/s) of a rigid
+    /// motion about its centre of mass. A rigid body takes from set_positions what is a pose of it, else refuses them,
+    /// and from set_velocities the nearest rigid motion.
+    void set_pose(BodyHandle body, const Pose& pose);
+    void set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
     /// External forces on the nodes, kept until set again, N.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
     /// What a material is now, and what it shall be from now on: bodies that have it keep their shapes and velocities

@@ -2,10 +2,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "engine/world/control/control.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"
+#include "engine/world/validate.h"
 #include "systems/dynamics/motion/move_colliders.h"
+#include "systems/geometry/rotation.h"
 
 namespace skerry {
 
@@ -52,6 +56,21 @@ void hold_here(Model& model, std::size_t body, Real now) {
     }
 }
 
+/// Positions that are no pose of a rigid body are refused.
+void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> position) {
+    Model& model = world.model;
+    const RigidFit fit = fit_rigid_body(model, body, position);
+    constexpr Real rounding = 1e-6;  // of an edge
+    if (fit.misfit > rounding * model.bodies.mean_edge[body]) {
+        char misfit[32];
+        std::snprintf(misfit, sizeof misfit, "%g", fit.misfit);
+        refuse(title_of_body(model, body), "position", std::string("a shape from which it differs by ") + misfit + " m",
+               "one that a rigid body has: moved and turned as a whole");
+    }
+    place_nodes(world, body, position);
+    set_rigid_pose(model, body, fit.center, fit.rotation);
+}
+
 }  // namespace
 
 void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
@@ -75,7 +94,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
         origin[n] += position[n] - target[n];  // it has not moved by itself
         target[n] = position[n];
     }
-    if (model.bodies.tetrahedron_count[body] > 0)
+    if (model.bodies.blocks[body].size() > 0)
         model.bodies.stable_step[body] =
             look_at_stable_step(model, body, model.nodes.position, world.scratch.stiffness_sum);
     model.watch.forget(body);
@@ -93,6 +112,10 @@ void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
     const auto row = static_cast<std::size_t>(model.row(body, "set_positions"));
     require_values(model, row, "set_positions", "position", position);
     if (std::ranges::equal(position, rows_of(model.nodes.position, model.bodies.nodes[row]))) return;
+    if (model.is_rigid(row)) {
+        place_rigid(*state_, row, position);
+        return;
+    }
     require_upright(model, row, position, title_of_body(model, row), "position");
     place_nodes(*state_, row, position);
     hold_here(model, row, time());
@@ -114,9 +137,37 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
         changed = true;
     }
     if (!changed) return;
+    if (model.is_rigid(row)) follow_node_velocities(model, row);
     state_->cache.forget_body(model, row);  // the search counts on the speed of the last step
     state_->record.balance.close();
     model.wake(row);
+}
+
+void World::set_pose(BodyHandle body, const Pose& pose) {
+    state_->require_between_steps("set_pose");
+    state_->settle();
+    const Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "set_pose"));
+    if (!pose.position.allFinite() || !pose.rotation.allFinite()) validate(pose, title_of_body(model, row));
+    const RigidPose from = pose_of_body(model, row);
+    if (from.position == pose.position && rotation_vector(from.rotation) == pose.rotation) return;
+    const Mat3 turn = rotation_matrix(pose.rotation) * from.rotation.transpose();
+    const auto now = positions(body);
+    std::vector<Vec3> position(now.begin(), now.end());
+    for (Vec3& x : position) x = pose.position + turn * (x - from.position);
+    set_positions(body, position);
+}
+
+void World::set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angular_velocity) {
+    state_->require_between_steps("set_velocity");
+    state_->settle();
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "set_velocity"));
+    if (!velocity.allFinite() || !angular_velocity.allFinite())
+        refuse(title_of_body(state_->model, row), "velocity", "what is not finite", "finite numbers");
+    const Vec3 center = center_of_mass(body);
+    std::vector<Vec3> of_nodes;
+    for (const Vec3& x : positions(body)) of_nodes.push_back(velocity + angular_velocity.cross(x - center));
+    set_velocities(body, of_nodes);
 }
 
 void World::set_loads(BodyHandle body, std::span<const Vec3> load) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/find_relaxation.h"
@@ -87,7 +88,7 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
         return kernels().stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
     };
     bodies.rest_step[b] = bodies.stable_step[b] = step();
-    if (body.tetrahedra.empty()) return;
+    if (zones.empty()) return;
     const auto relaxes = [&](const MaterialZone& zone) {
         return model.materials.constants[static_cast<std::size_t>(zone.material)].relaxes();
     };
@@ -120,7 +121,9 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     std::ranges::fill(rows_of(elements.own_frequency, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.relaxing_share, blocks), Real(0));
     stiffness_sum.resize(model.nodes.position.size());
-    find_steps(model, row, body, zones_of(model, body), model.nodes.rest_position, stiffness_sum);
+    find_steps(model, row, body, model.is_rigid(b) ? std::vector<MaterialZone>() : zones_of(model, body),
+               model.nodes.rest_position, stiffness_sum);
+    if (model.is_rigid(b)) weigh_rigid_body(model, b, body);
     model.bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     model.watch.forget(b);

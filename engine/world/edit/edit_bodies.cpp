@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
@@ -46,9 +47,9 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// What all zones have, or, where `smoothed` stands for both, the one with nodes.
-ElementKind kind_of(const NewBody& body, std::span<const MaterialZone> zones) {
-    ElementKind kind = zones.empty() ? body.element : zones.front().kind;
+/// What all zones have, or, where `smoothed` stands for both, the one with nodes; of none, linear.
+ElementKind kind_of(std::span<const MaterialZone> zones) {
+    ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)
         if (zone.kind == ElementKind::edge_node_smoothed) kind = zone.kind;
     return kind;
@@ -174,10 +175,11 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     set_masses_and_motion(model, body, nodes);
     BodyRows rows{row, nodes, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
-    const std::vector<MaterialZone> zones = zones_of(model, body);
+    // what is rigid has tetrahedra, and no elements
+    const std::vector<MaterialZone> zones = body.is_rigid() ? std::vector<MaterialZone>() : zones_of(model, body);
     const ElementList list = elements_of({body.tetrahedra, body.nodes, body.rotation}, zones);
     rows.elements = append_elements_of(model, list, {}, rows);
-    if (model.settings.multirate && !body.tetrahedra.empty()) sort_by_level(model, list, stiffness_sum, rows);
+    if (model.settings.multirate && !zones.empty()) sort_by_level(model, list, stiffness_sum, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;
@@ -192,13 +194,15 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.blocks[b] = blocks;
     bodies.element_nodes[b] = rows.elements.nodes;
     bodies.tetrahedron_blocks[b] = rows.tetrahedra;
+    bodies.rigid[b] = {static_cast<Index>(model.rigid_bodies.size()), static_cast<Index>(model.rigid_bodies.size())};
+    if (body.is_rigid()) append_rigid_body(model, row, body);
     bodies.tetrahedron_count[b] = static_cast<Index>(body.tetrahedra.size());
     bodies.uninverted_until[b] = not_looked_at;
     std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_looked_at);
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(model.elements, blocks);
     model.body_records.push_back({.name = {},
-                                  .element = kind_of(body, zones),
+                                  .element = kind_of(zones),
                                   .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
                                   .surface = outline(body),
                                   .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});

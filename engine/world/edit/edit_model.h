@@ -16,6 +16,7 @@ struct NewBody {
     std::uint32_t slot = 0;
     BodyKind kind = BodyKind::deformable;
     bool self_contact = false;
+    BodyDynamics dynamics = BodyDynamics::explicit_elastic;
     CollisionFilter filter = {};
     ElementKind element = ElementKind::linear;
     Index material = no_index;                         // of the surface and of what has no other
@@ -28,6 +29,8 @@ struct NewBody {
     Vec3 position;
     Mat3 rotation;
     Vec3 velocity, angular_velocity;
+
+    bool is_rigid() const { return dynamics == BodyDynamics::rigid; }
 };
 
 // edit_bodies.cpp

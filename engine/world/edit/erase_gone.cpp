@@ -33,6 +33,7 @@ public:
 private:
     void nodes() const {
         for (Index& body : rows_of(model_.nodes.body, has_.nodes)) lower(body, down_.bodies);
+        for (Index& body : rows_of(model_.rigid_bodies.body, has_.rigid)) lower(body, down_.bodies);
         for (Index& node : rows_of(model_.node_blocks.begin, has_.node_blocks)) lower(node, down_.nodes);
         for (Index& node : rows_of(model_.node_blocks.end, has_.node_blocks)) lower(node, down_.nodes);
         for (Index& body : rows_of(model_.node_blocks.body, has_.node_blocks)) lower(body, down_.bodies);
@@ -91,6 +92,7 @@ private:
         lower(table.vertices[body_], down_.vertices);
         lower(table.bvh_nodes[body_], down_.bvh_nodes);
         lower(table.bvh_leaves[body_], down_.bvh_leaves);
+        lower(table.rigid[body_], down_.rigid);
     }
 
     Model& model_;
@@ -178,6 +180,7 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     model.surface.vertex_triangle.erase(gone.vertex_triangles);
     erase_rows(model.bvh, gone.bvh_nodes);
     erase_rows(model.bvh_leaves, gone.bvh_leaves);
+    erase_rows(model.rigid_bodies, gone.rigid);
     erase_rows(model.bodies, gone.bodies);
     erase_records(moves.body_now, model.body_records);
     model.body_mass.erase(gone.bodies);

@@ -1,4 +1,7 @@
+#include <Eigen/Dense>
+#include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "engine/world/save/checks.h"
@@ -32,6 +35,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     all("elements", model.elements, model.elements.first.size());
     all("element_nodes", model.element_nodes, model.element_nodes.node.size());
     all("bodies", model.bodies, model.bodies.slot.size());
+    all("rigid_bodies", model.rigid_bodies, model.rigid_bodies.size());
     all("materials", model.materials, model.materials.slot.size());
     expect_one_size(file, "colliders", model.colliders.slot.size(),
                     [&](auto&& visit) { model.colliders.for_each_row_column(visit); });
@@ -89,6 +93,7 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     expect_partition(file, "/bodies/blocks", bodies.blocks, model.elements.first.size());
     expect_partition(file, "/bodies/element_nodes", bodies.element_nodes, model.element_nodes.node.size());
     expect_partition(file, "/bodies/tetrahedron_blocks", bodies.tetrahedron_blocks, model.tetrahedra.node.size());
+    expect_partition(file, "/bodies/rigid", bodies.rigid, model.rigid_bodies.size());
     expect_between(file, "/bodies/level", bodies.level, 0, step_level_count - element_level_count);
     expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
     expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
@@ -109,6 +114,10 @@ void check_bodies(const Hdf5File& file, const Model& model) {
             count < 0 || (count + element_lanes - 1) / element_lanes != bodies.tetrahedron_blocks[b].size())
             complain("tetrahedron_count", std::to_string(count), "as many as the blocks hold");
         if (bodies.nodes[b].size() == 0) complain("nodes", "none", "at least one");
+        if (bodies.rigid[b].size() > (deforms ? 1 : 0))
+            complain("rigid", std::to_string(bodies.rigid[b].size()) + " rows", "one of a rigid body, else none");
+        if (bodies.rigid[b].size() > 0 && bodies.blocks[b].size() > 0)
+            complain("blocks", std::to_string(bodies.blocks[b].size()), "none of a rigid body");
     }
 }
 
@@ -129,7 +138,9 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
                     "a node of its body, " + std::to_string(nodes.begin) + " to " + std::to_string(nodes.end - 1));
     };
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        const Range nodes = model.bodies.nodes[b], rows = model.bodies.element_nodes[b];
+        const Range nodes = model.bodies.nodes[b], rows = model.bodies.element_nodes[b], rigid = model.bodies.rigid[b];
+        for (Index r = rigid.begin; r < rigid.end; ++r)
+            expect_body("/rigid_bodies/body", model.rigid_bodies.body[r], b, r);
         for (Index n = nodes.begin; n < nodes.end; ++n) expect_body("/nodes/body", model.nodes.body[n], b, n);
         Index next = nodes.begin;
         for (Index k = model.bodies.node_blocks[b].begin; k < model.bodies.node_blocks[b].end; ++k) {
@@ -267,6 +278,27 @@ void check_clusters(const Hdf5File& file, Model& model) {
     expect_size(file, "/clusters/inverse", clusters.inverse.size(), entries);
 }
 
+void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
+    const auto require = [&](bool good, const char* column, std::size_t r, const char* found, const char* expected) {
+        if (!good)
+            file.complain(std::string("/rigid_bodies/") + column, found + (" at row " + std::to_string(r)), expected);
+    };
+    const auto turns = [](const Mat3& m) {
+        constexpr Real rounding = 1e-9;
+        return (m.transpose() * m - Mat3::Identity()).norm() < rounding && m.determinant() > 0;
+    };
+    for (std::size_t r = 0; r < table.size(); ++r) {
+        require(table.mass[r] > 0 && std::isfinite(table.mass[r]), "mass", r, "no mass", "a mass > 0 (kg)");
+        require(table.moments[r].allFinite() && table.moments[r].minCoeff() > 0, "moments", r, "a moment that is none",
+                "three moments of inertia > 0 (kg m^2)");
+        require(turns(table.axes[r]), "axes", r, "no rotation", "a rotation matrix");
+        require(turns(table.rotation[r]), "rotation", r, "no rotation", "a rotation matrix");
+        require(table.rest_center[r].allFinite() && table.center[r].allFinite(), "center", r, "no place", "numbers");
+        require(table.momentum[r].allFinite() && table.angular_momentum[r].allFinite(), "momentum", r,
+                "what is not finite", "numbers");
+    }
+}
+
 }  // namespace
 
 void check_model(const Hdf5File& file, Model& model) {
@@ -279,6 +311,7 @@ void check_model(const Hdf5File& file, Model& model) {
     check_handles(file, model);
     check_disabled_pairs(file, model);
     check_clusters(file, model);
+    check_rigid_bodies(file, model.rigid_bodies);
     check_watch(file, model);
 }
 

@@ -18,6 +18,7 @@
 #include "components/node_table.h"
 #include "components/ragged.h"
 #include "components/range.h"
+#include "components/rigid_body_table.h"
 #include "components/step_watch.h"
 #include "components/surface_table.h"
 #include "skerry/mesh.h"
@@ -63,6 +64,7 @@ struct Model {
     ElementPatches patches;  // derived: extend_derived
     // Of the implicit elements. State: the matrices of elements that have stiffened were updated, not made anew.
     NodeClusters clusters;
+    RigidBodyTable rigid_bodies;
     SurfaceTables surface;
     BvhTable bvh;
     BvhLeafTable bvh_leaves;
@@ -110,6 +112,10 @@ struct Model {
     /// After loads were set: those of one body, which had some before or not.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
+    bool is_rigid(std::size_t body) const { return bodies.rigid[body].size() > 0; }
+    bool node_is_rigid(std::size_t node) const {
+        return rigid_bodies.size() > 0 && is_rigid(static_cast<std::size_t>(nodes.body[node]));
+    }
     /// What is derived of the rows that came last; those that have it keep it.
     void extend_derived();
     /// The same of all rows, and of loads, and what a step leaves of velocities where it has nothing to do.
@@ -133,6 +139,7 @@ struct Model {
         visit("bvh", bvh);
         visit("bvh_leaves", bvh_leaves);
         visit("bodies", bodies);
+        visit("rigid_bodies", rigid_bodies);
         visit("materials", materials);
         visit("colliders", colliders);
         visit("attachments", attachments);

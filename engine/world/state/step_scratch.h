@@ -61,8 +61,9 @@ inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inve
 
 /// Node velocities that a step overwrites and its contact problem is made of.
 struct KeptVelocities {
-    Column<Vec3> velocity;       // m/s, at the start of the step
-    Column<Vec3> velocity_next;  // m/s, predicted
+    Column<Vec3> velocity;          // m/s, at the start of the step
+    Column<Vec3> velocity_next;     // m/s, predicted
+    Column<Vec3> position, center;  // m, of nodes and of rigid bodies, at the start of the step; where any is rigid
 };
 
 /// What contacts and attachments give in one step.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
@@ -22,11 +23,17 @@ Present measure(const Model& model, Real lag) {
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
         now.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
-        if (!(nodes.inverse_mass[n] > 0)) continue;
+        if (!(nodes.inverse_mass[n] > 0) || model.node_is_rigid(n)) continue;
         const Vec3 momentum = nodes.mass[n] * nodes.velocity[n];
         now.kinetic += momentum.dot(nodes.velocity[n]) / 2;
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
+    }
+    for (const Index body : model.rigid_bodies.body) {
+        const RigidSums sums = rigid_sums(model, static_cast<std::size_t>(body));
+        now.kinetic += sums.kinetic;
+        now.momentum += sums.momentum;
+        now.momentum_size += sums.momentum.norm();
     }
     now.kinetic += added_energy(model);
     // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies

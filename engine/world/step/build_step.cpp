@@ -17,6 +17,7 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/predict_velocity.h"
 #include "systems/dynamics/motion/update_sleep.h"
+#include "systems/dynamics/rigid/move_rigid_bodies.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 
 namespace skerry {
@@ -63,6 +64,8 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             read(n.velocity), make(w.scratch.cluster_kick), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
+    g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep),
+            inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h), outputs<RigidKicks>(m.rigid_bodies, n));
 }
 
 auto collision_inputs(const Model& m) {
@@ -85,8 +88,8 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
-            value(m.clusters), value(p.contact_regions), make(w.scratch.union_find), make(w.scratch.regions),
-            write(c.region));
+            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies), value(p.contact_regions),
+            make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
 }
 
 void list_solve(WorldState& w, TaskGraph& g) {
@@ -94,12 +97,13 @@ void list_solve(WorldState& w, TaskGraph& g) {
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
     const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.problem_wanted));
-    g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next),
-            make(w.scratch.kept_velocities), if_wanted);
+    g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next), read(n.position),
+            read(w.model.rigid_bodies.center), make(w.scratch.kept_velocities), if_wanted);
     g.stage("solver/solve_regions", kernels().solve_regions,
-            inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity, w.model.clusters, w.scratch.cluster_kick),
+            inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity, w.model.clusters, w.scratch.cluster_kick,
+                                 w.model.bodies, w.model.rigid_bodies),
             value(p.solver), value(p.h), make(w.scratch.solver_memory), make(w.scratch.regions),
-            outputs<RegionOutputs>(c, n));
+            outputs<RegionOutputs>(c, n, w.model.rigid_bodies));
     g.stage_with_result("contact/measure_contacts", w.scratch.findings.measures, measure_contacts, read(c),
                         read(n.inverse_mass), read(n.velocity), read(n.velocity_next), write(c.slip), write(c.state),
                         value(p.solver.friction));
@@ -118,6 +122,14 @@ void list_forces(WorldState& w, TaskGraph& g) {
             inputs<ReactionInputs>(m.attachments, m.nodes, m.bodies, m.materials, m.elements, m.element_nodes,
                                    f.held_impulse, f.held_velocity),
             value(p.h), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
+}
+
+/// From here on velocity_next of a rigid body is that of the straight way to where it will be.
+void list_turns(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
+            inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep), inputs<RigidImpulses>(m.rigid_bodies),
+            read(m.nodes.position), value(w.scratch.parameters.h), outputs<RigidTurns>(m.rigid_bodies, m.nodes));
 }
 
 /// Looks at the step.
@@ -164,11 +176,14 @@ void list_commit(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/advance_positions", kernels().advance_positions,
             inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h), value(p.integrator),
             outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
+    RigidBodyTable& r = w.model.rigid_bodies;
+    g.stage("dynamics/move_rigid_bodies", move_rigid_bodies, inputs<RigidBodies>(r, b, n, w.model.any_asleep),
+            inputs<RigidImpulses>(r), read(r.center_next), read(r.rotation_next), outputs<RigidMoves>(r, n), if_taken);
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
-                        inputs<RestInputs>(a, b, n), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
-                        outputs<RestOutputs>(b, n), if_taken, if_sleepy);
+                        inputs<RestInputs>(a, b, n, r), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
+                        outputs<RestOutputs>(b, n, r), if_taken, if_sleepy);
     g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse),
             inputs<IdlePairs>(w.cache.pairs), value(p.h), make(w.cache.warm_start), make(w.scratch.warm_start_next),
             if_taken);
@@ -183,6 +198,7 @@ void build_step(WorldState& world) {
     list_contact_branch(world, world.graph);
     list_solve(world, world.graph);
     list_forces(world, world.graph);
+    list_turns(world, world.graph);
     list_checks(world, world.graph);
     list_commit(world, world.graph);
     world.graph.compile();

@@ -30,7 +30,7 @@ constexpr Real headroom = 4;
 constexpr Real most_lengthening = 16;  // of steps
 
 bool has_elements(const Model& model, std::size_t b) {
-    return model.bodies.tetrahedron_count[b] > 0;
+    return model.bodies.blocks[b].size() > 0;
 }
 
 Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, std::span<Real> stiffness_sum) {

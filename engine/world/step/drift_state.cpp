@@ -1,10 +1,13 @@
 // What leapfrog does before its first and after its last kick: positions drift by half a step, so that between them
 // kicks come in the middle of their steps while the state at both ends belongs to one time. Each step is symmetric in
 // time, whatever its length.
+#include <algorithm>
+
 #include "engine/world/step/step.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/measure_displacement.h"
 #include "systems/dynamics/motion/move_colliders.h"
+#include "systems/dynamics/rigid/move_rigid_bodies.h"
 
 namespace skerry {
 
@@ -16,6 +19,12 @@ void measure_displacement_of(Executor& executor, Model& model, Real seconds, Sea
     BodyTable& b = model.bodies;
     measure_displacement(executor, DisplacementInputs::bind({}, k, b, n), seconds,
                          DisplacementOutputs::bind({}, n, search.rebase, b));
+}
+
+void forget_impulses(RigidBodyTable& rigid) {
+    for (Column<Vec3>* column : {&rigid.kick, &rigid.moment_kick, &rigid.contact_impulse, &rigid.contact_moment,
+                                 &rigid.push_velocity, &rigid.push_spin})
+        std::ranges::fill(*column, Vec3::Zero());
 }
 
 }  // namespace
@@ -31,8 +40,14 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     move_colliders(ColliderMotionInputs::bind({}, a), clock.time, seconds, a.motion);
     drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
     const bool pushed = false;  // by contacts, which are not of this part of the step
+    RigidBodyTable& r = model.rigid_bodies;
+    forget_impulses(r);
+    turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidImpulses::bind({}, r),
+                      n.position, seconds, {r.center_next, r.rotation_next, n.velocity});
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
                       Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
+    move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidImpulses::bind({}, r),
+                      r.center_next, r.rotation_next, RigidMoves::bind({}, r, n));
     measure_displacement_of(executor, model, seconds, search);
     add_collider_travel(std::abs(seconds), search.collider_extent, c);
     clock.time += seconds;

@@ -74,7 +74,8 @@ void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTab
 
 // watch_problems.cpp
 /// Copies what the contact problem of this step is made of.
-void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, KeptVelocities& kept);
+void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
+                     std::span<const Vec3> position, std::span<const Vec3> rigid_center, KeptVelocities& kept);
 /// Hands over the contact problem of the step just taken, if somebody wants it.
 void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record);
 

@@ -221,12 +221,16 @@ void StepTransaction::begin_call(const Model& model, const Clock& clock) {
     time_ = clock.time;
     position_ = model.nodes.position;
     velocity_ = model.nodes.velocity;
+    center_ = model.rigid_bodies.center;
+    rotation_ = model.rigid_bodies.rotation;
 }
 
 void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
     if (model.settings.integrator != Integrator::leapfrog) return;
     model.nodes.position = position_;
     model.nodes.velocity = velocity_;
+    model.rigid_bodies.center = center_;
+    model.rigid_bodies.rotation = rotation_;
     clock.time = time_;
     clock.offset = 0;
 }

@@ -52,7 +52,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 ///     nodes.velocity of held and led nodes      drive_nodes            a copy, of the start of the try
 ///     bodies.max_speed, bodies.frame_speed      check_state            a copy, of the start of the try
 ///     nodes.velocity_next of bodies at rest     solve_regions          zero, which it is as long as they rest
-///     nodes.position, nodes.velocity, time      drift_to (leapfrog)    a copy, of the start of the call
+///     nodes.position, nodes.velocity, time,
+///     rigid_bodies.center and rotation          drift_to (leapfrog)    a copy, of the start of the call
 ///     clock.cycle, bodies.level between cycles  plan_step              nothing: written again before it is read
 ///     pairs, their search                       find_candidates        nothing: what a search found of the positions
 ///                                                                      at the start of the step stays true of them
@@ -78,6 +79,8 @@ private:
     Column<Vec3> driven_velocity_;          // m/s, of attachments.node
     Real time_ = 0;                         // s
     Column<Vec3> position_, velocity_;      // m, m/s, of all nodes
+    Column<Vec3> center_;                   // m, of rigid bodies
+    Column<Mat3> rotation_;                 // of rigid bodies
 };
 
 }  // namespace skerry

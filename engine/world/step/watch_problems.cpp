@@ -18,17 +18,23 @@ void copy(std::span<const Vec3> from, Column<Vec3>& to) {
 
 }  // namespace
 
-void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, KeptVelocities& kept) {
+void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
+                     std::span<const Vec3> position, std::span<const Vec3> rigid_center, KeptVelocities& kept) {
     copy(velocity, kept.velocity);
     copy(velocity_next, kept.velocity_next);
+    if (rigid_center.empty()) return;
+    copy(position, kept.position);
+    copy(rigid_center, kept.center);
 }
 
 void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record) {
     if (!record.problem_watch.wants(record.counters.steps) || scratch.contacts.size() == 0) return;
     const ContactTable& c = scratch.contacts;
     const KeptVelocities& kept = scratch.kept_velocities;
-    const RegionInputs inputs = RegionInputs::bind(
-        {}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity, model.clusters, scratch.cluster_kick);
+    RegionInputs inputs = RegionInputs::bind({}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity,
+                                             model.clusters, scratch.cluster_kick, model.bodies, model.rigid_bodies);
+    inputs.rigid.position = kept.position;
+    inputs.rigid.center = kept.center;
     StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region}, scratch.parameters.solver,
                                        scratch.parameters.h);
     if (problem.problem.q.empty()) return;

@@ -125,6 +125,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
     for (Index b = 0; b < static_cast<Index>(inputs.body_blocks.size()); ++b) {
         const Range blocks = inputs.body_blocks[b];
         if (inputs.body_travel[b] + h * inputs.body_frame_speed[b] < body_uninverted_until[b]) continue;
+        if (!inputs.body_rigid.empty() && inputs.body_rigid[b].size() > 0) continue;
         for (Index first = blocks.begin; first < blocks.end; first += blocks_per_part) {
             const Range some{first, std::min(first + blocks_per_part, blocks.end)};
             if (open + some.size() > blocks_per_part) {

@@ -20,6 +20,7 @@ struct InversionInputs {
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
     std::span<const Vec3> position;                 // m, at the start of the step
     std::span<const Vec3> velocity_next, push_out;  // push_out: empty: no contact pushes
+    std::span<const Range> body_rigid = {};         // BodyTable; rigid bodies are not looked at; empty: none is
 
     /// `pushed`: some contact pushes.
     static InversionInputs bind(const Binder& binder, const TetrahedronBlockTable& tetrahedron, const BodyTable& body,
@@ -33,7 +34,8 @@ struct InversionInputs {
                 .body_displacement = binder.read(body.displacement),
                 .position = binder.read(node.position),
                 .velocity_next = binder.read(node.velocity_next),
-                .push_out = binder.read_if(binder.read(pushed), node.push_out)};
+                .push_out = binder.read_if(binder.read(pushed), node.push_out),
+                .body_rigid = binder.read(body.rigid)};
     }
 };
 

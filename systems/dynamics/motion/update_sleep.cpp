@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "components/check.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
 
 namespace skerry {
 
@@ -24,9 +25,18 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
     }
 }
 
+void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
+    const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
+    taken.energy += (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
+    taken.momentum += state.momentum[r];
+    state.momentum[r] = state.angular_momentum[r] = Vec3::Zero();
+}
+
 void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
+    const Index rigid = bodies.rigid(body);
+    if (rigid != no_index) stop_rigid(bodies, static_cast<std::size_t>(rigid), state, taken);
     for (Index n = bodies.nodes[body].begin; n < bodies.nodes[body].end; ++n) {
-        if (bodies.inverse_mass[n] > 0) {
+        if (bodies.inverse_mass[n] > 0 && rigid == no_index) {
             taken.energy += bodies.mass[n] * state.velocity[n].squaredNorm() / 2;
             taken.momentum += bodies.mass[n] * state.velocity[n];
         }

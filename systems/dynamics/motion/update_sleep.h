@@ -12,6 +12,7 @@
 #include "components/contact_table.h"
 #include "components/node_table.h"
 #include "components/options.h"
+#include "components/rigid_body_table.h"
 #include "components/union_find.h"
 #include "jobs/access.h"
 
@@ -92,9 +93,14 @@ struct RestInputs {
     std::span<const Vec3> position;      // m, by node, at the end of the step
     std::span<const Real> mass;          // kg, by node
     std::span<const Real> inverse_mass;  // 1/kg, by node
+    // BodyTable, RigidBodyTable
+    std::span<const Range> body_rigid = {};  // empty: none is
+    std::span<const Real> rigid_mass = {};
+    std::span<const Vec3> rigid_moments = {};
+    std::span<const Mat3> rigid_rotation = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
-                           const NodeTable& node) {
+                           const NodeTable& node, const RigidBodyTable& rigid) {
         return {.attached_body = binder.read(attachment.body),
                 .attached_motion = binder.read(attachment.motion),
                 .kind = binder.read(body.kind),
@@ -103,25 +109,37 @@ struct RestInputs {
                 .max_speed = binder.read(body.max_speed),
                 .position = binder.read(node.position),
                 .mass = binder.read(node.mass),
-                .inverse_mass = binder.read(node.inverse_mass)};
+                .inverse_mass = binder.read(node.inverse_mass),
+                .body_rigid = binder.read(body.rigid),
+                .rigid_mass = binder.read(rigid.mass),
+                .rigid_moments = binder.read(rigid.moments),
+                .rigid_rotation = binder.read(rigid.rotation)};
+    }
+
+    /// Row of RigidBodyTable, or no_index.
+    Index rigid(std::size_t b) const {
+        return body_rigid.empty() || body_rigid[b].size() == 0 ? no_index : body_rigid[b].begin;
     }
 };
 
 struct RestOutputs {
-    std::span<std::uint8_t> asleep;           // by body
-    std::span<Real> still_time;               // s, by body
-    std::span<Real> drift, drift_before;      // m, by body
-    std::span<Vec3> still_position;           // m, by node
-    std::span<Vec3> velocity, velocity_next;  // m/s, by node
+    std::span<std::uint8_t> asleep;                        // by body
+    std::span<Real> still_time;                            // s, by body
+    std::span<Real> drift, drift_before;                   // m, by body
+    std::span<Vec3> still_position;                        // m, by node
+    std::span<Vec3> velocity, velocity_next;               // m/s, by node
+    std::span<Vec3> momentum = {}, angular_momentum = {};  // of rigid bodies
 
-    static RestOutputs bind(const Binder& binder, BodyTable& body, NodeTable& node) {
+    static RestOutputs bind(const Binder& binder, BodyTable& body, NodeTable& node, RigidBodyTable& rigid) {
         return {.asleep = binder.write(body.asleep),
                 .still_time = binder.write(body.still_time),
                 .drift = binder.write(body.drift),
                 .drift_before = binder.write(body.drift_before),
                 .still_position = binder.write(node.still_position),
                 .velocity = binder.write(node.velocity),
-                .velocity_next = binder.write(node.velocity_next)};
+                .velocity_next = binder.write(node.velocity_next),
+                .momentum = binder.write(rigid.momentum),
+                .angular_momentum = binder.write(rigid.angular_momentum)};
     }
 };
 

@@ -6,10 +6,39 @@
 #include "components/contact_table.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
+#include "components/rigid_body_table.h"
 #include "components/types.h"
 #include "jobs/access.h"
+#include "systems/contact/node_groups.h"
 
 namespace skerry {
+
+/// Rigid bodies at the start of the step, kicked. By row of RigidBodyTable, but for positions.
+struct RigidInputs {
+    RigidNodes nodes{};
+    std::span<const Vec3> position{};  // m, by node
+    std::span<const Vec3> center{};
+    std::span<const Real> mass{};
+    std::span<const Mat3> inverse_inertia{};  // 1/(kg m^2), world
+    std::span<const Vec3> momentum{}, angular_momentum{}, kick{}, moment_kick{};
+
+    bool any() const { return nodes.any(); }
+    Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
+    Vec3 spin(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
+
+    static RigidInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
+                            const RigidBodyTable& rigid) {
+        return {.nodes = RigidNodes::bind(binder, node, body, rigid),
+                .position = binder.read(node.position),
+                .center = binder.read(rigid.center),
+                .mass = binder.read(rigid.mass),
+                .inverse_inertia = binder.read(rigid.inverse_inertia),
+                .momentum = binder.read(rigid.momentum),
+                .angular_momentum = binder.read(rigid.angular_momentum),
+                .kick = binder.read(rigid.kick),
+                .moment_kick = binder.read(rigid.moment_kick)};
+    }
+};
 
 /// What the stage reads beside the contacts.
 struct RegionInputs {
@@ -25,13 +54,14 @@ struct RegionInputs {
     std::span<const ContactKey> key{};
     const NodeClusters* clusters = nullptr;  // nodes that move together; none, or null: every node by its own mass
     std::span<const Vec3> cluster_kick{};    // N s, of this step, by item of clusters->nodes
+    RigidInputs rigid{};                     // bodies that move as a whole; none by default
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
     /// `velocity`: of the nodes, at the start of the step.
     static RegionInputs bind(const Binder& binder, const ContactTable& contact, const NodeTable& node,
                              const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
-                             const Column<Vec3>& cluster_kick) {
+                             const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid) {
         return {.stencil = binder.read(contact.stencil),
                 .normal = binder.read(contact.normal),
                 .gap = binder.read(contact.gap),
@@ -44,19 +74,26 @@ struct RegionInputs {
                 .gravity = binder.value(gravity),
                 .key = binder.read(contact.key),
                 .clusters = &binder.value(clusters),
-                .cluster_kick = binder.read(cluster_kick)};
+                .cluster_kick = binder.read(cluster_kick),
+                .rigid = RigidInputs::bind(binder, node, body, rigid)};
     }
 };
 
 struct RegionOutputs {
     std::span<Vec3> impulse;        // by contact: warm start in, solution out
     std::span<Vec3> velocity_next;  // by node: predicted in, solved out
-    std::span<Vec3> push_out;       // by node
+    std::span<Vec3> push_out;       // by node, but for those of rigid bodies
+    // by row of RigidBodyTable, from zero
+    std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
 
-    static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node) {
+    static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid) {
         return {.impulse = binder.write(contact.impulse),
                 .velocity_next = binder.write(node.velocity_next),
-                .push_out = binder.write(node.push_out)};
+                .push_out = binder.write(node.push_out),
+                .contact_impulse = binder.write(rigid.contact_impulse),
+                .contact_moment = binder.write(rigid.contact_moment),
+                .push_velocity = binder.write(rigid.push_velocity),
+                .push_spin = binder.write(rigid.push_spin)};
     }
 };
 

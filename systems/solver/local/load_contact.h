@@ -22,10 +22,10 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
 /// Loads contact `row`; `local(node)` gives the region's row of a moving node. `velocity_next` is what the contact sees
-/// before the solve.
-template <class Local>
+/// before the solve. A node of which `elsewhere(node, weight)` is true moves with a rigid body: no node of the contact.
+template <class Local, class Elsewhere>
 LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
-                           const SolverSettings& settings, Real h, Local&& local) {
+                           const SolverSettings& settings, Real h, Local&& local, Elsewhere&& elsewhere) {
     const Stencil& stencil = inputs.stencil[row];
     LumpedContact contact;
     contact.normal = padded(inputs.normal[row]);
@@ -43,6 +43,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
             offset += weight * velocity_next[node];
             continue;
         }
+        if (elsewhere(node, weight)) continue;
         const Index place = contact.node_count++;
         contact.weight[place] = weight;
         contact.step[place] = weight * inverse_mass;
@@ -59,6 +60,11 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     offset -= midpoint_slip(inputs, row, velocity_next);
     contact.offset = padded(offset);
     return contact;
+}
+template <class Local>
+LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
+                           const SolverSettings& settings, Real h, Local&& local) {
+    return load_contact(inputs, row, velocity_next, settings, h, local, [](Index, Real) { return false; });
 }
 
 }  // namespace skerry

@@ -18,7 +18,7 @@ struct LoadSums {
     void add(const LumpedContact& contact, Friction friction, const Vec4& u) {
         frictionless &= contact.friction.stick == 0;
         one_friction &= contact.friction.stick == contact.friction.slide;
-        if (contact.node_count == 0) return;
+        if (contact.inverse_diagonal == 0) return;
         inverse_diagonals += contact.inverse_diagonal;
         moving += contact.inverse_diagonal * u.squaredNorm();
         if (separates(contact, friction, u)) return;

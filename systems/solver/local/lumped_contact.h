@@ -18,9 +18,9 @@ struct LumpedContact {
     std::array<Real, 4> weight;  // of the moving nodes
     std::array<Real, 4> step;    // 1/kg, weight times inverse mass
     std::array<Index, 4> node;   // rows of the region's own nodes
-    Index node_count;            // 0: no impulse of this contact could move anything
+    Index node_count;            // 0: it moves no node by itself
     Real diagonal;               // 1/kg, D of docs/methods/contact.md 2.1
-    Real inverse_diagonal;       // kg
+    Real inverse_diagonal;       // kg; 0: no impulse of this contact could move anything
     Real bias;                   // m/s, its part of the offset
     FrictionLimits friction;
 };

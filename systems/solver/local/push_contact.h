@@ -29,10 +29,8 @@ inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth,
 
 /// The least u_n + p_n of a contact, taken from u_n: negative asks for a push. Contacts that are not pressed in ask for
 /// nothing, whatever error the velocity solve has left: so a region without a pressed contact comes out as zero, on its
-/// own or within a larger one.
-inline Real push_bias(const LumpedContact& contact, Real gap, Real slop, std::span<const Vec4> velocity,
-                      const SolverSettings& settings, Real gravity, Real h) {
-    const Real normal_velocity = contact.normal.dot(contact_velocity(contact, velocity.data())) - contact.bias;
+/// own or within a larger one. `normal_velocity`: u_n, m/s.
+inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSettings& settings, Real gravity, Real h) {
     if (gap < -slop) return normal_velocity - push_speed(settings, gravity, -gap, h);
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }

@@ -10,10 +10,6 @@ static_assert(ContactOperator<BlockOperator>);
 
 namespace {
 
-BlockMemory::Columns padded_columns(const Mat3& block) {
-    return {padded(block.col(0)), padded(block.col(1)), padded(block.col(2))};
-}
-
 /// start + sum of the blocks of a row times the vectors of their contacts. Three sums side by side: one alone would
 /// wait for itself.
 inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, const Vec4* vector) {
@@ -27,10 +23,6 @@ inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, c
         third += block[k][2] * other[2];
     }
     return first + (second + third);
-}
-
-inline Vec4 times(const BlockMemory::Columns& block, const Vec4& vector) {
-    return block[0] * vector[0] + (block[1] * vector[1] + block[2] * vector[2]);
 }
 
 /// Not-a-number stays not-a-number.
@@ -78,12 +70,12 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
                 diagonal = system.block[k];
             } else {
                 neighbor.push_back(place[system.column[k]]);
-                block.push_back(padded_columns(system.block[k]));
+                block.push_back(columns_of(system.block[k]));
             }
         }
         offset[i + 1] = static_cast<Index>(neighbor.size());
-        contact[i] = {padded(system.q[row]), padded_columns(diagonal),
-                      padded_columns(0.5 * (diagonal - diagonal.transpose())), prepare_block(diagonal), system.mu[row]};
+        contact[i] = {padded(system.q[row]), columns_of(diagonal), columns_of(0.5 * (diagonal - diagonal.transpose())),
+                      prepare_block(diagonal), system.mu[row]};
         if (friction == Friction::cone_convex) convex.push_back(prepare_convex_block(diagonal, system.mu[row]));
     }
     impulse.assign(count, Vec4::Zero());

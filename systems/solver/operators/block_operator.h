@@ -9,6 +9,7 @@
 #include "components/column.h"
 #include "components/options.h"
 #include "components/types.h"
+#include "systems/solver/local/columns3.h"
 #include "systems/solver/local/solve_block.h"
 #include "systems/solver/local/solve_convex_block.h"
 #include "systems/solver/operators/contact_operator.h"
@@ -35,7 +36,7 @@ struct BlockMemory {
         LocalBlock local;
         Real mu;
     };
-    using Columns = std::array<Vec4, 3>;
+    using Columns = Columns3;
 
     std::vector<Contact> contact;
     std::vector<Index> offset;        // contacts + 1

@@ -87,23 +87,27 @@ Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<c
 }
 
 Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& memory,
-                                std::span<const Vec4> push_velocity) {
-    const NodeClusters& clusters = *stage.inputs.clusters;
+                                std::span<const Vec4> push_velocity, std::size_t first_node) {
+    const auto cluster_of = [&](Index node) {
+        return stage.inputs.clustered() ? stage.inputs.clusters->cluster(node) : no_index;
+    };
     Real work = 0;
     for (std::size_t i = 0; i < memory.contact.size(); ++i) {
         const LumpedContact& contact = memory.contact[i];
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
-            if (clusters.cluster(memory.node[contact.node[a]]) == no_index)
+            if (cluster_of(memory.node[contact.node[a]]) == no_index)
                 work += contact.weight[a] * memory.impulse[i].dot(push_velocity[contact.node[a]]);
     }
-    for (std::size_t n = 0; n < memory.node.size(); ++n) {
-        const Index node = memory.node[n], cluster = clusters.cluster(node);
+    for (std::size_t n = first_node; n < memory.node.size(); ++n) {
+        const Index node = memory.node[n], cluster = cluster_of(node);
         const Vec3 push = push_velocity[n].head<3>();
         if (cluster == no_index)
             work -= (memory.velocity[n].head<3>() - stage.inputs.velocity[node]).dot(push) /
                     stage.inputs.inverse_mass[node];
         else
-            work -= stage.inputs.cluster_kick[clusters.nodes.offset[cluster] + clusters.place[node]].dot(push);
+            work -= stage.inputs
+                        .cluster_kick[stage.inputs.clusters->nodes.offset[cluster] + stage.inputs.clusters->place[node]]
+                        .dot(push);
     }
     return work;
 }

@@ -204,8 +204,10 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
         Real size = 0;
         for (std::size_t i = begin; i < end; ++i) {
             memory.impulse[i] = 0;
-            memory.bias[i] = push_bias(contact[i], gap[region.row[walk.number_of(i)]], slop, region.velocity, settings,
-                                       stage.inputs.gravity, stage.h);
+            const Real along =
+                contact[i].normal.dot(contact_velocity(contact[i], region.velocity.data())) - contact[i].bias;
+            memory.bias[i] =
+                push_bias(along, gap[region.row[walk.number_of(i)]], slop, settings, stage.inputs.gravity, stage.h);
             const Real approach = std::min(memory.bias[i], Real(0));
             size += contact[i].inverse_diagonal * approach * approach;
         }
@@ -230,9 +232,10 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
 /// J, that moving positions by h p takes against the forces of the step but for those of contacts: h times the force on
 /// a node is its momentum after the step, less that before and less what its contacts gave. To first order in h p.
 Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<const Vec4> push_velocity);
-/// The same where nodes of clusters are not moved by their own masses: what forces gave them is known.
+/// The same where nodes of clusters are not moved by their own masses: what forces gave them is known. Rows of
+/// velocities before `first_node` are of no node.
 Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& memory,
-                                std::span<const Vec4> push_velocity);
+                                std::span<const Vec4> push_velocity, std::size_t first_node = 0);
 
 /// Finish: writes back, pushes out, and notes what was dissipated.
 template <RegionWalk Walk>

@@ -12,6 +12,7 @@
 #include "components/region_table.h"
 #include "systems/solver/coloured/order_region.h"
 #include "systems/solver/inputs/solver_settings.h"
+#include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/lumped_operator.h"
 
 namespace skerry {
@@ -66,10 +67,12 @@ struct RegionMemory {
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // m/s
     Column<Vec4> scratch;   // m/s
-    // of regions that touch clusters of nodes
-    Ragged<Index> region_clusters;    // by region; no rows without clusters
-    Column<std::size_t> node_base;    // by region: place of its first node
-    Column<Index> region_of_cluster;  // that touched it last
+    // of regions that touch clusters of nodes or rigid bodies
+    Ragged<Index> region_clusters, region_rigid;       // by region; no rows without either
+    Column<std::size_t> node_base;                     // by region: place of its first node
+    Column<Index> region_of_cluster, region_of_rigid;  // that touched it last
+    Column<RigidPart> rigid_part;                      // by contact; no rows without rigid bodies
+    Column<Vec4> free_velocity;                        // m/s, as `velocity`; no rows without rigid bodies
     // by row of NodeTable
     Column<Index> place;  // in its region's list of nodes, if that list agrees
     // by region
@@ -84,6 +87,10 @@ struct RegionMemory {
     /// Of the columns by contact and by node.
     void make_room_for(std::size_t contacts, std::size_t region_nodes, std::size_t nodes,
                        const SolverSettings& settings);
+    void make_room_for_rigid(std::size_t contacts, std::size_t region_nodes) {
+        make_room(rigid_part, contacts);
+        make_room(free_velocity, region_nodes);
+    }
 };
 
 }  // namespace skerry

@@ -2,6 +2,7 @@
 
 #include "systems/solver/methods/run_method.h"
 #include "systems/solver/regions/load_nodes.h"
+#include "systems/solver/regions/region_blocks.h"
 
 namespace skerry {
 namespace {
@@ -13,10 +14,8 @@ ClusteredRegion load_clustered(const RegionStage& stage, std::span<const Index> 
     RegionMemory& data = stage.memory;
     const NodeClusters& clusters = *stage.inputs.clusters;
     const auto first = static_cast<std::size_t>(data.node_base[number]);
-    std::size_t room = 4 * row.size();
-    for (const Index c : data.region_clusters[static_cast<std::size_t>(number)])
-        room += clusters.nodes[static_cast<std::size_t>(c)].size();
-    const std::span<Index> node = data.node.span().subspan(first, room);
+    const std::span<Index> node =
+        data.node.span().subspan(first, room_of_region(stage.inputs, data, row.size(), number));
     ClusteredRegion region{.row = row,
                            .base = base,
                            .walk = ThroughClusters(clusters, node),
@@ -29,34 +28,6 @@ ClusteredRegion load_clustered(const RegionStage& stage, std::span<const Index> 
 }
 
 }  // namespace
-
-std::size_t find_region_clusters(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
-    // first the places of regions without clusters, four by contact, then those of regions with clusters
-    std::size_t end = 4 * regions.contacts.item.size();
-    memory.region_clusters.clear();
-    if (!inputs.clustered()) return end;
-    const NodeClusters& clusters = *inputs.clusters;
-    memory.region_clusters.offset.push_back(0);
-    memory.node_base.resize(regions.size());
-    memory.region_of_cluster.assign(clusters.size(), no_index);
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-        memory.node_base[r] = end;
-        for (const Index contact : regions.contacts[r]) {
-            const Stencil& stencil = inputs.stencil[static_cast<std::size_t>(contact)];
-            for (std::size_t a = 0; a < 4; ++a) {
-                if (stencil.weight[a] == 0) continue;
-                const Index c = clusters.cluster(stencil.node[a]);
-                if (c == no_index || memory.region_of_cluster[c] == static_cast<Index>(r)) continue;
-                memory.region_of_cluster[c] = static_cast<Index>(r);
-                memory.region_clusters.item.push_back(c);
-                end += clusters.nodes[static_cast<std::size_t>(c)].size();
-            }
-        }
-        if (end > memory.node_base[r]) end += 4 * regions.contacts[r].size();
-        memory.region_clusters.offset.push_back(static_cast<Index>(memory.region_clusters.item.size()));
-    }
-    return end;
-}
 
 RegionOutcome solve_clustered(const RegionStage& stage, std::span<const Index> row, Index number, Index base) {
     const ClusteredRegion region = load_clustered(stage, row, number, base);

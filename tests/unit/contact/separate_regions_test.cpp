@@ -29,7 +29,7 @@ Separated separate(const std::vector<Stencil>& stencil, const std::vector<Real>&
     Separated result;
     UnionFind memory;
     result.region.resize(stencil.size());
-    result.ran = separate_regions(stencil, inverse_mass, NodeClusters{}, mode, memory, result.regions, result.region);
+    result.ran = separate_regions(stencil, inverse_mass, NodeGroups{}, mode, memory, result.regions, result.region);
     return result;
 }
 
@@ -104,12 +104,12 @@ TEST_CASE("the memory of one step does not leak into the next", "[unit][contact]
     const std::vector<Real> inverse_mass(8, 1);
     std::vector<Index> region(2);
     const std::vector<Stencil> joined{touching({1, 2}), touching({2, 3})}, apart{touching({1, 2}), touching({3, 4})};
-    separate_regions(joined, inverse_mass, NodeClusters{}, ContactRegions::separate, memory, regions, region);
+    separate_regions(joined, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(regions.size() == 1);
-    separate_regions(apart, inverse_mass, NodeClusters{}, ContactRegions::separate, memory, regions, region);
+    separate_regions(apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(region == std::vector<Index>{0, 1});
     memory.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
-    separate_regions(apart, inverse_mass, NodeClusters{}, ContactRegions::separate, memory, regions, region);
+    separate_regions(apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(region == std::vector<Index>{0, 1});
 }
 
@@ -145,11 +145,11 @@ TEST_CASE("no contacts are no regions, and old ones go", "[unit][contact]") {
     UnionFind memory;
     RegionTable regions;
     std::vector<Index> region(1);
-    separate_regions(std::vector{touching({1, 2})}, std::vector<Real>(3, 1), NodeClusters{}, ContactRegions::separate,
+    separate_regions(std::vector{touching({1, 2})}, std::vector<Real>(3, 1), NodeGroups{}, ContactRegions::separate,
                      memory, regions, region);
     REQUIRE(regions.size() == 1);
     CHECK_FALSE(
-        separate_regions({}, std::vector<Real>(3, 1), NodeClusters{}, ContactRegions::separate, memory, regions, {}));
+        separate_regions({}, std::vector<Real>(3, 1), NodeGroups{}, ContactRegions::separate, memory, regions, {}));
     CHECK(regions.size() == 0);
     CHECK(regions.status.size() == 0);
 }

@@ -25,7 +25,7 @@ TEST_CASE("large regions are solved without asking for memory, also when they ar
         UnionFind union_find;
         SolverMemory memory;
         std::vector<Index> region(scene.stencil.size());
-        separate_regions(scene.stencil, scene.inverse_mass, NodeClusters{}, ContactRegions::separate, union_find,
+        separate_regions(scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate, union_find,
                          solved.regions, region);
         solved.impulse = scene.impulse;
         solved.push_out.assign(scene.velocity.size(), Vec3::Zero());

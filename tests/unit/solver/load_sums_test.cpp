@@ -61,6 +61,7 @@ TEST_CASE("sums of parts are those of all, and contacts that nothing can move co
     CHECK_FALSE(sum.separating);
     LumpedContact fixed = point_contact(0.5);
     fixed.node_count = 0;
+    fixed.inverse_diagonal = 0;
     LoadSums none;
     none.add(fixed, Friction::cone, {0, 0, -1, 0});
     CHECK(none.separating);

@@ -72,7 +72,7 @@ TEST_CASE("gaps within the slop are not pushed, and a push is taken back in the 
     UnionFind union_find;
     SolverMemory memory;
     std::vector<Index> region(1);
-    separate_regions(scene.stencil, scene.inverse_mass, NodeClusters{}, ContactRegions::separate, union_find, regions,
+    separate_regions(scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate, union_find, regions,
                      region);
     std::vector<Vec3> impulse(1), velocity, push(1, Vec3::Zero());
     const auto executor = make_executor(Backend::serial, 1);

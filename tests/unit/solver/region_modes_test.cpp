@@ -116,7 +116,7 @@ TEST_CASE("memory used before changes nothing", "[determinism][solver]") {
         SolvedScene result;
         UnionFind union_find;
         std::vector<Index> region(scene.stencil.size());
-        separate_regions(scene.stencil, scene.inverse_mass, NodeClusters{}, ContactRegions::separate, union_find,
+        separate_regions(scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate, union_find,
                          result.regions, region);
         result.impulse = scene.impulse;
         result.velocity = scene.velocity;

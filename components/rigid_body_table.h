@@ -1,0 +1,63 @@
+// One row per rigid body: how it moves as a whole. Its nodes follow (docs/methods/rigid_bodies.md).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/column.h"
+#include "components/column_role.h"
+#include "components/node_table.h"
+#include "components/range.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// The principal frame has its origin in the centre of mass and its axes along those of inertia. `axes` turns it into
+/// the frame of the mesh, `rotation` into the world: a node is at center + rotation axes^T (rest_position -
+/// rest_center).
+struct RigidBodyTable {
+    Column<Index> body;             // row of BodyTable
+    Column<Real> mass;              // kg
+    Column<Vec3> moments;           // kg m^2, of inertia about the principal axes
+    Column<Mat3> axes;              // of the principal frame, in the frame of the mesh
+    Column<Vec3> rest_center;       // m, in the frame of the mesh
+    Column<Vec3> center;            // m
+    Column<Mat3> rotation;          // principal frame to world
+    Column<Vec3> momentum;          // kg m/s
+    Column<Vec3> angular_momentum;  // kg m^2/s, about the centre
+    // Of this step, by kick_rigid_bodies:
+    Column<Mat3> inverse_inertia;    // 1/(kg m^2), world
+    Column<Vec3> kick, moment_kick;  // N s, N m s about the centre: of gravity and loads
+    // by solve_regions, from zero:
+    Column<Vec3> contact_impulse, contact_moment;  // N s, N m s about the centre
+    Column<Vec3> push_velocity, push_spin;         // m/s, rad/s: of this step's positions only
+    // by turn_rigid_bodies:
+    Column<Vec3> center_next;
+    Column<Mat3> rotation_next;
+
+    std::size_t size() const { return mass.size(); }
+
+    /// The only list of columns.
+    void for_each_column(auto&& visit) {
+        visit("body", body, ColumnRole::link);
+        visit("mass", mass, ColumnRole::state);
+        visit("moments", moments, ColumnRole::state);
+        visit("axes", axes, ColumnRole::state);
+        visit("rest_center", rest_center, ColumnRole::state);
+        visit("center", center, ColumnRole::state);
+        visit("rotation", rotation, ColumnRole::state);
+        visit("momentum", momentum, ColumnRole::state);
+        visit("angular_momentum", angular_momentum, ColumnRole::state);
+        visit("inverse_inertia", inverse_inertia, ColumnRole::scratch);
+        visit("kick", kick, ColumnRole::scratch);
+        visit("moment_kick", moment_kick, ColumnRole::scratch);
+        visit("contact_impulse", contact_impulse, ColumnRole::scratch);
+        visit("contact_moment", contact_moment, ColumnRole::scratch);
+        visit("push_velocity", push_velocity, ColumnRole::scratch);
+        visit("push_spin", push_spin, ColumnRole::scratch);
+        visit("center_next", center_next, ColumnRole::scratch);
+        visit("rotation_next", rotation_next, ColumnRole::scratch);
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,207 @@
+#include "engine/world/edit/rigid_bodies.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "systems/dynamics/rigid/rigid_motion.h"
+
+namespace skerry {
+
+namespace {
+
+/// Of the solid that tetrahedra fill, in the frame of the mesh.
+struct MassProperties {
+    Real mass = 0;               // kg
+    Vec3 center = Vec3::Zero();  // m
+    Vec3 moments;                // kg m^2
+    Mat3 axes;                   // principal frame to that of the mesh
+};
+
+MassProperties mass_properties(const NewBody& body, std::span<const Real> density) {
+    MassProperties found;
+    std::vector<Real> mass(body.tetrahedra.size());
+    const auto corner = [&](std::size_t t, std::size_t k) -> const Vec3& {
+        return body.nodes[static_cast<std::size_t>(body.tetrahedra[t][k])];
+    };
+    for (std::size_t t = 0; t < mass.size(); ++t) {
+        mass[t] = density[t] * six_volumes(body.tetrahedra[t], body.nodes) / 6;
+        found.mass += mass[t];
+        found.center += mass[t] / 4 * (corner(t, 0) + corner(t, 1) + corner(t, 2) + corner(t, 3));
+    }
+    found.center /= found.mass;
+    Mat3 second = Mat3::Zero();  // kg m^2, integral of x x^T: m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T)
+    for (std::size_t t = 0; t < mass.size(); ++t) {
+        Mat3 squares = Mat3::Zero();
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 x = corner(t, k) - found.center;
+            squares += x * x.transpose();
+            sum += x;
+        }
+        second += mass[t] / 20 * (squares + sum * sum.transpose());
+    }
+    const Mat3 inertia = second.trace() * Mat3::Identity() - second;
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(inertia);
+    found.moments = principal.eigenvalues();
+    found.axes = principal.eigenvectors();
+    if (found.axes.determinant() < 0) found.axes.col(2) *= -1;
+    return found;
+}
+
+std::vector<Real> densities(const Model& model, const NewBody& body) {
+    return std::vector<Real>(body.tetrahedra.size(),
+                             model.materials.constants[static_cast<std::size_t>(body.material)].density);
+}
+
+void write_masses(const MassProperties& found, std::size_t r, RigidBodyTable& table) {
+    table.mass[r] = found.mass;
+    table.moments[r] = found.moments;
+    table.axes[r] = found.axes;
+    table.rest_center[r] = found.center;
+}
+
+std::size_t rigid_row(const Model& model, std::size_t body) {
+    return static_cast<std::size_t>(model.bodies.rigid[body].begin);
+}
+
+Vec3 spin(const RigidBodyTable& table, std::size_t r) {
+    return spin_of(table.rotation[r], table.moments[r], table.angular_momentum[r]);
+}
+
+void set_motion(RigidBodyTable& table, std::size_t r, const Vec3& velocity, const Vec3& angular_velocity) {
+    const Mat3& rotation = table.rotation[r];
+    table.momentum[r] = table.mass[r] * velocity;
+    table.angular_momentum[r] = rotation * table.moments[r].cwiseProduct(rotation.transpose() * angular_velocity);
+}
+
+void give_nodes_velocity(Model& model, std::size_t body) {
+    const RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
+    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n)
+        model.nodes.velocity[n] = velocity + turn.cross(model.nodes.position[n] - table.center[r]);
+}
+
+}  // namespace
+
+void append_rigid_body(Model& model, Index row, const NewBody& body) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = table.size();
+    table.for_each_column([r](const char*, auto& column, ColumnRole) { column.resize(r + 1); });
+    table.for_each_column([r]<class T>(const char*, Column<T>& column, ColumnRole) {
+        if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Mat3>) column[r].setZero();
+    });
+    table.body[r] = row;
+    const MassProperties found = mass_properties(body, densities(model, body));
+    write_masses(found, r, table);
+    table.center[r] = body.position + body.rotation * found.center;
+    table.rotation[r] = body.rotation * found.axes;
+    set_motion(table, r, body.velocity, body.angular_velocity);
+    model.bodies.rigid[static_cast<std::size_t>(row)] = {static_cast<Index>(r), static_cast<Index>(r) + 1};
+}
+
+void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
+    const Mat3 from_mesh = table.rotation[r] * table.axes[r].transpose();
+    write_masses(mass_properties(as_new, densities(model, as_new)), r, table);
+    table.rotation[r] = from_mesh * table.axes[r];
+    set_motion(table, r, velocity, turn);
+}
+
+namespace {
+
+/// Of a mesh frame in which nodes have their rest positions, by masses.
+struct NearestFrame {
+    Vec3 center, rest_center;  // m
+    Mat3 rotation;
+};
+
+NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
+    const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+    NearestFrame frame{Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
+    Real mass = 0;
+    for (std::size_t n = 0; n < position.size(); ++n) {
+        mass += model.nodes.mass[first + n];
+        frame.center += model.nodes.mass[first + n] * position[n];
+        frame.rest_center += model.nodes.mass[first + n] * model.nodes.rest_position[first + n];
+    }
+    frame.center /= mass;
+    frame.rest_center /= mass;
+    Mat3 overlap = Mat3::Zero();
+    for (std::size_t n = 0; n < position.size(); ++n)
+        overlap += model.nodes.mass[first + n] * (position[n] - frame.center) *
+                   (model.nodes.rest_position[first + n] - frame.rest_center).transpose();
+    const Eigen::JacobiSVD<Mat3> turn(overlap, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 u = turn.matrixU();
+    if ((u * turn.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+    frame.rotation = u * turn.matrixV().transpose();
+    return frame;
+}
+
+}  // namespace
+
+RigidPose pose_of_body(const Model& model, std::size_t body) {
+    if (model.is_rigid(body)) {
+        const RigidBodyTable& table = model.rigid_bodies;
+        const std::size_t r = rigid_row(model, body);
+        const Mat3 from_mesh = table.rotation[r] * table.axes[r].transpose();
+        return {table.center[r] - from_mesh * table.rest_center[r], from_mesh};
+    }
+    const NearestFrame frame = nearest_frame(model, body, rows_of(model.nodes.position, model.bodies.nodes[body]));
+    return {frame.center - frame.rotation * frame.rest_center, frame.rotation};
+}
+
+RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Vec3> position) {
+    const RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+    const NearestFrame frame = nearest_frame(model, body, position);
+    Real misfit = 0;
+    for (std::size_t n = 0; n < position.size(); ++n)
+        misfit = std::max(
+            misfit,
+            (frame.center + frame.rotation * (model.nodes.rest_position[first + n] - frame.rest_center) - position[n])
+                .norm());
+    const Vec3 center = frame.center + frame.rotation * (table.rest_center[r] - frame.rest_center);
+    return {center, frame.rotation * table.axes[r], misfit};
+}
+
+void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    table.center[r] = center;
+    table.rotation[r] = rotation;
+    const Mat3 from_mesh = rotation * table.axes[r].transpose();
+    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n)
+        model.nodes.position[n] = center + from_mesh * (model.nodes.rest_position[n] - table.rest_center[r]);
+    give_nodes_velocity(model, body);
+}
+
+void follow_node_velocities(Model& model, std::size_t body) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    Vec3 momentum = Vec3::Zero(), turning = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {
+        const Vec3 arm = model.nodes.position[n] - table.center[r];
+        momentum += model.nodes.mass[n] * model.nodes.velocity[n];
+        turning += model.nodes.mass[n] * arm.cross(model.nodes.velocity[n]);
+        second += model.nodes.mass[n] * arm * arm.transpose();
+    }
+    const Mat3 inertia = second.trace() * Mat3::Identity() - second;
+    set_motion(table, r, momentum / table.mass[r], inertia.inverse() * turning);
+    give_nodes_velocity(model, body);
+}
+
+RigidSums rigid_sums(const Model& model, std::size_t body) {
+    if (!model.is_rigid(body)) return {};
+    const RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const Vec3 &momentum = table.momentum[r], &angular = table.angular_momentum[r];
+    return {(momentum.squaredNorm() / table.mass[r] + angular.dot(spin(table, r))) / 2, momentum,
+            angular + table.center[r].cross(momentum)};
+}
+
+}  // namespace skerry

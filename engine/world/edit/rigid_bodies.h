@@ -1,0 +1,42 @@
+// Rigid bodies as they come, and after something else than a step has moved their nodes.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "engine/world/edit/edit_model.h"
+
+namespace skerry {
+
+/// Gives a body, whose nodes are there, the row of RigidBodyTable that its mesh makes.
+void append_rigid_body(Model& model, Index row, const NewBody& body);
+
+/// Mass and inertia again, after densities have changed; it goes on with the velocity that it has.
+void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
+
+/// Where a rigid body is whose nodes are at `position`, and how far the farthest of them is from where it has them
+/// then.
+struct RigidFit {
+    Vec3 center;
+    Mat3 rotation;  // principal frame to world
+    Real misfit;    // m
+};
+RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Vec3> position);
+
+/// Where the frame of its mesh is, of a body that deforms the nearest.
+RigidPose pose_of_body(const Model& model, std::size_t body);
+
+/// The pose of a body, and its nodes where that has them. Angular momentum and velocity stay as they are.
+void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
+/// The rigid motion nearest to the velocities of its nodes.
+void follow_node_velocities(Model& model, std::size_t body);
+
+/// What a rigid body carries; zero for one that deforms.
+struct RigidSums {
+    Real kinetic = 0;                      // J
+    Vec3 momentum = Vec3::Zero();          // kg m/s
+    Vec3 angular_momentum = Vec3::Zero();  // kg m^2/s, about the origin
+};
+RigidSums rigid_sums(const Model& model, std::size_t body);
+
+}  // namespace skerry

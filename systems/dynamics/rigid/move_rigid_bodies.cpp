@@ -1,0 +1,118 @@
+#include "systems/dynamics/rigid/move_rigid_bodies.h"
+
+#include <Eigen/Geometry>
+
+#include "jobs/parallel_for.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+namespace {
+
+/// Velocities of the points of a rigid body.
+struct RigidField {
+    Vec3 center, velocity, spin;  // m, m/s, rad/s
+
+    Vec3 at(const Vec3& position) const { return velocity + spin.cross(position - center); }
+};
+
+/// Where the nodes of a rigid body are.
+struct RigidPlace {
+    Vec3 center, rest_center;
+    Mat3 from_mesh;
+
+    RigidPlace(const RigidBodies& bodies, std::size_t r, const Vec3& at, const Mat3& rotation)
+        : center(at), rest_center(bodies.rest_center[r]), from_mesh(rotation * bodies.axes[r].transpose()) {}
+    Vec3 of(const Vec3& rest_position) const { return center + from_mesh * (rest_position - rest_center); }
+};
+
+void for_each_node(Range nodes, auto&& visit) {
+    for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n) visit(n);
+}
+
+void for_each_body(Executor& executor, const RigidBodies& bodies, auto&& visit) {
+    parallel_for(executor, bodies.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t r = first; r < last; ++r) visit(r);
+    });
+}
+
+bool is_moved(const RigidImpulses& impulses, std::size_t r) {
+    return !impulses.contact_impulse[r].isZero(0) || !impulses.contact_moment[r].isZero(0) ||
+           !impulses.push_velocity[r].isZero(0) || !impulses.push_spin[r].isZero(0);
+}
+
+Vec3 momentum_after(const RigidBodies& bodies, const RigidImpulses& impulses, std::size_t r) {
+    return bodies.momentum[r] + (impulses.kick[r] + impulses.contact_impulse[r]);
+}
+Vec3 angular_momentum_after(const RigidBodies& bodies, const RigidImpulses& impulses, std::size_t r) {
+    return bodies.angular_momentum[r] + (impulses.moment_kick[r] + impulses.contact_moment[r]);
+}
+
+}  // namespace
+
+bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidForces& forces, Real h,
+                       const RigidKicks& out) {
+    if (bodies.size() == 0) return false;
+    for_each_body(executor, bodies, [&](std::size_t r) {
+        out.contact_impulse[r] = out.contact_moment[r] = out.push_velocity[r] = out.push_spin[r] = Vec3::Zero();
+        out.inverse_inertia[r] = inverse_inertia_of(bodies.rotation[r], bodies.moments[r]);
+        out.kick[r] = out.moment_kick[r] = Vec3::Zero();
+        if (bodies.asleep(r)) return;
+        Vec3 force = bodies.mass[r] * forces.gravity, moment = Vec3::Zero();
+        if (!forces.load.empty())
+            for_each_node(bodies.nodes(r), [&](std::size_t n) {
+                force += forces.load[n];
+                moment += (forces.position[n] - bodies.center[r]).cross(forces.load[n]);
+            });
+        out.kick[r] = h * force;
+        out.moment_kick[r] = h * moment;
+        const RigidField field{bodies.center[r], (bodies.momentum[r] + out.kick[r]) / bodies.mass[r],
+                               out.inverse_inertia[r] * (bodies.angular_momentum[r] + out.moment_kick[r])};
+        for_each_node(bodies.nodes(r), [&](std::size_t n) { out.velocity_next[n] = field.at(forces.position[n]); });
+    });
+    return true;
+}
+
+bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
+                       std::span<const Vec3> position, Real h, const RigidTurns& out) {
+    if (bodies.size() == 0) return false;
+    for_each_body(executor, bodies, [&](std::size_t r) {
+        out.center_next[r] = bodies.center[r];
+        out.rotation_next[r] = bodies.rotation[r];
+        if (bodies.asleep(r) && !is_moved(impulses, r)) return;
+        out.center_next[r] += h * (momentum_after(bodies, impulses, r) / bodies.mass[r] + impulses.push_velocity[r]);
+        const Mat3 turned =
+            turned_freely(bodies.rotation[r], bodies.moments[r], angular_momentum_after(bodies, impulses, r), h);
+        out.rotation_next[r] = without_strain(rotation_matrix(h * impulses.push_spin[r]) * turned);
+        const RigidPlace place(bodies, r, out.center_next[r], out.rotation_next[r]);
+        for_each_node(bodies.nodes(r), [&](std::size_t n) {
+            out.velocity_next[n] = (place.of(bodies.rest_position[n]) - position[n]) / h;
+        });
+    });
+    return true;
+}
+
+bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
+                       std::span<const Vec3> center_next, std::span<const Mat3> rotation_next, const RigidMoves& out) {
+    if (bodies.size() == 0) return false;
+    for_each_body(executor, bodies, [&](std::size_t r) {
+        if (bodies.asleep(r)) return;
+        const Vec3 momentum = momentum_after(bodies, impulses, r);
+        const Vec3 angular_momentum = angular_momentum_after(bodies, impulses, r);
+        const RigidPlace place(bodies, r, center_next[r], rotation_next[r]);
+        const RigidField field{center_next[r], momentum / bodies.mass[r],
+                               spin_of(rotation_next[r], bodies.moments[r], angular_momentum)};
+        out.center[r] = center_next[r];
+        out.rotation[r] = rotation_next[r];
+        out.momentum[r] = momentum;
+        out.angular_momentum[r] = angular_momentum;
+        for_each_node(bodies.nodes(r), [&](std::size_t n) {
+            out.position[n] = place.of(bodies.rest_position[n]);
+            out.velocity[n] = field.at(out.position[n]);
+        });
+    });
+    return true;
+}
+
+}  // namespace skerry

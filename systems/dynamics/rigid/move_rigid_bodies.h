@@ -1,0 +1,137 @@
+// The three stages of a step of rigid bodies: kicked by forces, turned once contacts are solved, and moved when the
+// step is taken (docs/methods/rigid_bodies.md 2).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/node_table.h"
+#include "components/rigid_body_table.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+
+namespace skerry {
+
+/// What rigid bodies are, and where they are at the start of the step.
+struct RigidBodies {
+    std::span<const Index> body;
+    std::span<const Range> body_nodes;          // BodyTable
+    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: none is
+    std::span<const Real> mass;
+    std::span<const Vec3> moments, rest_center, center;
+    std::span<const Mat3> axes, rotation;
+    std::span<const Vec3> momentum, angular_momentum;
+    std::span<const Vec3> rest_position;  // m, by node
+
+    static RigidBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
+                            const NodeTable& node, const bool& any_asleep) {
+        return {.body = binder.read(rigid.body),
+                .body_nodes = binder.read(of_body.nodes),
+                .body_asleep = binder.read_if(binder.value(any_asleep), of_body.asleep),
+                .mass = binder.read(rigid.mass),
+                .moments = binder.read(rigid.moments),
+                .rest_center = binder.read(rigid.rest_center),
+                .center = binder.read(rigid.center),
+                .axes = binder.read(rigid.axes),
+                .rotation = binder.read(rigid.rotation),
+                .momentum = binder.read(rigid.momentum),
+                .angular_momentum = binder.read(rigid.angular_momentum),
+                .rest_position = binder.read(node.rest_position)};
+    }
+
+    std::size_t size() const { return mass.size(); }
+    bool asleep(std::size_t r) const {
+        return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
+    }
+    Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
+};
+
+struct RigidForces {
+    Vec3 gravity;                    // m/s^2
+    std::span<const Vec3> load;      // N, by node; empty: none
+    std::span<const Vec3> position;  // m, by node
+
+    /// `loaded`: some node has a load.
+    static RigidForces bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded) {
+        return {.gravity = binder.value(gravity),
+                .load = binder.read_if(binder.value(loaded), node.load),
+                .position = binder.read(node.position)};
+    }
+};
+
+struct RigidKicks {
+    std::span<Vec3> kick, moment_kick;
+    std::span<Mat3> inverse_inertia;
+    std::span<Vec3> contact_impulse, contact_moment, push_velocity, push_spin;  // set to zero
+    std::span<Vec3> velocity_next;                                              // m/s, by node
+
+    static RigidKicks bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
+        return {.kick = binder.write(rigid.kick),
+                .moment_kick = binder.write(rigid.moment_kick),
+                .inverse_inertia = binder.write(rigid.inverse_inertia),
+                .contact_impulse = binder.write(rigid.contact_impulse),
+                .contact_moment = binder.write(rigid.contact_moment),
+                .push_velocity = binder.write(rigid.push_velocity),
+                .push_spin = binder.write(rigid.push_spin),
+                .velocity_next = binder.write(node.velocity_next)};
+    }
+};
+
+/// The impulse and moment of gravity and loads, and the velocities with them, as contacts see them. Those at rest get
+/// none. Parallel over bodies. Returns false where there is none (skipped).
+bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidForces& forces, Real h,
+                       const RigidKicks& out);
+
+/// What acted on rigid bodies in this step.
+struct RigidImpulses {
+    std::span<const Vec3> kick, moment_kick, contact_impulse, contact_moment, push_velocity, push_spin;
+
+    static RigidImpulses bind(const Binder& binder, const RigidBodyTable& rigid) {
+        return {.kick = binder.read(rigid.kick),
+                .moment_kick = binder.read(rigid.moment_kick),
+                .contact_impulse = binder.read(rigid.contact_impulse),
+                .contact_moment = binder.read(rigid.contact_moment),
+                .push_velocity = binder.read(rigid.push_velocity),
+                .push_spin = binder.read(rigid.push_spin)};
+    }
+};
+
+struct RigidTurns {
+    std::span<Vec3> center_next;
+    std::span<Mat3> rotation_next;
+    std::span<Vec3> velocity_next;  // m/s, by node: of the straight way to where it will be, push-out included
+
+    static RigidTurns bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
+        return {.center_next = binder.write(rigid.center_next),
+                .rotation_next = binder.write(rigid.rotation_next),
+                .velocity_next = binder.write(node.velocity_next)};
+    }
+};
+
+/// Where the bodies are at the end of the step. Parallel over bodies. Returns false where there is none (skipped).
+bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
+                       std::span<const Vec3> position, Real h, const RigidTurns& out);
+
+struct RigidMoves {
+    std::span<Vec3> center, momentum, angular_momentum;
+    std::span<Mat3> rotation;
+    std::span<Vec3> position, velocity;  // by node
+
+    static RigidMoves bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
+        return {.center = binder.write(rigid.center),
+                .momentum = binder.write(rigid.momentum),
+                .angular_momentum = binder.write(rigid.angular_momentum),
+                .rotation = binder.write(rigid.rotation),
+                .position = binder.write(node.position),
+                .velocity = binder.write(node.velocity)};
+    }
+};
+
+/// Commits: the bodies that do not rest, and their nodes, are where they were turned to (`center_next`,
+/// `rotation_next`), and go on with the momenta that the step gave them. Parallel over bodies. Returns false where
+/// there is none (skipped).
+bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
+                       std::span<const Vec3> center_next, std::span<const Mat3> rotation_next, const RigidMoves& out);
+
+}  // namespace skerry

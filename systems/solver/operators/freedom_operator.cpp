@@ -1,0 +1,114 @@
+#include "systems/solver/operators/freedom_operator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skerry {
+
+static_assert(ContactOperator<FreedomOperator>);
+
+namespace {
+
+Vec4 in_frame(const Columns3& frame, const Vec4& vector) {
+    return {frame[0].dot(vector), frame[1].dot(vector), frame[2].dot(vector), 0};
+}
+
+/// Coulomb's answer to b = u - W_ii r, world.
+Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
+    const Vec3 local = in_frame(part.frame, b).head<3>();
+    Vec3 impulse = solve_block(part.block, local, mu.stick);
+    // one that slides does so with the dynamic coefficient
+    constexpr Real rounding = 1e-12;
+    if (mu.slide != mu.stick && impulse.tail<2>().norm() >= mu.stick * impulse[0] * (1 - rounding))
+        impulse = solve_block(part.block, local, mu.slide);
+    return times(part.frame, padded(impulse));
+}
+
+}  // namespace
+
+Vec4 FreedomOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
+    RigidPart& of = memory_.part[static_cast<std::size_t>(i)];
+    if (of.term_count > 0 && friction_ == Friction::cone)
+        return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
+    // A number in the place of W_ii: exact where it is one. Elsewhere a step that is not too long.
+    return project(i, impulse - u / of.steepest);
+}
+
+Real FreedomOperator::step(Index i, Real relaxation) {
+    if (!(mobility(i) > 0)) return 0;
+    Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
+    Vec4 next = answer(i, impulse, velocity(i));
+    if (relaxation != 1) next = project(i, impulse + relaxation * (next - impulse));
+    const Vec4 change = next - impulse;
+    if (change.isZero(0)) return 0;
+    apply(i, change, memory_.velocity.data());
+    impulse = next;
+    return inner(i, change, change);
+}
+
+Real FreedomOperator::sweep(Real relaxation) {
+    Real change = 0;
+    for (Index i = 0; i < size(); ++i) change += step(i, relaxation);
+    return change;
+}
+
+SweepChange FreedomOperator::accelerated_sweep(Real relaxation) {
+    const std::span<const Vec4> present = memory_.impulse, previous = memory_.workspace[1];
+    SweepChange sum;
+    for (Index i = 0; i < size(); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const Vec4 before = present[at];
+        const Real size = step(i, relaxation);
+        if (size == 0) continue;
+        sum.size += size;
+        sum.against -= inner(i, present[at] - before, present[at] - previous[at]);
+    }
+    return sum;
+}
+
+void FreedomOperator::remember() {
+    std::ranges::copy(memory_.impulse, memory_.workspace[1].begin());
+    std::ranges::copy(memory_.velocity, memory_.scratch.begin());
+}
+
+void FreedomOperator::extrapolate(Real factor) {
+    extrapolate_range(0, memory_.impulse.size(), factor, memory_.impulse, memory_.workspace[1]);
+    extrapolate_range(0, memory_.velocity.size(), factor, memory_.velocity, memory_.scratch);
+}
+
+Real FreedomOperator::error() const {
+    Real sum = 0;
+    for (Index i = 0; i < size(); ++i) {
+        if (!(mobility(i) > 0)) continue;
+        const Vec4 residual =
+            natural_map(contact(i), friction_, memory_.impulse[static_cast<std::size_t>(i)], velocity(i));
+        sum += contact(i).diagonal * residual.squaredNorm();
+    }
+    return sum == 0 ? 0 : std::sqrt(sum) / scale_;
+}
+
+void FreedomOperator::refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
+    std::ranges::copy(memory_.free_velocity, velocity.begin());
+    for (Index i = 0; i < size(); ++i) apply(i, impulse[static_cast<std::size_t>(i)], velocity.data());
+}
+
+void FreedomOperator::residual(std::span<Vec4> out) const {
+    for (Index i = 0; i < size(); ++i)
+        out[static_cast<std::size_t>(i)] = mobility(i) > 0 ? Vec4(-velocity(i)) : Vec4(Vec4::Zero());
+}
+
+void FreedomOperator::multiply(std::span<const Vec4> in, std::span<Vec4> out) const {
+    std::ranges::fill(memory_.scratch, Vec4::Zero());
+    for (Index i = 0; i < size(); ++i) apply(i, in[static_cast<std::size_t>(i)], memory_.scratch.data());
+    for (Index i = 0; i < size(); ++i) out[static_cast<std::size_t>(i)] = velocity_at(i, memory_.scratch.data());
+}
+
+void FreedomOperator::assemble(Eigen::MatrixXd& matrix) const {
+    matrix.setZero(3 * size(), 3 * size());
+    for (Index i = 0; i < size(); ++i)
+        for (Index j = 0; j < size(); ++j)
+            matrix.block<3, 3>(3 * i, 3 * j) =
+                walk_.coupling(contact(i), contact(j)) * Mat3::Identity() + rigid_coupling(part(i), part(j));
+}
+
+}  // namespace skerry

@@ -1,0 +1,93 @@
+// The Delassus operator of contacts that touch rigid bodies, beside nodes of their own mass and clusters of nodes: the
+// blocks of W are matrices. It carries velocities along as LumpedOperator does, a rigid body's as two more: of its
+// centre and its spin (docs/methods/rigid_bodies.md 3).
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "components/options.h"
+#include "systems/solver/local/rigid_part.h"
+#include "systems/solver/operators/contact_operator.h"
+#include "systems/solver/operators/newton_memory.h"
+#include "systems/solver/operators/through_clusters.h"
+
+namespace skerry {
+
+/// One region; by contact, but for velocities. The memory belongs to the caller. LumpedContact::diagonal is a third of
+/// the trace of W_ii.
+struct FreedomMemory {
+    std::span<const LumpedContact> contact;  // its nodes are those without a rigid body
+    std::span<RigidPart> part;
+    std::span<Vec4> impulse;              // N s
+    std::span<Vec4> velocity;             // m/s and rad/s, moved by the impulse
+    std::span<const Vec4> free_velocity;  // without impulses
+    std::span<Vec4> scratch;              // as velocity: previous ones, or those of a product
+    std::array<std::span<Vec4>, workspace_limit> workspace;
+};
+
+class FreedomOperator {
+public:
+    using Number = Real;
+
+    /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse.
+    FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughClusters& walk)
+        : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
+
+    Index size() const { return static_cast<Index>(memory_.contact.size()); }
+    std::span<Vec4> impulse() { return memory_.impulse; }
+    std::span<Vec4> workspace(Index slot) { return memory_.workspace[static_cast<std::size_t>(slot)]; }
+    void refresh() { refresh(memory_.impulse, memory_.velocity); }
+    void refresh_all() {
+        refresh();
+        refresh(memory_.workspace[1], memory_.scratch);
+    }
+    void remember();
+    void extrapolate(Real factor);
+    Real sweep(Real relaxation);
+    SweepChange accelerated_sweep(Real relaxation);
+    /// e_nat of docs/methods/errors.md 2, with a third of the trace of W_ii for D.
+    Real error() const;
+    bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
+    Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
+    void residual(std::span<Vec4> out) const;
+    void multiply(std::span<const Vec4> in, std::span<Vec4> out) const;
+    Vec4 project(Index i, const Vec4& impulse) const {
+        return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
+    }
+    Vec4 feasible(Index i, const Vec4& residual) const {
+        return feasible_direction(residual, memory_.impulse[static_cast<std::size_t>(i)], contact(i).normal,
+                                  contact(i).friction, friction_);
+    }
+    Vec4 normal(Index i) const { return contact(i).normal; }
+    FrictionLimits limits(Index i) const { return contact(i).friction; }
+    Real mobility(Index i) const { return contact(i).inverse_diagonal > 0 ? contact(i).diagonal : 0; }
+    Friction law() const { return friction_; }
+    void assemble(Eigen::MatrixXd& matrix) const;
+
+    /// The split impulse of a contact (push_contact.h): along its normal.
+    Vec4 velocity_at(Index i, const Vec4* velocity) const {
+        return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
+    }
+    void apply(Index i, const Vec4& impulse, Vec4* velocity) const {
+        walk_.apply(contact(i), impulse, velocity);
+        apply_to_rigid(part(i), impulse, velocity);
+    }
+
+private:
+    const LumpedContact& contact(Index i) const { return memory_.contact[static_cast<std::size_t>(i)]; }
+    const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
+    Vec4 velocity(Index i) const { return contact(i).offset + velocity_at(i, memory_.velocity.data()); }
+    /// The impulse that the law answers with where the other impulses stay: exact for Coulomb's cone.
+    Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
+    /// Returns change . W_ii change.
+    Real step(Index i, Real relaxation);
+    void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
+
+    FreedomMemory memory_;
+    Friction friction_;
+    Real scale_;
+    ThroughClusters walk_;
+};
+
+}  // namespace skerry

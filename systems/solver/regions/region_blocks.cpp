@@ -1,0 +1,54 @@
+#include "systems/solver/regions/region_blocks.h"
+
+namespace skerry {
+namespace {
+
+/// Each once a region: `region_of` says which one named it last.
+void note(Index block, Index region, Column<Index>& region_of, Ragged<Index>& list) {
+    if (block == no_index || region_of[static_cast<std::size_t>(block)] == region) return;
+    region_of[static_cast<std::size_t>(block)] = region;
+    list.item.push_back(block);
+}
+
+}  // namespace
+
+std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t contacts, Index number) {
+    const auto r = static_cast<std::size_t>(number);
+    std::size_t room = 4 * contacts + 2 * memory.region_rigid[r].size();
+    for (const Index c : memory.region_clusters[r]) room += inputs.clusters->nodes[static_cast<std::size_t>(c)].size();
+    return room;
+}
+
+std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
+    // first the places of regions without any, four by contact, then those of the others
+    std::size_t end = 4 * regions.contacts.item.size();
+    memory.region_clusters.clear();
+    memory.region_rigid.clear();
+    if (!inputs.clustered() && !inputs.rigid.any()) return end;
+    memory.region_clusters.offset.push_back(0);
+    memory.region_rigid.offset.push_back(0);
+    memory.node_base.resize(regions.size());
+    memory.region_of_cluster.assign(inputs.clustered() ? inputs.clusters->size() : 0, no_index);
+    memory.region_of_rigid.assign(inputs.rigid.mass.size(), no_index);
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        const auto number = static_cast<Index>(r);
+        memory.node_base[r] = end;
+        for (const Index contact : regions.contacts[r]) {
+            const Stencil& stencil = inputs.stencil[static_cast<std::size_t>(contact)];
+            for (std::size_t a = 0; a < 4; ++a) {
+                if (stencil.weight[a] == 0) continue;
+                if (inputs.clustered())
+                    note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster,
+                         memory.region_clusters);
+                note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
+            }
+        }
+        memory.region_clusters.offset.push_back(static_cast<Index>(memory.region_clusters.item.size()));
+        memory.region_rigid.offset.push_back(static_cast<Index>(memory.region_rigid.item.size()));
+        if (touches_cluster(memory, number) || touches_rigid(memory, number))
+            end += room_of_region(inputs, memory, regions.contacts[r].size(), number);
+    }
+    return end;
+}
+
+}  // namespace skerry

@@ -1,0 +1,322 @@
+#include "systems/solver/regions/solve_freedom.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "systems/solver/methods/run_method.h"
+#include "systems/solver/operators/freedom_operator.h"
+#include "systems/solver/regions/region_blocks.h"
+
+namespace skerry {
+namespace {
+
+const NodeClusters no_clusters;
+
+/// A region with its part of the memory. Rows of its velocities: two a rigid body, then nodes of clusters, then others.
+struct FreedomRegion {
+    std::span<const Index> row;    // of its contacts
+    std::span<const Index> rigid;  // rows of RigidBodyTable
+    std::span<const Index> node;   // rows of NodeTable; no_index where a rigid body has its rows
+    FreedomMemory memory;
+    ThroughClusters walk;
+    LoadSums sums;
+    Real scale;  // sqrt(J), of e_nat
+    Index base;
+
+    FreedomOperator operator_for(Friction friction) const { return {memory, friction, scale, walk}; }
+};
+
+/// Fills one region.
+class Loading {
+public:
+    Loading(const RegionStage& stage, std::span<const Index> row, Index number, Index base)
+        : stage_(stage),
+          data_(stage.memory),
+          first_(static_cast<std::size_t>(base)),
+          first_node_(data_.node_base[static_cast<std::size_t>(number)]),
+          room_(room_of_region(stage.inputs, data_, row.size(), number)),
+          node_(data_.node.span().subspan(first_node_, room_)),
+          region_{.row = row,
+                  .rigid = data_.region_rigid[static_cast<std::size_t>(number)],
+                  .node = {},
+                  .memory = {},
+                  .walk = ThroughClusters(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters, node_),
+                  .sums = {},
+                  .scale = 0,
+                  .base = base},
+          number_(number) {}
+
+    FreedomRegion load() {
+        list_blocks();
+        for (std::size_t i = 0; i < region_.row.size(); ++i) load_contact_at(i);
+        set_memory();
+        for (std::size_t i = 0; i < region_.row.size(); ++i) {
+            const LumpedContact& contact = region_.memory.contact[i];
+            const Vec4 u =
+                contact.offset +
+                add_rigid_velocities(region_.memory.part[i], region_.memory.velocity.data(),
+                                     add_node_velocities(contact, region_.memory.velocity.data(), Vec4::Zero()));
+            region_.sums.add(contact, stage_.settings.friction, u);
+        }
+        region_.scale = error_scale(region_.sums, stage_.inputs.gravity, stage_.h, stage_.settings.tolerance);
+        return region_;
+    }
+
+private:
+    std::span<Vec4> velocities() const { return data_.velocity.span().subspan(first_node_, room_); }
+
+    void list_blocks() {
+        const RigidInputs& rigid = stage_.inputs.rigid;
+        for (const Index body : region_.rigid) {
+            const auto r = static_cast<std::size_t>(body);
+            node_[count_] = node_[count_ + 1] = no_index;
+            velocities()[count_] = padded(rigid.velocity(r));
+            velocities()[count_ + 1] = padded(rigid.spin(r));
+            count_ += 2;
+        }
+        for (const Index c : data_.region_clusters[static_cast<std::size_t>(number_)])
+            for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) place_of(n);
+    }
+
+    /// The region's own row of a node.
+    Index place_of(Index global) {
+        Index& place = data_.place[static_cast<std::size_t>(global)];
+        if (static_cast<std::size_t>(place) < count_ && node_[static_cast<std::size_t>(place)] == global) return place;
+        place = static_cast<Index>(count_);
+        node_[count_] = global;
+        velocities()[count_++] = padded(stage_.out.velocity_next[static_cast<std::size_t>(global)]);
+        return place;
+    }
+
+    void load_contact_at(std::size_t i) {
+        const RigidNodes& rigid = stage_.inputs.rigid.nodes;
+        RigidPart& part = data_.rigid_part[first_ + i];
+        part.term_count = 0;
+        LumpedContact& contact = data_.contact[first_ + i];
+        contact = load_contact(
+            stage_.inputs, region_.row[i], stage_.out.velocity_next, stage_.settings, stage_.h,
+            [&](Index node) { return place_of(node); },
+            [&](Index node, Real weight) {
+                const Index body = rigid.row(node);
+                if (body != no_index) add_term(part, body, node, weight);
+                return body != no_index;
+            });
+        data_.impulse[first_ + i].setZero();
+        find_mobility(contact, part);
+    }
+
+    void add_term(RigidPart& part, Index body, Index node, Real weight) {
+        const RigidInputs& rigid = stage_.inputs.rigid;
+        Index k = 0;
+        while (k < part.term_count && part.term[static_cast<std::size_t>(k)].row != body) ++k;
+        RigidTerm& term = part.term[static_cast<std::size_t>(k)];
+        if (k == part.term_count) {
+            ++part.term_count;
+            const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
+            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = Vec4::Zero(), .spin_step = {}};
+        }
+        term.weight += weight;
+        term.arm += weight * padded(rigid.position[static_cast<std::size_t>(node)] -
+                                    rigid.center[static_cast<std::size_t>(body)]);
+    }
+
+    void find_mobility(LumpedContact& contact, RigidPart& part) const {
+        Mat3 mobility = contact.node_count > 0 ? Mat3(region_.walk.coupling(contact, contact) * Mat3::Identity())
+                                               : Mat3(Mat3::Zero());
+        for (Index k = 0; k < part.term_count; ++k) {
+            RigidTerm& term = part.term[static_cast<std::size_t>(k)];
+            const auto r = static_cast<std::size_t>(term.row);
+            term.step = term.weight / stage_.inputs.rigid.mass[r];
+            term.spin_step = columns_of(stage_.inputs.rigid.inverse_inertia[r] * cross_matrix(term.arm.head<3>()));
+        }
+        mobility += rigid_coupling(part, part);
+        const Vec3 normal = contact.normal.head<3>();
+        const TangentFrame tangents = tangent_frame(normal);
+        part.frame = {contact.normal, padded(tangents.first), padded(tangents.second)};
+        part.mobility = columns_of(mobility);
+        part.along_normal = normal.dot(mobility * normal);
+        part.steepest = part.term_count > 0 ? mobility.norm() : mobility(0, 0);
+        if (part.term_count > 0) {
+            const Mat3 frame = matrix_of(part.frame);
+            part.block = prepare_block(frame.transpose() * mobility * frame);
+        }
+        contact.diagonal = mobility.trace() / 3;
+        contact.inverse_diagonal = contact.diagonal > 0 ? 1 / contact.diagonal : 0;
+    }
+
+    void set_memory() {
+        const std::size_t contacts = region_.row.size();
+        region_.node = node_.first(count_);
+        region_.memory = {.contact = data_.contact.span().subspan(first_, contacts),
+                          .part = data_.rigid_part.span().subspan(first_, contacts),
+                          .impulse = data_.impulse.span().subspan(first_, contacts),
+                          .velocity = velocities().first(count_),
+                          .free_velocity = data_.free_velocity.span().subspan(first_node_, count_),
+                          .scratch = data_.scratch.span().subspan(first_node_, count_),
+                          .workspace = {}};
+        for (std::size_t slot = 0; slot < workspace_slots(stage_.settings.method); ++slot)
+            region_.memory.workspace[slot] = data_.workspace[slot].span().subspan(first_, contacts);
+        std::ranges::copy(region_.memory.velocity, data_.free_velocity.span().subspan(first_node_, count_).begin());
+    }
+
+    const RegionStage& stage_;
+    RegionMemory& data_;
+    std::size_t first_, first_node_, room_;
+    std::span<Index> node_;
+    FreedomRegion region_;
+    Index number_;
+    std::size_t count_ = 0;  // rows of velocities so far
+};
+
+/// The impulses of the last step, and the velocities that they make.
+void take_warm_impulses(const RegionStage& stage, const FreedomRegion& region, FreedomOperator& op) {
+    for (std::size_t i = 0; i < region.row.size(); ++i) {
+        const LumpedContact& contact = region.memory.contact[i];
+        if (contact.inverse_diagonal == 0) continue;
+        const Vec4 last = padded(stage.out.impulse[static_cast<std::size_t>(region.row[i])]);
+        region.memory.impulse[i] = contact.friction.stick == 0 ? Vec4(contact.normal.dot(last) * contact.normal) : last;
+    }
+    op.refresh();
+}
+
+/// As start_region.
+bool start(const RegionStage& stage, const FreedomRegion& region, FreedomOperator& op, RegionOutcome& outcome) {
+    const SolverSettings& settings = stage.settings;
+    if (settings.fixed_iterations) {
+        if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_impulses(stage, region, op);
+        return false;
+    }
+    if (region.sums.separating && settings.skip_separating) {
+        outcome = {.status = RegionStatus::certified, .shortcut = shortcut_separating};
+        return true;
+    }
+    if (settings.warm_start == WarmStart::off) return false;
+    take_warm_impulses(stage, region, op);
+    return start_from_warm_impulse(op, settings, outcome);
+}
+
+/// Velocities of nodes, also of those of rigid bodies that contacts name, and what rigid bodies got.
+void write_solution(const RegionStage& stage, const FreedomRegion& region, RegionOutcome& outcome) {
+    const FreedomMemory& memory = region.memory;
+    const RigidInputs& rigid = stage.inputs.rigid;
+    for (std::size_t n = 2 * region.rigid.size(); n < region.node.size(); ++n)
+        stage.out.velocity_next[static_cast<std::size_t>(region.node[n])] = memory.velocity[n].head<3>();
+    for (std::size_t i = 0; i < region.row.size(); ++i) {
+        const RigidPart& part = memory.part[i];
+        const auto row = static_cast<std::size_t>(region.row[i]);
+        for (Index k = 0; k < part.term_count; ++k) {
+            const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
+            const auto r = static_cast<std::size_t>(term.row);
+            stage.out.contact_impulse[r] += term.weight * memory.impulse[i].head<3>();
+            stage.out.contact_moment[r] += cross(term.arm, memory.impulse[i]).head<3>();
+        }
+        const Stencil& stencil = stage.inputs.stencil[row];
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Index node = stencil.node[a];
+            const Index body = stencil.weight[a] == 0 ? no_index : rigid.nodes.row(node);
+            if (body == no_index) continue;
+            const auto slot = static_cast<std::size_t>(
+                2 * (std::find(region.rigid.begin(), region.rigid.end(), body) - region.rigid.begin()));
+            const Vec3 arm =
+                rigid.position[static_cast<std::size_t>(node)] - rigid.center[static_cast<std::size_t>(body)];
+            stage.out.velocity_next[static_cast<std::size_t>(node)] =
+                memory.velocity[slot].head<3>() + memory.velocity[slot + 1].head<3>().cross(arm);
+        }
+        stage.out.impulse[row] = memory.impulse[i].head<3>();
+        outcome.dissipated += dissipated_by(stage, region.row[i]);
+    }
+}
+
+/// As solve_push; memory.velocity is that of the push afterwards.
+bool push(const RegionStage& stage, const FreedomRegion& region, const FreedomOperator& op) {
+    const SolverSettings& settings = stage.settings;
+    const std::span<const Real> gap = stage.inputs.gap;
+    const Real slop = push_slop(stage.inputs.gravity, stage.h);
+    if (std::none_of(region.row.begin(), region.row.end(),
+                     [&](Index i) { return gap[static_cast<std::size_t>(i)] < -slop; }))
+        return false;
+    const auto count = static_cast<Index>(region.row.size());
+    const PushMemory memory = push_memory(stage, region.base, region.row.size(), region.memory.scratch);
+    std::ranges::fill(memory.velocity, Vec4::Zero());
+    Real asked = 0;  // J
+    for (Index i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const LumpedContact& contact = region.memory.contact[at];
+        const Real along =
+            contact.normal.dot(contact.offset + op.velocity_at(i, region.memory.velocity.data())) - contact.bias;
+        memory.impulse[at] = 0;
+        memory.bias[at] = push_bias(along, gap[static_cast<std::size_t>(region.row[at])], slop, settings,
+                                    stage.inputs.gravity, stage.h);
+        const Real approach = std::min(memory.bias[at], Real(0));
+        const Real mobility = region.memory.part[at].along_normal;
+        if (mobility > 0) asked += approach * approach / mobility;
+    }
+    const Real small = settings.tolerance * settings.tolerance * asked;
+    for (Index iteration = 1; iteration <= settings.max_iterations; ++iteration) {
+        Real size = 0;
+        for (Index i = 0; i < count; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            const Real mobility = region.memory.part[at].along_normal;
+            if (!(mobility > 0)) continue;
+            const Vec4& normal = region.memory.contact[at].normal;
+            const Real along = memory.bias[at] + normal.dot(op.velocity_at(i, memory.velocity.data()));
+            const Real next = std::max(Real(0), memory.impulse[at] - along / mobility);
+            const Real change = next - memory.impulse[at];
+            if (change == 0) continue;
+            op.apply(i, change * normal, memory.velocity.data());
+            memory.impulse[at] = next;
+            size += mobility * change * change;
+        }
+        if (size <= small && !settings.fixed_iterations) break;
+    }
+    return true;
+}
+
+/// J: as push_work, with what forces gave rigid bodies in this step.
+Real push_work_of(const RegionStage& stage, const FreedomRegion& region, std::span<const Vec4> push_velocity) {
+    const RigidInputs& rigid = stage.inputs.rigid;
+    const std::size_t first_node = 2 * region.rigid.size();
+    // of the nodes: as if there were no rigid bodies
+    LumpedMemory nodes;
+    nodes.contact = region.memory.contact;
+    nodes.impulse = region.memory.impulse;
+    nodes.velocity = region.memory.velocity;
+    nodes.node = region.node;
+    Real work = push_work_through_clusters(stage, nodes, push_velocity, first_node);
+    for (std::size_t k = 0; k < region.rigid.size(); ++k) {
+        const auto r = static_cast<std::size_t>(region.rigid[k]);
+        work -= rigid.kick[r].dot(push_velocity[2 * k].head<3>()) +
+                rigid.moment_kick[r].dot(push_velocity[2 * k + 1].head<3>());
+    }
+    return work;
+}
+
+void push_out(const RegionStage& stage, const FreedomRegion& region, const FreedomOperator& op,
+              RegionOutcome& outcome) {
+    if (!push(stage, region, op)) return;
+    const std::span<const Vec4> velocity = region.memory.scratch;
+    for (std::size_t k = 0; k < region.rigid.size(); ++k) {
+        const auto r = static_cast<std::size_t>(region.rigid[k]);
+        stage.out.push_velocity[r] = velocity[2 * k].head<3>();
+        stage.out.push_spin[r] = velocity[2 * k + 1].head<3>();
+    }
+    for (std::size_t n = 2 * region.rigid.size(); n < region.node.size(); ++n)
+        stage.out.push_out[static_cast<std::size_t>(region.node[n])] = velocity[n].head<3>();
+    outcome.push_work = push_work_of(stage, region, velocity);
+    stage.memory.pushed.store(true, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row, Index number, Index base) {
+    const FreedomRegion region = Loading(stage, row, number, base).load();
+    FreedomOperator op = region.operator_for(stage.settings.friction);
+    RegionOutcome outcome;
+    if (!start(stage, region, op, outcome))
+        outcome = outcome_of(run_method(stage.settings.method, op, limits_of(stage.settings)));
+    write_solution(stage, region, outcome);
+    if (outcome.status != RegionStatus::not_finite) push_out(stage, region, op, outcome);
+    return outcome;
+}
+
+}  // namespace skerry

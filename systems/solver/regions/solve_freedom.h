@@ -1,0 +1,11 @@
+// Regions whose contacts touch rigid bodies (docs/methods/rigid_bodies.md 3).
+#pragma once
+
+#include "systems/solver/regions/life_cycle.h"
+
+namespace skerry {
+
+/// Solves one such region, by one thread.
+RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row, Index number, Index base);
+
+}  // namespace skerry
