@@ -6,17 +6,13 @@ namespace skerry {
 
 namespace {
 
-/// An element covers tetrahedra of one material.
+/// By tetrahedron.
 std::vector<Index> materials_of(const World& world, BodyHandle body) {
     const Model& model = WorldAccess::state_of(world).model;
     const auto row = static_cast<std::size_t>(model.row(body, "frame"));
-    std::vector<Index> material(model.body_records[row].tetrahedra.size(), no_index);
-    const RaggedView<Index> covered = model.body_records[row].element_tetrahedra.view();
-    const auto first = static_cast<std::size_t>(model.bodies.blocks[row].begin);
-    for (std::size_t place = 0; place < covered.size(); ++place)
-        for (const Index t : covered[place])
-            material[static_cast<std::size_t>(t)] = model.elements.material[first + place / element_lanes];
-    return material;
+    const BodyRecord& record = model.body_records[row];
+    if (!record.tetrahedron_material.empty()) return record.tetrahedron_material;
+    return std::vector<Index>(record.tetrahedra.size(), model.bodies.material[row]);
 }
 
 }  // namespace

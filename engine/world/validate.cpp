@@ -219,8 +219,6 @@ void validate(const Mesh& mesh, const BodySettings& body) {
     mesh::require_positive(mesh, object);
     require_apart(mesh, object);
     const bool rigid = body.dynamics == BodyDynamics::rigid;
-    if (rigid && !body.materials.empty())
-        refuse(object, "materials", std::to_string(body.materials.size()) + " of a rigid body", "one material");
     if (rigid && body.self_contact) refuse(object, "self_contact", "true of a rigid body", "false");
     require_labels(mesh, body.materials, object);
     require_finite(object, "position", body.position);

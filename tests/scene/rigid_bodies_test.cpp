@@ -248,9 +248,48 @@ TEST_CASE("what a rigid body cannot have is refused by name", "[scene][rigid]") 
     CHECK_THROWS_WITH(
         world.add_body(cube, {.material = material, .self_contact = true, .dynamics = BodyDynamics::rigid}),
         Catch::Matchers::Contains("self_contact"));
-    CHECK_THROWS_WITH(
-        world.add_body(cube, {.material = material, .materials = {{0, material}}, .dynamics = BodyDynamics::rigid}),
-        Catch::Matchers::Contains("one material"));
+}
+
+TEST_CASE("a rigid body of several materials has the mass and the inertia of all", "[scene][rigid]") {
+    // two cubes side by side in one mesh
+    constexpr Real side = 0.1, light = 1000, heavy = 3000, turn = 2;
+    Mesh bar = mesh::box({2 * side, side, side}, {4, 2, 2});
+    for (const auto& tetrahedron : bar.tetrahedra) {
+        Real along = 0;
+        for (const Index node : tetrahedron) along += bar.nodes[static_cast<std::size_t>(node)].x() / 4;
+        bar.label.push_back(along > 0 ? 1 : 0);
+    }
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    const auto one = world.add_material({.density = light}), other = world.add_material({.density = heavy});
+    const auto body = world.add_body(bar, {.material = one,
+                                           .materials = {{1, other}},
+                                           .angular_velocity = {0, 0, turn},
+                                           .dynamics = BodyDynamics::rigid});
+    const auto energy_of = [&](Real of_light, Real of_heavy) {
+        const Real volume = side * side * side, m1 = of_light * volume, m2 = of_heavy * volume;
+        const Real reduced = m1 * m2 / (m1 + m2);
+        return ((m1 + m2) * side * side / 6 + reduced * side * side) * turn * turn / 2;
+    };
+    CHECK(world.report().energy.kinetic == Approx(energy_of(light, heavy)).epsilon(1e-12));
+    CHECK(world.report().momentum.norm() < 1e-14);
+    const Vec3 center(side / 2 * (heavy - light) / (heavy + light), 0, 0);
+    for (std::size_t n = 0; n < bar.nodes.size(); ++n)
+        CHECK((world.velocities(body)[n] - Vec3(0, 0, turn).cross(bar.nodes[n] - center)).norm() < 1e-15);
+
+    const TemporaryFolder folder;
+    world.save(folder.path() / "world");
+    World loaded = World::load(folder.path() / "world");
+    World copy = world.clone();
+    for (World* each : {&world, &loaded, &copy}) {
+        // of one of them alone; it goes on with the velocity that it has
+        each->set_material(other, {.density = 5 * light});
+        CHECK(each->report().energy.kinetic == Approx(energy_of(light, 5 * light)).epsilon(1e-12));
+        REQUIRE(each->advance(0.1).ok());
+    }
+    CHECK(loaded.state_hash() == world.state_hash());
+    CHECK(copy.state_hash() == world.state_hash());
 }
 
 TEST_CASE("a rigid body comes to rest, sleeps, and wakes when it is hit", "[scene][rigid]") {

@@ -41,8 +41,8 @@ struct MaterialSettings {
 };
 
 /// How a body moves. explicit_elastic: it deforms, in steps that its stiffest element stands. rigid: as a whole, with
-/// the mass and the inertia of its mesh. Of its material only density, friction and restitution count, and it sets no
-/// step; it has one material, cannot be attached and does not touch itself (docs/methods/rigid_bodies.md).
+/// the mass and the inertia of its mesh. Of its materials only density, friction and restitution count, and it sets no
+/// step; it cannot be attached and does not touch itself (docs/methods/rigid_bodies.md).
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid };
 template <>
 struct EnumNames<BodyDynamics> {

@@ -51,34 +51,22 @@ std::vector<std::size_t> bodies_of(const Model& model, Index material) {
     std::vector<std::size_t> found;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         if (model.bodies.kind[b] != BodyKind::deformable) continue;
-        bool has = model.bodies.material[b] == material;
-        for (Index e = model.bodies.blocks[b].begin; e < model.bodies.blocks[b].end && !has; ++e)
-            has = model.elements.material[static_cast<std::size_t>(e)] == material;
-        if (has) found.push_back(b);
+        const std::vector<Index>& of_tetrahedra = model.body_records[b].tetrahedron_material;
+        if (model.bodies.material[b] == material ||
+            std::find(of_tetrahedra.begin(), of_tetrahedra.end(), material) != of_tetrahedra.end())
+            found.push_back(b);
     }
     return found;
 }
 
-/// Which material each tetrahedron has: that of the elements that cover it.
-std::vector<Index> materials_of_tetrahedra(const Model& model, std::size_t body) {
-    std::vector<Index> material(model.body_records[body].tetrahedra.size(), model.bodies.material[body]);
-    const Ragged<Index>& covered = model.body_records[body].element_tetrahedra;
-    const auto first = static_cast<std::size_t>(model.bodies.blocks[body].begin);
-    for (std::size_t place = 0; place < covered.size(); ++place)
-        for (const Index t : covered[place])
-            material[static_cast<std::size_t>(t)] = model.elements.material[first + place / element_lanes];
-    return material;
-}
-
 void restart(WorldState& world, std::size_t body) {
     Model& model = world.model;
-    const std::vector<Index> material = materials_of_tetrahedra(model, body);
     const BodyRecord& record = model.body_records[body];
     const Range nodes = model.bodies.nodes[body];
     NewBody as_new;
     as_new.element = record.element;
     as_new.material = model.bodies.material[body];
-    as_new.tetrahedron_material = material;
+    as_new.tetrahedron_material = record.tetrahedron_material;
     as_new.nodes = model.nodes.rest_position.span().subspan(static_cast<std::size_t>(nodes.begin),
                                                             static_cast<std::size_t>(nodes.size()));
     as_new.tetrahedra = record.tetrahedra;

@@ -14,11 +14,6 @@ namespace skerry {
 
 namespace {
 
-/// Row of the material of a tetrahedron.
-Index material_of(const NewBody& body, std::size_t tetrahedron) {
-    return body.tetrahedron_material.empty() ? body.material : body.tetrahedron_material[tetrahedron];
-}
-
 /// m/s, of waves along a thin bar, sqrt(E / rho). Of several materials with their mean density and a modulus halfway,
 /// by factors, between the bounds of all mixtures: one beside the other (Voigt) and one behind the other (Reuss).
 Real bar_speed(const Model& model, const NewBody& body, std::span<const MaterialZone> zones) {
@@ -57,7 +52,7 @@ void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Vec
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
     std::vector<MaterialZone> zones;
     for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
-        const Index material = material_of(body, t);
+        const Index material = body.material_of(t);
         auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
         if (zone == zones.end()) {
             const Real poisson_ratio = model.materials.poisson_ratio[static_cast<std::size_t>(material)];
@@ -69,12 +64,16 @@ std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
     return zones;
 }
 
-void set_masses(Model& model, const NewBody& body, Range range) {
-    NodeTable& nodes = model.nodes;
+std::vector<Real> densities(const Model& model, const NewBody& body) {
     std::vector<Real> density(body.tetrahedra.size());
     for (std::size_t t = 0; t < density.size(); ++t)
-        density[t] = model.materials.constants[static_cast<std::size_t>(material_of(body, t))].density;
-    add_lumped_mass(body.tetrahedra, body.nodes, density, rows_of(nodes.mass, range));
+        density[t] = model.materials.constants[static_cast<std::size_t>(body.material_of(t))].density;
+    return density;
+}
+
+void set_masses(Model& model, const NewBody& body, Range range) {
+    NodeTable& nodes = model.nodes;
+    add_lumped_mass(body.tetrahedra, body.nodes, densities(model, body), rows_of(nodes.mass, range));
     for (auto n = static_cast<std::size_t>(range.begin); n < static_cast<std::size_t>(range.end); ++n)
         nodes.inverse_mass[n] = nodes.mass[n] > 0 ? 1 / nodes.mass[n] : 0;
 }

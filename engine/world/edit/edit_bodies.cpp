@@ -201,11 +201,13 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_looked_at);
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(model.elements, blocks);
-    model.body_records.push_back({.name = {},
-                                  .element = kind_of(zones),
-                                  .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
-                                  .surface = outline(body),
-                                  .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
+    model.body_records.push_back(
+        {.name = {},
+         .element = kind_of(zones),
+         .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
+         .surface = outline(body),
+         .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},
+         .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
     model.settled = false;
     model.append_outline(b);
     bodies.mean_edge[b] = mean_edge_length(model, bodies.edges[b]);

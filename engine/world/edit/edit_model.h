@@ -31,9 +31,15 @@ struct NewBody {
     Vec3 velocity, angular_velocity;
 
     bool is_rigid() const { return dynamics == BodyDynamics::rigid; }
+    Index material_of(std::size_t of_tetrahedron) const {
+        return tetrahedron_material.empty() ? material : tetrahedron_material[of_tetrahedron];
+    }
 };
 
 // edit_bodies.cpp
+/// kg/m^3, by tetrahedron.
+std::vector<Real> densities(const Model& model, const NewBody& body);
+
 /// Appends a surface with or without tetrahedra as a body; returns its row. `stiffness_sum` is memory to work in, by
 /// node: kept from body to body, so that each costs what it has itself.
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body);

@@ -48,11 +48,6 @@ MassProperties mass_properties(const NewBody& body, std::span<const Real> densit
     return found;
 }
 
-std::vector<Real> densities(const Model& model, const NewBody& body) {
-    return std::vector<Real>(body.tetrahedra.size(),
-                             model.materials.constants[static_cast<std::size_t>(body.material)].density);
-}
-
 void write_masses(const MassProperties& found, std::size_t r, RigidBodyTable& table) {
     table.mass[r] = found.mass;
     table.moments[r] = found.moments;

@@ -41,6 +41,7 @@ void list_records(SavedRows& saved, auto&& archive) {
     archive.column("/records/body_element", saved.body_element);
     archive.column("/records/body_settled", saved.body_settled);
     archive.column("/records/collider_settled", saved.collider_settled);
+    list_ragged("/records/tetrahedron_material", saved.tetrahedron_material, archive);
     list_ragged("/records/body_name", saved.body_name, archive);
     list_ragged("/records/collider_name", saved.collider_name, archive);
     archive.column("/records/shape_kind", saved.shape_kind);

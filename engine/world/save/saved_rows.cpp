@@ -221,6 +221,7 @@ SavedRows rows_to_save(const WorldState& world) {
     for (const BodyRecord& record : model.body_records) {
         saved.body_element.push_back(record.element);
         saved.body_settled.push_back(record.settled);
+        append(std::span<const Index>(record.tetrahedron_material), saved.tetrahedron_material);
         append_text(record.name, saved.body_name);
     }
     for (const ColliderRecord& record : model.collider_records) {
@@ -260,6 +261,8 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
     expect_ragged(file, "/meshes/covered_item", meshes.covered_item, count, "meshes");
     expect_rows(file, "/records/body_element", saved.body_element.size(), bodies, "bodies");
     expect_rows(file, "/records/body_settled", saved.body_settled.size(), bodies, "bodies");
+    expect_ragged(file, "/records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
+    expect_rows_of(file, "/records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
     expect_ragged(file, "/records/body_name", saved.body_name, bodies, "bodies");
     if (saved.world == 0) file.complain("/handles/world", "0", "the number of a world");
     model.set_world(saved.world);
@@ -286,6 +289,11 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         record.settled = saved.body_settled[b] != 0;
         record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
         record.surface.assign(parts.surface.begin(), parts.surface.end());
+        const std::span<const Index> materials = saved.tetrahedron_material[b];
+        if (!materials.empty() && materials.size() != parts.tetrahedra.size())
+            file.complain("/records/tetrahedron_material", std::to_string(materials.size()) + " of " + body,
+                          "none, or one for each of " + std::to_string(parts.tetrahedra.size()) + " tetrahedra");
+        record.tetrahedron_material.assign(materials.begin(), materials.end());
         for (const Index at : parts.covered_offset) record.element_tetrahedra.offset.push_back(at);
         for (const Index t : parts.covered_item) record.element_tetrahedra.item.push_back(t);
     }

@@ -37,6 +37,7 @@ struct SavedRows {
     std::uint32_t world = 0;  // the number that handles bear
     Column<ElementKind> body_element;
     Column<std::uint8_t> body_settled, collider_settled;
+    Ragged<Index> tetrahedron_material;             // of BodyRecord
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // the alternative of Shape, and
     Column<std::array<Real, 6>> shape_size;         // m, its members in their order, then zeros

@@ -42,6 +42,7 @@ struct BodyRecord {
     ElementKind element;                           // never `smoothed`: one of the two that it stands for
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
+    std::vector<Index> tetrahedron_material;       // rows of MaterialTable; empty: all have that of the body
     // the tetrahedra that the element at each place of its blocks covers; none in a lane that is left over
     Ragged<Index> element_tetrahedra;
     bool settled = false;  // it was looked at for overlaps
