@@ -2,6 +2,7 @@
 #include <iostream>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
@@ -164,14 +165,19 @@ struct BodyKindReport {
     std::size_t count = 0;
     std::size_t body = 0;  // of ScenePlan::bodies: the first
     MeshReport mesh;
-    StepBound bound;
+    BodyDynamics dynamics;
+    StepBound bound;  // of a rigid one: none, and a step without end
+
+    bool is_rigid() const { return dynamics == BodyDynamics::rigid; }
 };
 
+/// The body as one that deforms, whatever it is: what its mesh would allow.
 StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
     StepCase of{.settings = plan.settings,
                 .material = plan.materials[body.material].second,
                 .body = body.settings,
                 .labelled = {}};
+    of.body.dynamics = BodyDynamics::explicit_elastic;
     for (const auto& [label, material] : body.materials) of.labelled.emplace(label, plan.materials[material].second);
     return of;
 }
@@ -198,15 +204,24 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
 
 /// Each kind of body in a world of its own: that is the step it would allow.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details) {
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> row;
+    std::map<std::tuple<std::size_t, std::size_t, BodyDynamics>, std::size_t> row;
     std::vector<BodyKindReport> kinds;
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
-        const auto [at, is_new] = row.try_emplace({body.mesh, body.material}, kinds.size());
+        const BodyDynamics dynamics = body.settings.dynamics;
+        const auto [at, is_new] = row.try_emplace({body.mesh, body.material, dynamics}, kinds.size());
         if (is_new) {
             const MeshReport mesh = inspect(plan.meshes[body.mesh]);
-            kinds.push_back({body.settings.name, count_materials(plan, body, mesh), 0, b, mesh,
-                             step_bound(plan.meshes[body.mesh], step_case(plan, body), details)});
+            kinds.push_back(
+                {body.settings.name,
+                 count_materials(plan, body, mesh),
+                 0,
+                 b,
+                 mesh,
+                 dynamics,
+                 {.step = std::numeric_limits<Real>::infinity(), .element = {}, .worst = {}, .without = {}}});
+            if (!kinds.back().is_rigid())
+                kinds.back().bound = step_bound(plan.meshes[body.mesh], step_case(plan, body), details);
         }
         ++kinds[at->second].count;
     }
@@ -277,6 +292,7 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
         for (const std::string& problem : problems_of(kind.mesh))
             problems.push_back("body \"" + kind.first_name + "\": " + problem);
     std::vector<BodyKindReport> by_step = kinds;
+    std::erase_if(by_step, [](const BodyKindReport& kind) { return kind.is_rigid(); });
     std::sort(by_step.begin(), by_step.end(), [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
     if (by_step.size() > 1 && by_step[1].bound.step > expensive_step_ratio * by_step[0].bound.step)
         problems.push_back("body \"" + by_step[0].first_name + "\" makes all steps " +
@@ -351,13 +367,16 @@ int inspect_scene(const InspectOptions& options) {
         for (const BodyKindReport& kind : kinds) {
             Json materials = Json::object();
             for (const auto& [material, tetrahedra] : kind.materials) materials[material] = tetrahedra;
-            bodies.push_back({{"name", kind.first_name},
-                              {"count", kind.count},
-                              {"materials", materials},
-                              {"stable_dt", kind.bound.step},
-                              {"element", name_of(kind.bound.element)},
-                              {"mesh", mesh_json(kind.mesh)},
-                              {"step_bound", bound_json(kind.bound)}});
+            Json body = {{"name", kind.first_name},
+                         {"count", kind.count},
+                         {"dynamics", name_of(kind.dynamics)},
+                         {"materials", materials},
+                         {"mesh", mesh_json(kind.mesh)}};
+            if (!kind.is_rigid())
+                body.update({{"stable_dt", kind.bound.step},
+                             {"element", name_of(kind.bound.element)},
+                             {"step_bound", bound_json(kind.bound)}});
+            bodies.push_back(body);
         }
         const Json json = {{"schema", "skerry.scene_facts/1"},
                            {"scene", scene.name},
@@ -388,7 +407,8 @@ int inspect_scene(const InspectOptions& options) {
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
-              << "  step          " << with_unit(stable_step, "s") << " (" << report.stable_step_body << "), "
+              << "  step          " << with_unit(stable_step, "s") << " ("
+              << (report.stable_step_body.empty() ? "all bodies are rigid" : report.stable_step_body) << "), "
               << count_text(steps) << " steps for " << short_number(scene.seconds) << " s\n"
               << "  cost          about " << duration_text(cost.seconds_per_second)
               << " a simulated second, as it starts; " << duration_text(cost.seconds_per_second * scene.seconds)
@@ -397,10 +417,12 @@ int inspect_scene(const InspectOptions& options) {
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
-                  << grouped(kind.mesh.tetrahedra) << " tetrahedra (" << name_of(kind.bound.element) << "), mean edge "
-                  << with_unit(kind.mesh.mean_edge, "m") << ", stable step " << with_unit(kind.bound.step, "s") << "; "
+                  << grouped(kind.mesh.tetrahedra) << " tetrahedra ("
+                  << (kind.is_rigid() ? "rigid" : name_of(kind.bound.element)) << "), mean edge "
+                  << with_unit(kind.mesh.mean_edge, "m")
+                  << (kind.is_rigid() ? "" : ", stable step " + with_unit(kind.bound.step, "s")) << "; "
                   << materials_text(kind) << "\n";
-        print_bound(kind.bound, "                ");
+        if (!kind.is_rigid()) print_bound(kind.bound, "                ");
     }
     print_problems(problems);
     return exit_ok;

@@ -142,7 +142,9 @@ std::string summary_of(const RunResult& result) {
         text +=
             line("steps",
                  grouped(r.steps) + " of " + with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
-                     ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")" +
+                     (r.stable_step_body.empty()
+                          ? std::string()
+                          : ", stable up to " + with_unit(r.stable_step, "s") + " (" + r.stable_step_body + ")") +
                      (r.shortened > 0 ? ", shortened " + grouped(r.shortened) + " times" : "") +
                      (r.retried > 0 ? ", tried again " + grouped(r.retried) + " times for crossings" : "") +
                      (r.limited > 0 ? ", " + grouped(r.limited) + " of them shorter than step_size, which is too long"

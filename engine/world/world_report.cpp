@@ -143,7 +143,7 @@ WorldReport World::report() const {
     report.cluster_nodes = world.model.clusters.nodes.item.size();
     for (const ElementLane& modulus : world.model.elements.implicit_modulus)
         for (const Real m : modulus.lane) report.implicit_elements += m > 0;
-    report.stable_step = skerry::stable_step(world.model.bodies, &stiffest);
+    report.stable_step = told_step(world.model, &stiffest);
     if (stiffest != no_index)
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;
     report.start_overlaps = world.record.start_overlaps;

@@ -91,7 +91,8 @@ public:
     void watch_steps(std::function<void(const StepReport&)> look);
     Real time() const;
     const Settings& settings() const;
-    /// The step that advance would take at most, s.
+    /// The step that the stiffest body stands, s: advance takes step_safety times it at most. Where all are rigid, the
+    /// one that it takes.
     Real stable_step() const;
 
     // State of a body. Spans stay valid until bodies are added or removed; positions and velocities also change with

@@ -12,6 +12,14 @@
 
 namespace skerry {
 
+namespace {
+
+// s, where rigid bodies are alone and nobody says how exact: contacts that close within a step, and those of faces that
+// turn, are as exact as the step is short
+constexpr Real step_of_rigid_bodies = 1.0 / 120;
+
+}  // namespace
+
 Real stable_step(const BodyTable& bodies, Index* body) {
     Real smallest = std::numeric_limits<Real>::infinity();
     for (std::size_t b = 0; b < bodies.slot.size(); ++b)
@@ -22,10 +30,12 @@ Real stable_step(const BodyTable& bodies, Index* body) {
     return smallest;
 }
 
+Real told_step(const Model& model, Index* body) {
+    const Real stable = stable_step(model.bodies, body);
+    return model.rigid_bodies.size() > 0 && std::isinf(stable) ? trusted_step(model) : stable;
+}
+
 Real trusted_step(const Model& model, Index* body) {
-    // s, where rigid bodies are alone and nobody says how exact: contacts that close within a step, and those of faces
-    // that turn, are as exact as the step is short
-    constexpr Real step_of_rigid_bodies = 1.0 / 120;
     const Real stable = stable_step(model.bodies, body) * model.settings.step_safety;
     const Real asked = model.rigid_bodies.size() > 0 ? step_of_rigid_bodies : stable;
     return std::min(stable, model.settings.step_size.value_or(asked));

@@ -16,6 +16,8 @@ void count_step(const StepScratch& scratch, RunCounters& counters);
 // stable_steps.cpp
 /// The largest step that the stiffest body stands, as last watched, and which body (row) that is.
 Real stable_step(const BodyTable& bodies, Index* body = nullptr);
+/// The same, for users: where all bodies are rigid, and stand any step, the one that is taken.
+Real told_step(const Model& model, Index* body = nullptr);
 /// The longest step that is taken: that of the settings, or the stable step where that is shorter.
 Real trusted_step(const Model& model, Index* body = nullptr);
 /// Looks at the stable step of one body again, s.

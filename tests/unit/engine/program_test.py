@@ -211,6 +211,22 @@ class ProgramTest(ProgramCase):
         self.assertAlmostEqual(scene["body_kinds"][0]["stable_dt"], scene["stable_dt"], delta=1e-9 * scene["stable_dt"])
         self.assertIn("stable step", self.skerry("inspect", self.scene).stdout)
 
+    def test_inspect_knows_rigid_bodies(self):
+        rigid = {**SCENE["bodies"][0], "name": "stone", "dynamics": "rigid", "position": [0, 0, 3]}
+        mixed = self.write("both.json", {**SCENE, "bodies": SCENE["bodies"] + [rigid]})
+        both = json.loads(self.skerry("inspect", mixed, "--json").stdout)
+        self.assertEqual([kind["dynamics"] for kind in both["body_kinds"]], ["explicit", "rigid"])
+        self.assertEqual(both["stable_dt"], both["body_kinds"][0]["stable_dt"])
+        self.assertNotIn("stable_dt", both["body_kinds"][1])
+        alone = self.write("rigid.json", {**SCENE, "probes": [], "bodies": [rigid]})
+        found = json.loads(self.skerry("inspect", alone, "--json").stdout)
+        self.assertAlmostEqual(found["stable_dt"], 1 / 120)
+        self.assertGreaterEqual(found["steps"], 120 * SCENE["seconds"])
+        said = self.skerry("inspect", alone).stdout
+        self.assertIn("8.33 ms (all bodies are rigid)", said)
+        self.assertNotIn("inf", said.lower().replace("info", ""))
+        self.assertNotIn("stable up to", self.skerry("run", alone).stdout)
+
     def test_inspect_says_what_another_value_would_do(self):
         written = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
         place = f"materials.{SCENE['bodies'][0]['material']}.E"
