@@ -1,0 +1,170 @@
+#include "systems/dynamics/implicit/stiff_body.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace skerry {
+
+namespace {
+
+Mat3 crossing(const Vec3& a) {
+    Mat3 matrix;
+    matrix << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+    return matrix;
+}
+
+std::span<const Index> nodes_of_element(const ElementList& elements, std::size_t e) {
+    return std::span(elements.node).subspan(elements.first_node[e], elements.nodes_of(e));
+}
+
+std::vector<std::vector<Index>> neighbours_of(const ElementList& elements, std::size_t nodes) {
+    std::vector<std::vector<Index>> neighbours(nodes);
+    for (std::size_t e = 0; e < elements.size(); ++e)
+        for (const Index a : nodes_of_element(elements, e))
+            for (const Index b : nodes_of_element(elements, e))
+                if (a != b) neighbours[static_cast<std::size_t>(a)].push_back(b);
+    for (std::vector<Index>& of_node : neighbours) {
+        std::ranges::sort(of_node);
+        of_node.erase(std::ranges::unique(of_node).begin(), of_node.end());
+    }
+    return neighbours;
+}
+
+/// Zeros where nodes share elements, and on the diagonal.
+BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> place) {
+    std::vector<std::size_t> node_at(place.size());
+    for (std::size_t n = 0; n < place.size(); ++n) node_at[static_cast<std::size_t>(place[n])] = n;
+    BlockRows rows;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+        const std::size_t first = rows.column.size();
+        for (const Index other : neighbours[node_at[k]])
+            if (const Index column = place[static_cast<std::size_t>(other)]; column < static_cast<Index>(k))
+                rows.column.push_back(column);
+        std::sort(rows.column.begin() + static_cast<std::ptrdiff_t>(first), rows.column.end());
+        rows.column.push_back(static_cast<Index>(k));
+        rows.offset.push_back(static_cast<Index>(rows.column.size()));
+    }
+    rows.block.assign(rows.column.size(), Mat3::Zero());
+    return rows;
+}
+
+Mat3& block_at(BlockRows& rows, Index row, Index column) {
+    const auto first = rows.column.begin() + rows.offset[static_cast<std::size_t>(row)],
+               last = rows.column.begin() + rows.offset[static_cast<std::size_t>(row) + 1];
+    return rows.block[static_cast<std::size_t>(std::lower_bound(first, last, column) - rows.column.begin())];
+}
+
+}  // namespace
+
+Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec3& gradient_k, const Vec3& gradient_l) {
+    const Real lambda = material.lame_lambda, mu = material.shear_modulus;
+    return volume * (lambda * gradient_k * gradient_l.transpose() +
+                     mu * (gradient_k.dot(gradient_l) * Mat3::Identity() + gradient_l * gradient_k.transpose()));
+}
+
+StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConstants> constants,
+                     std::span<const Real> mass, std::span<const Vec3> rest_position) {
+    const std::vector<std::vector<Index>> neighbours = neighbours_of(elements, mass.size());
+    place_ = elimination_places(neighbours);
+    stiffness_ = pattern_of(neighbours, place_);
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+        const MaterialConstants material =
+            part_of(constants[static_cast<std::size_t>(elements.material[e])], elements.part[e]);
+        const std::span<const Index> nodes = nodes_of_element(elements, e);
+        const auto gradients = std::span(elements.gradient).subspan(elements.first_node[e], nodes.size());
+        for (std::size_t k = 0; k < nodes.size(); ++k)
+            for (std::size_t l = 0; l < nodes.size(); ++l) {
+                const Index row = place_[static_cast<std::size_t>(nodes[k])],
+                            column = place_[static_cast<std::size_t>(nodes[l])];
+                if (column <= row)
+                    block_at(stiffness_, row, column) +=
+                        element_stiffness(material, elements.volume[e], gradients[k], gradients[l]);
+            }
+    }
+    mass_.resize(mass.size());
+    arm_.resize(mass.size());
+    Vec3 center = Vec3::Zero();
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+        total_mass_ += mass[n];
+        center += mass[n] * rest_position[n];
+    }
+    center /= total_mass_;
+    Mat3 inertia = Mat3::Zero();
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+        const auto k = static_cast<std::size_t>(place_[n]);
+        mass_[k] = mass[n];
+        arm_[k] = rest_position[n] - center;
+        inertia += mass[n] * (arm_[k].squaredNorm() * Mat3::Identity() - arm_[k] * arm_[k].transpose());
+    }
+    inverse_inertia_ = inertia.inverse();
+    matrix_ = stiffness_;
+    factor_ = BlockCholesky(stiffness_);
+    slot_of_.assign(mass.size(), no_index);
+}
+
+bool StiffBody::prepare(Real inertia, Real stiffness) {
+    if (inertia == inertia_factor_ && stiffness == stiffness_factor_) return true;
+    inertia_factor_ = inertia;
+    stiffness_factor_ = stiffness;
+    for (std::size_t i = 0; i < matrix_.block.size(); ++i) matrix_.block[i] = stiffness * stiffness_.block[i];
+    for (std::size_t k = 0; k < size(); ++k)
+        matrix_.block[static_cast<std::size_t>(matrix_.offset[k + 1]) - 1].diagonal().array() += inertia * mass_[k];
+    std::ranges::fill(slot_of_, no_index);
+    std::ranges::fill(node_in_, no_index);
+    std::ranges::fill(used_at_, 0);
+    if (factor_.factor(matrix_)) return true;
+    inertia_factor_ = stiffness_factor_ = 0;
+    return false;
+}
+
+template <class X>
+void StiffBody::take_rigid_part(std::span<X> impulse) const {
+    X sum = X::Zero(), moment = X::Zero();
+    for (std::size_t k = 0; k < impulse.size(); ++k) {
+        sum += impulse[k];
+        moment += crossing(arm_[k]) * impulse[k];
+    }
+    const X velocity = sum / total_mass_, spin = inverse_inertia_ * moment;
+    for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] -= mass_[k] * (velocity - crossing(arm_[k]) * spin);
+}
+
+template <class X>
+void StiffBody::respond_to(std::span<X> impulse) const {
+    take_rigid_part(impulse);
+    factor_.solve(impulse);
+    // rounding alone, but of stiff bodies, whose rigid response is far above the elastic one
+    for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] *= mass_[k];
+    take_rigid_part(impulse);
+    for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] /= mass_[k];
+}
+
+void StiffBody::respond(std::span<Vec3> impulse) const {
+    respond_to(impulse);
+}
+
+std::span<const Mat3> StiffBody::column(std::size_t node) {
+    Index& slot = slot_of_[node];
+    ++uses_;
+    if (slot == no_index) {
+        const std::size_t most = std::max<std::size_t>(1, column_memory / (size() * sizeof(Mat3)));
+        if (node_in_.size() < std::min(most, size())) {
+            slot = static_cast<Index>(node_in_.size());
+            node_in_.push_back(no_index);
+            used_at_.push_back(0);
+            columns_.resize(columns_.size() + size());
+        } else {
+            slot = static_cast<Index>(std::ranges::min_element(used_at_) - used_at_.begin());
+        }
+        const auto s = static_cast<std::size_t>(slot);
+        if (node_in_[s] != no_index) slot_of_[static_cast<std::size_t>(node_in_[s])] = no_index;
+        node_in_[s] = static_cast<Index>(node);
+        const auto values = std::span(columns_).subspan(s * size(), size());
+        std::ranges::fill(values, Mat3::Zero());
+        values[static_cast<std::size_t>(place_[node])].setIdentity();
+        respond_to(values);
+    }
+    used_at_[static_cast<std::size_t>(slot)] = uses_;
+    return std::span<const Mat3>(columns_).subspan(static_cast<std::size_t>(slot) * size(), size());
+}
+
+}  // namespace skerry

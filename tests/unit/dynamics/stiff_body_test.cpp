@@ -1,0 +1,150 @@
+// The elasticity of implicit bodies against the forces of explicit ones, and against dense algebra
+// (docs/methods/implicit_bodies.md 2, 3).
+#include "systems/dynamics/implicit/stiff_body.h"
+
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "tests/support/elastic_body.h"
+#include "tests/support/element_kinds.h"
+#include "tests/support/random.h"
+
+using namespace skerry;
+using test::ElasticBody;
+using test::jittered_box;
+
+namespace {
+
+MaterialConstants stiff_rubber() {
+    return material_constants(MaterialModel::corotational, 1e6, 0.3, 1100);
+}
+
+StiffBody stiff_body_of(const ElasticBody& body) {
+    return StiffBody(body.list, body.constants.span(), body.mass, body.position);
+}
+
+std::vector<Vec3> random_vectors(std::size_t count, Real size, unsigned seed) {
+    test::Random random(seed);
+    std::vector<Vec3> vectors(count);
+    for (Vec3& v : vectors) v = size * random.vector();
+    return vectors;
+}
+
+/// By place, from by node.
+std::vector<Vec3> in_places(const StiffBody& stiff, const std::vector<Vec3>& by_node) {
+    std::vector<Vec3> placed(by_node.size());
+    for (std::size_t n = 0; n < by_node.size(); ++n) placed[static_cast<std::size_t>(stiff.place(n))] = by_node[n];
+    return placed;
+}
+
+/// A = inertia M + stiffness K by columns of K.
+Eigen::MatrixXd dense_matrix(const StiffBody& stiff, Real inertia, Real stiffness) {
+    const std::size_t n = stiff.size();
+    Eigen::MatrixXd matrix(3 * n, 3 * n);
+    for (std::size_t c = 0; c < 3 * n; ++c) {
+        std::vector<Vec3> unit(n, Vec3::Zero()), force(n);
+        unit[c / 3][static_cast<Eigen::Index>(c % 3)] = 1;
+        stiff.elastic_forces(unit, force);
+        for (std::size_t k = 0; k < n; ++k)
+            matrix.block<3, 1>(static_cast<Eigen::Index>(3 * k), static_cast<Eigen::Index>(c)) = stiffness * force[k];
+        matrix(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(c)) += inertia * stiff.mass(c / 3);
+    }
+    return matrix;
+}
+
+}  // namespace
+
+TEST_CASE("the stiffness of an implicit body is that of the forces of its elements", "[dynamics][implicit]") {
+    const auto kind = GENERATE(from_range(std::begin(test::element_kinds), std::end(test::element_kinds)));
+    const auto executor = make_executor(Backend::serial, 1);
+    ElasticBody body(jittered_box({2, 3, 2}, 0.1, 0.2, 1), stiff_rubber(), Mat3::Identity(), kind);
+    const StiffBody stiff = stiff_body_of(body);
+    const std::vector<Vec3> u = random_vectors(body.position.size(), 1e-7, 3);
+    std::vector<Vec3> force(u.size());
+    stiff.elastic_forces(in_places(stiff, u), force);
+
+    const std::vector<Vec3> rest = body.position;
+    const auto forces_at = [&](Real sign) {
+        for (std::size_t n = 0; n < u.size(); ++n) body.position[n] = rest[n] + sign * u[n];
+        body.compute_forces(*executor);
+        return body.force;
+    };
+    const std::vector<Vec3> pulled = forces_at(1), pushed = forces_at(-1);
+    Real size = 0, difference = 0;
+    for (std::size_t n = 0; n < u.size(); ++n) {
+        const Vec3 expected = (pushed[n] - pulled[n]) / 2, found = force[static_cast<std::size_t>(stiff.place(n))];
+        size += expected.squaredNorm();
+        difference += (found - expected).squaredNorm();
+    }
+    CHECK(std::sqrt(difference / size) < 1e-6);
+}
+
+TEST_CASE("an implicit body answers impulses by A^-1, without rigid motion", "[dynamics][implicit]") {
+    const ElasticBody body(jittered_box({3, 2, 2}, 0.1, 0.2, 2), stiff_rubber());
+    StiffBody stiff = stiff_body_of(body);
+    const auto h = GENERATE(1e-4, 1e-2);
+    REQUIRE(stiff.prepare(1.2, h * h));
+    const Eigen::MatrixXd matrix = dense_matrix(stiff, 1.2, h * h);
+    const std::size_t n = stiff.size();
+    std::vector<Vec3> impulse = random_vectors(n, 1, 5);
+    // momentum and moment out of it first, so that A^-1 gives no rigid motion
+    std::vector<Vec3> velocity = impulse;
+    stiff.respond(velocity);
+    Eigen::VectorXd elastic(3 * n);
+    for (std::size_t k = 0; k < n; ++k) elastic.segment<3>(static_cast<Eigen::Index>(3 * k)) = velocity[k];
+    const Eigen::VectorXd given = matrix * elastic;  // what of the impulse is elastic
+    Vec3 momentum = Vec3::Zero(), sum = Vec3::Zero(), moment = Vec3::Zero();
+    const std::vector<Vec3> position = in_places(stiff, body.position);
+    Vec3 center = Vec3::Zero();
+    Real mass = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        momentum += stiff.mass(k) * velocity[k];
+        sum += given.segment<3>(static_cast<Eigen::Index>(3 * k));
+        moment += position[k].cross(given.segment<3>(static_cast<Eigen::Index>(3 * k)));
+        center += stiff.mass(k) * position[k];
+        mass += stiff.mass(k);
+    }
+    center /= mass;
+    CHECK(momentum.norm() < 1e-12);
+    CHECK(sum.norm() < 1e-11);
+    CHECK(moment.norm() < 1e-11);
+    // the rest of the impulse is a rigid motion of the masses
+    Vec3 left = Vec3::Zero();
+    std::vector<Vec3> rest(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        rest[k] = (impulse[k] - given.segment<3>(static_cast<Eigen::Index>(3 * k))) / stiff.mass(k);
+        left += stiff.mass(k) / mass * rest[k];
+    }
+    for (std::size_t k = 1; k < n; ++k) {
+        const Vec3 arm = position[k] - position[0];
+        CHECK(std::abs(arm.dot(rest[k] - rest[0])) < 1e-9 * arm.norm() * left.norm());
+    }
+}
+
+TEST_CASE("columns are answers to unit impulses, kept or calculated again", "[dynamics][implicit]") {
+    const ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0.2, 2), stiff_rubber());
+    StiffBody stiff = stiff_body_of(body);
+    REQUIRE(stiff.prepare(1, 1e-4));
+    const std::vector<Mat3> column(stiff.column(7).begin(), stiff.column(7).end());
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        std::vector<Vec3> impulse(stiff.size(), Vec3::Zero());
+        impulse[static_cast<std::size_t>(stiff.place(7))][axis] = 1;
+        stiff.respond(impulse);
+        for (std::size_t k = 0; k < stiff.size(); ++k) CHECK((column[k].col(axis) - impulse[k]).norm() < 1e-15);
+    }
+    REQUIRE(stiff.prepare(1, 1e-6));
+    CHECK(!std::ranges::equal(stiff.column(7), column));
+    REQUIRE(stiff.prepare(1, 1e-4));
+    CHECK(std::ranges::equal(stiff.column(7), column));
+    // symmetric: what 7 gives 3 is what 3 gives 7
+    const Mat3 there = stiff.column(7)[static_cast<std::size_t>(stiff.place(3))],
+               back = stiff.column(3)[static_cast<std::size_t>(stiff.place(7))];
+    CHECK((there - back.transpose()).norm() < 1e-12 * there.norm());
+}
+
+TEST_CASE("a matrix that is not positive definite has no factor", "[dynamics][implicit]") {
+    const ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), stiff_rubber());
+    StiffBody stiff = stiff_body_of(body);
+    CHECK(!stiff.prepare(-1, 1e-4));
+    CHECK(stiff.prepare(1, 1e-4));
+}
