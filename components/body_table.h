@@ -41,7 +41,8 @@ struct BodyTable {
     Column<Range> blocks;         // of ElementBlockTable
     Column<Range> element_nodes;  // of ElementNodeTable
     Column<Range> tetrahedron_blocks;
-    Column<Range> rigid;  // of RigidBodyTable: one row, or none where the body deforms
+    Column<Range> rigid;     // of RigidBodyTable: one row of what moves by it, rigid or implicit, else none
+    Column<Range> implicit;  // of ImplicitNodeTable: a row a node of a body that moves implicitly, else none
     Column<Range> triangles;
     Column<Range> edges;
     Column<Range> vertices;
@@ -90,6 +91,7 @@ struct BodyTable {
         visit("element_nodes", element_nodes, ColumnRole::link);
         visit("tetrahedron_blocks", tetrahedron_blocks, ColumnRole::link);
         visit("rigid", rigid, ColumnRole::link);
+        visit("implicit", implicit, ColumnRole::link);
         visit("triangles", triangles, ColumnRole::derived);
         visit("edges", edges, ColumnRole::derived);
         visit("vertices", vertices, ColumnRole::derived);

@@ -87,6 +87,23 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
     }
 }
 
+/// Adds what contacts on one implicit body do to each other by what they deform.
+void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
+    GroupTouches find(contacts);
+    for (const StrainedPoints& body : contacts.strained) {
+        const std::size_t count = body.node.size();
+        const std::vector<Touch> touches = find.of(body.node);
+        for (const Touch& a : touches)
+            for (const Touch& b : touches) {
+                const Mat3& response =
+                    body.response[static_cast<std::size_t>(a.node) * count + static_cast<std::size_t>(b.node)];
+                parts.push_back({a.contact, b.contact,
+                                 a.weight * b.weight * frame[static_cast<std::size_t>(a.contact)].transpose() *
+                                     response * frame[static_cast<std::size_t>(b.contact)]});
+            }
+    }
+}
+
 /// Adds the blocks between contacts on nodes that move together.
 void add_coupled(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
@@ -137,6 +154,7 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
     }
     add_coupled(contacts, frame, parts);
     add_rigid(contacts, frame, parts);
+    add_strained(contacts, frame, parts);
     gather_blocks(std::move(parts), problem);
     return problem;
 }

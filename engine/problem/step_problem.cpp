@@ -64,6 +64,23 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
+/// The implicit bodies that contacts touch.
+std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
+    std::vector<StrainedPoints> bodies;
+    if (!contacts.implicit.any()) return bodies;
+    const ImplicitCoupling& coupling = *contacts.implicit.coupling;
+    for (std::size_t r = 0; r < coupling.nodes.size(); ++r) {
+        const std::span<const Index> nodes = coupling.nodes[r];
+        if (nodes.empty()) continue;
+        StrainedPoints points{{nodes.begin(), nodes.end()}, {}};
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            for (const PaddedMat3& block : coupling.row(r, static_cast<Index>(i)))
+                points.response.push_back(block.topRows<3>().transpose());
+        bodies.push_back(std::move(points));
+    }
+    return bodies;
+}
+
 }  // namespace
 
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h) {
@@ -94,6 +111,7 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     }
     lumped.coupled = coupled_nodes(step.contacts);
     lumped.rigid = rigid_points(step.contacts);
+    lumped.strained = strained_points(step.contacts);
     result.problem = assemble_problem(lumped, {});
     result.problem.description = description_of(step, settings);
     result.impulse = in_contact_frames(lumped, impulse);

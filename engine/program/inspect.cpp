@@ -166,9 +166,9 @@ struct BodyKindReport {
     std::size_t body = 0;  // of ScenePlan::bodies: the first
     MeshReport mesh;
     BodyDynamics dynamics;
-    StepBound bound;  // of a rigid one: none, and a step without end
+    StepBound bound;  // of one that sets no step: none, and a step without end
 
-    bool is_rigid() const { return dynamics == BodyDynamics::rigid; }
+    bool sets_step() const { return dynamics == BodyDynamics::explicit_elastic; }
 };
 
 /// The body as one that deforms, whatever it is: what its mesh would allow.
@@ -220,7 +220,7 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details) {
                  mesh,
                  dynamics,
                  {.step = std::numeric_limits<Real>::infinity(), .element = {}, .worst = {}, .without = {}}});
-            if (!kinds.back().is_rigid())
+            if (kinds.back().sets_step())
                 kinds.back().bound = step_bound(plan.meshes[body.mesh], step_case(plan, body), details);
         }
         ++kinds[at->second].count;
@@ -292,7 +292,7 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
         for (const std::string& problem : problems_of(kind.mesh))
             problems.push_back("body \"" + kind.first_name + "\": " + problem);
     std::vector<BodyKindReport> by_step = kinds;
-    std::erase_if(by_step, [](const BodyKindReport& kind) { return kind.is_rigid(); });
+    std::erase_if(by_step, [](const BodyKindReport& kind) { return !kind.sets_step(); });
     std::sort(by_step.begin(), by_step.end(), [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
     if (by_step.size() > 1 && by_step[1].bound.step > expensive_step_ratio * by_step[0].bound.step)
         problems.push_back("body \"" + by_step[0].first_name + "\" makes all steps " +
@@ -372,7 +372,7 @@ int inspect_scene(const InspectOptions& options) {
                          {"dynamics", name_of(kind.dynamics)},
                          {"materials", materials},
                          {"mesh", mesh_json(kind.mesh)}};
-            if (!kind.is_rigid())
+            if (kind.sets_step())
                 body.update({{"stable_dt", kind.bound.step},
                              {"element", name_of(kind.bound.element)},
                              {"step_bound", bound_json(kind.bound)}});
@@ -408,7 +408,7 @@ int inspect_scene(const InspectOptions& options) {
               << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
-              << (report.stable_step_body.empty() ? "all bodies are rigid" : report.stable_step_body) << "), "
+              << (report.stable_step_body.empty() ? "no body sets one" : report.stable_step_body) << "), "
               << count_text(steps) << " steps for " << short_number(scene.seconds) << " s\n"
               << "  cost          about " << duration_text(cost.seconds_per_second)
               << " a simulated second, as it starts; " << duration_text(cost.seconds_per_second * scene.seconds)
@@ -418,11 +418,11 @@ int inspect_scene(const InspectOptions& options) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
                   << grouped(kind.mesh.tetrahedra) << " tetrahedra ("
-                  << (kind.is_rigid() ? "rigid" : name_of(kind.bound.element)) << "), mean edge "
+                  << (kind.sets_step() ? name_of(kind.bound.element) : name_of(kind.dynamics)) << "), mean edge "
                   << with_unit(kind.mesh.mean_edge, "m")
-                  << (kind.is_rigid() ? "" : ", stable step " + with_unit(kind.bound.step, "s")) << "; "
+                  << (kind.sets_step() ? ", stable step " + with_unit(kind.bound.step, "s") : "") << "; "
                   << materials_text(kind) << "\n";
-        if (!kind.is_rigid()) print_bound(kind.bound, "                ");
+        if (kind.sets_step()) print_bound(kind.bound, "                ");
     }
     print_problems(problems);
     return exit_ok;

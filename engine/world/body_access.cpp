@@ -99,7 +99,7 @@ MotionKey World::pose(BodyHandle body) const {
 
 BodyDynamics World::dynamics(BodyHandle body) const {
     const auto row = static_cast<std::size_t>(state_->model.row(body, "dynamics"));
-    return state_->model.is_rigid(row) ? BodyDynamics::rigid : BodyDynamics::explicit_elastic;
+    return state_->model.dynamics_of(row);
 }
 
 MotionKey World::pose(ColliderHandle collider) const {

@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/world_state.h"
+#include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
 
@@ -14,8 +17,32 @@ namespace {
 using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
 using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
 
+/// Of a body that moves implicitly, whose elements are in no table: of its shape in the frame of its mesh, turned with
+/// that.
+std::vector<Mat3> implicit_field(const Model& model, std::size_t row, OfElements of_elements,
+                                 OfTetrahedra of_tetrahedra) {
+    const ElementList list = model.elements_of_implicit(row);
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
+                                displacement = rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
+    std::vector<Vec3> shape(rest.begin(), rest.end());
+    for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
+    ElementBlockTable elements;
+    ElementNodeTable nodes;
+    const AppendedElements appended = append_elements(list, rest, {}, 0, 0, elements, nodes);
+    std::vector<Mat3> values(static_cast<std::size_t>(appended.blocks.size()) * element_lanes);
+    of_elements(ElementInputs::bind({}, elements, nodes, model.materials, model.bodies), appended.blocks, shape,
+                values);
+    const Mat3 turn = pose_of_body(model, row).rotation;
+    for (Mat3& value : values) value = turn * value * turn.transpose();
+    Ragged<Index> covered = covered_tetrahedra(list, appended.element);
+    return of_tetrahedra({elements.part, covered.view()}, values,
+                         static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
+}
+
 std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfElements of_elements,
                                     OfTetrahedra of_tetrahedra) {
+    if (model.dynamics_of(row) == BodyDynamics::implicit_elastic)
+        return implicit_field(model, row, of_elements, of_tetrahedra);
     const Range blocks = model.bodies.blocks[row];
     std::vector<Mat3> values(static_cast<std::size_t>(blocks.size()) * element_lanes);
     of_elements(model.all_elements(), blocks, model.nodes.position, values);

@@ -186,7 +186,16 @@ std::uint64_t body_hash(Model& model, std::size_t body) {
     add_clusters(hash, model, body);
     if (const Range rigid = bodies.rigid[body]; rigid != Range{rigid.begin, rigid.begin}) {
         add_row(hash, rigid.size());
-        if (rigid.size() == 1) add_state(hash, model.rigid_bodies, rigid);
+        if (rigid.size() == 1) {
+            add_state(hash, model.rigid_bodies, rigid);
+            const bool its_own =
+                model.rigid_bodies.body[static_cast<std::size_t>(rigid.begin)] == static_cast<Index>(body);
+            add_row(hash, its_own);
+        }
+    }
+    if (const Range implicit = bodies.implicit[body]; implicit != Range{implicit.begin, implicit.begin}) {
+        add_row(hash, implicit.size());
+        if (implicit.size() == bodies.nodes[body].size()) add_state(hash, model.implicit_nodes, implicit);
     }
     return hash.value();
 }

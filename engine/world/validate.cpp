@@ -218,8 +218,9 @@ void validate(const Mesh& mesh, const BodySettings& body) {
                        "rows of its nodes");
     mesh::require_positive(mesh, object);
     require_apart(mesh, object);
-    const bool rigid = body.dynamics == BodyDynamics::rigid;
-    if (rigid && body.self_contact) refuse(object, "self_contact", "true of a rigid body", "false");
+    if (body.dynamics != BodyDynamics::explicit_elastic && body.self_contact)
+        refuse(object, "self_contact", "true of a body whose dynamics are " + std::string(name_of(body.dynamics)),
+               "false");
     require_labels(mesh, body.materials, object);
     require_finite(object, "position", body.position);
     require_finite(object, "rotation", body.rotation);
@@ -246,7 +247,7 @@ void validate(const Motion& motion, const std::string& object) {
 void validate_step(const Model& model, Index body, const std::string& name) {
     const auto b = static_cast<std::size_t>(body);
     const Real step = model.bodies.rest_step[b];
-    if (step > 0 && (std::isfinite(step) || model.is_rigid(b))) return;
+    if (step > 0 && (std::isfinite(step) || model.has_frame(b))) return;
     const auto material = static_cast<std::size_t>(model.bodies.material[b]);
     refuse(titled("body", name), "mesh, material",
            "edges of " + shown(model.bodies.mean_edge[b]) + " m, " + shown(model.materials.young_modulus[material]) +

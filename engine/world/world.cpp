@@ -205,12 +205,14 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 
 AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion, const Vec3& pivot) {
     const Index row = state_->model.row(body, "attach");
-    if (state_->model.is_rigid(static_cast<std::size_t>(row)))
+    if (state_->model.has_frame(static_cast<std::size_t>(row)))
         Complaint{.file = {},
                   .object = "attach",
                   .field = "body",
-                  .found = "the rigid body '" + state_->model.body_records[static_cast<std::size_t>(row)].name + "'",
-                  .expected = "a body that deforms",
+                  .found = std::string("the ") +
+                           std::string(name_of(state_->model.dynamics_of(static_cast<std::size_t>(row)))) + " body '" +
+                           state_->model.body_records[static_cast<std::size_t>(row)].name + "'",
+                  .expected = "one that is neither rigid nor implicit",
                   .hint = "what stands still or follows a script is a collider: one can have the same mesh"}
             .raise();
     validate(motion, pivot);

@@ -18,11 +18,14 @@ Energy energy_of(const Model& model, Real dissipated) {
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
         energy.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
-        if (!model.node_is_rigid(n)) energy.kinetic += nodes.mass[n] * nodes.velocity[n].squaredNorm() / 2;
+        if (!model.node_has_frame(n)) energy.kinetic += nodes.mass[n] * nodes.velocity[n].squaredNorm() / 2;
     }
-    for (const Index body : model.rigid_bodies.body)
-        energy.kinetic += rigid_sums(model, static_cast<std::size_t>(body)).kinetic;
-    energy.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
+    for (const Index body : model.rigid_bodies.body) {
+        const RigidSums sums = rigid_sums(model, static_cast<std::size_t>(body));
+        energy.kinetic += sums.kinetic;
+        energy.elastic += sums.elastic;
+    }
+    energy.elastic += kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
     energy.dissipated = dissipated;
     return energy;
 }
@@ -176,13 +179,13 @@ WorldReport World::report() const {
         report.angular_momentum += sums.angular_momentum;
     }
     for (std::size_t n = 0; n < world.model.nodes.position.size(); ++n) {
-        if (world.model.node_is_rigid(n)) continue;
+        if (world.model.node_has_frame(n)) continue;
         const Vec3 momentum = world.model.nodes.mass[n] * world.model.nodes.velocity[n];
         report.momentum += momentum;
         report.angular_momentum += world.model.nodes.position[n].cross(momentum);
     }
     for (std::size_t b = 0; b < world.model.bodies.slot.size(); ++b) {
-        if (world.model.bodies.blocks[b].size() == 0) continue;
+        if (world.model.bodies.tetrahedron_blocks[b].size() == 0 || world.model.is_rigid(b)) continue;
         const VolumeRatios ratios =
             tetrahedron_volume_ratios(world.model.tetrahedra.node, world.model.tetrahedra.volume,
                                       world.model.bodies.tetrahedron_blocks[b], world.model.nodes.position);

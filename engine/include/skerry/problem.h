@@ -92,6 +92,12 @@ struct RigidPoints {
     Mat3 inverse_inertia = Mat3::Zero();  // 1/(kg m^2)
 };
 
+/// Nodes of a body that moves implicitly, beside those of its motion as a whole (RigidPoints).
+struct StrainedPoints {
+    std::vector<Index> node;
+    std::vector<Mat3> response;  // 1/kg, velocities by impulses, row by row, symmetric
+};
+
 /// Contacts between points of mass: u_i = sum_a weight[a] velocity[node[a]] + offset_i, in world axes. An impulse r_i
 /// adds weight[a] inverse_mass[node[a]] r_i to the velocity of node a.
 struct LumpedContacts {
@@ -107,6 +113,7 @@ struct LumpedContacts {
     // nodes of these have no use for inverse_mass, but that it is not 0
     std::vector<CoupledNodes> coupled{};
     std::vector<RigidPoints> rigid{};
+    std::vector<StrainedPoints> strained{};
 };
 
 /// The same as general blocks: the frame of a contact is its normal and two tangents that depend on the normal alone,

@@ -40,15 +40,18 @@ struct MaterialSettings {
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };
 
-/// How a body moves. explicit_elastic: it deforms, in steps that its stiffest element stands. rigid: as a whole, with
-/// the mass and the inertia of its mesh. Of its materials only density, friction and restitution count, and it sets no
-/// step; it cannot be attached and does not touch itself (docs/methods/rigid_bodies.md).
-enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid };
+/// How a body moves. explicit_elastic: it deforms, in steps that its stiffest element stands. implicit_elastic: it
+/// deforms by little (linear elasticity in the frame that moves with it, by backward Euler), in any step; for what is
+/// stiff (docs/methods/implicit_bodies.md). rigid: as a whole, with the mass and the inertia of its mesh; of its
+/// materials only density, friction and restitution count (docs/methods/rigid_bodies.md). The last two set no step,
+/// cannot be attached and do not touch themselves.
+enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic };
 template <>
 struct EnumNames<BodyDynamics> {
-    static constexpr std::array<std::pair<BodyDynamics, std::string_view>, 2> table{{
+    static constexpr std::array<std::pair<BodyDynamics, std::string_view>, 3> table{{
         {BodyDynamics::explicit_elastic, "explicit"},
         {BodyDynamics::rigid, "rigid"},
+        {BodyDynamics::implicit_elastic, "implicit"},
     }};
 };
 

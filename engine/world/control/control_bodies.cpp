@@ -118,6 +118,10 @@ void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
     }
     require_upright(model, row, position, title_of_body(model, row), "position");
     place_nodes(*state_, row, position);
+    if (model.has_frame(row)) {
+        set_deformed_shape(model, row, position);
+        return;
+    }
     hold_here(model, row, time());
 }
 
@@ -137,7 +141,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
         changed = true;
     }
     if (!changed) return;
-    if (model.is_rigid(row)) follow_node_velocities(model, row);
+    if (model.has_frame(row)) follow_node_velocities(model, row);
     state_->cache.forget_body(model, row);  // the search counts on the speed of the last step
     state_->record.balance.close();
     model.wake(row);

@@ -120,9 +120,10 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     std::ranges::fill(rows_of(elements.own_frequency, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.relaxing_share, blocks), Real(0));
     stiffness_sum.resize(model.nodes.position.size());
-    find_steps(model, row, body, model.is_rigid(b) ? std::vector<MaterialZone>() : zones_of(model, body),
+    find_steps(model, row, body, model.has_frame(b) ? std::vector<MaterialZone>() : zones_of(model, body),
                model.nodes.rest_position, stiffness_sum);
-    if (model.is_rigid(b)) weigh_rigid_body(model, b, body);
+    if (model.has_frame(b)) weigh_rigid_body(model, b, body);
+    if (model.dynamics_of(b) == BodyDynamics::implicit_elastic) model.stiffen(b);
     model.bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     model.watch.forget(b);

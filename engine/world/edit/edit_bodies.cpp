@@ -72,6 +72,13 @@ void set_masses_and_motion(Model& model, const NewBody& body, Range range) {
         nodes.velocity[n] = body.velocity + body.angular_velocity.cross(nodes.position[n] - center);
 }
 
+Range append_implicit_nodes(Model& model, Index count) {
+    const std::size_t begin = model.implicit_nodes.size(), end = begin + static_cast<std::size_t>(count);
+    model.implicit_nodes.for_each_column(
+        [&](const char*, auto& column, ColumnRole) { column.resize(end, Vec3::Zero()); });
+    return appended(begin, end);
+}
+
 Real mean_edge_length(const Model& model, Range edges) {
     Real sum = 0;
     for (auto e = static_cast<std::size_t>(edges.begin); e < static_cast<std::size_t>(edges.end); ++e) {
@@ -140,7 +147,15 @@ void sort_by_level(Model& model, const ElementList& list, std::span<Real> stiffn
                        rows_of(model.elements.viscous_time, rows.elements.blocks));
 }
 
-/// The tetrahedra that the element at each place covers.
+/// The triangles that the user gave, or the boundary of the tetrahedra; local nodes.
+std::vector<std::array<Index, 3>> outline(const NewBody& body) {
+    std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
+    for (const BoundaryTriangle& triangle : boundary_triangles(body.tetrahedra)) triangles.push_back(triangle.node);
+    return triangles;
+}
+
+}  // namespace
+
 Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index> element_at) {
     Ragged<Index> covered;
     covered.offset.push_back(0);
@@ -155,15 +170,6 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
     return covered;
 }
 
-/// The triangles that the user gave, or the boundary of the tetrahedra; local nodes.
-std::vector<std::array<Index, 3>> outline(const NewBody& body) {
-    std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
-    for (const BoundaryTriangle& triangle : boundary_triangles(body.tetrahedra)) triangles.push_back(triangle.node);
-    return triangles;
-}
-
-}  // namespace
-
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body) {
     BodyTable& bodies = model.bodies;
     const std::size_t b = bodies.slot.size();
@@ -175,8 +181,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     set_masses_and_motion(model, body, nodes);
     BodyRows rows{row, nodes, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
-    // what is rigid has tetrahedra, and no elements
-    const std::vector<MaterialZone> zones = body.is_rigid() ? std::vector<MaterialZone>() : zones_of(model, body);
+    const std::vector<MaterialZone> all_zones = zones_of(model, body);
+    // what moves as rigid bodies do has tetrahedra, and no elements
+    const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
     const ElementList list = elements_of({body.tetrahedra, body.nodes, body.rotation}, zones);
     rows.elements = append_elements_of(model, list, {}, rows);
     if (model.settings.multirate && !zones.empty()) sort_by_level(model, list, stiffness_sum, rows);
@@ -195,7 +202,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.element_nodes[b] = rows.elements.nodes;
     bodies.tetrahedron_blocks[b] = rows.tetrahedra;
     bodies.rigid[b] = {static_cast<Index>(model.rigid_bodies.size()), static_cast<Index>(model.rigid_bodies.size())};
-    if (body.is_rigid()) append_rigid_body(model, row, body);
+    if (body.has_frame()) append_rigid_body(model, row, body);
+    const bool implicit = body.dynamics == BodyDynamics::implicit_elastic;
+    bodies.implicit[b] = append_implicit_nodes(model, implicit ? nodes.size() : 0);
     bodies.tetrahedron_count[b] = static_cast<Index>(body.tetrahedra.size());
     bodies.uninverted_until[b] = not_looked_at;
     std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_looked_at);
@@ -203,11 +212,12 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.level_count[b] = level_count_of(model.elements, blocks);
     model.body_records.push_back(
         {.name = {},
-         .element = kind_of(zones),
+         .element = kind_of(implicit ? all_zones : zones),
          .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
          .surface = outline(body),
          .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},
          .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
+    if (implicit) model.stiffen(b);
     model.settled = false;
     model.append_outline(b);
     bodies.mean_edge[b] = mean_edge_length(model, bodies.edges[b]);

@@ -30,7 +30,8 @@ struct NewBody {
     Mat3 rotation;
     Vec3 velocity, angular_velocity;
 
-    bool is_rigid() const { return dynamics == BodyDynamics::rigid; }
+    /// Has a row of RigidBodyTable, and no elements.
+    bool has_frame() const { return dynamics != BodyDynamics::explicit_elastic; }
     Index material_of(std::size_t of_tetrahedron) const {
         return tetrahedron_material.empty() ? material : tetrahedron_material[of_tetrahedron];
     }
@@ -39,6 +40,10 @@ struct NewBody {
 // edit_bodies.cpp
 /// kg/m^3, by tetrahedron.
 std::vector<Real> densities(const Model& model, const NewBody& body);
+
+/// The tetrahedra that the element at each place covers: `element_at` of its blocks, no_index in a lane that is left
+/// over.
+Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index> element_at);
 
 /// Appends a surface with or without tetrahedra as a body; returns its row. `stiffness_sum` is memory to work in, by
 /// node: kept from body to body, so that each costs what it has itself.

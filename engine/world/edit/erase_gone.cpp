@@ -93,6 +93,7 @@ private:
         lower(table.bvh_nodes[body_], down_.bvh_nodes);
         lower(table.bvh_leaves[body_], down_.bvh_leaves);
         lower(table.rigid[body_], down_.rigid);
+        lower(table.implicit[body_], down_.implicit);
     }
 
     Model& model_;
@@ -181,6 +182,9 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     erase_rows(model.bvh, gone.bvh_nodes);
     erase_rows(model.bvh_leaves, gone.bvh_leaves);
     erase_rows(model.rigid_bodies, gone.rigid);
+    erase_rows(model.implicit_nodes, gone.implicit);
+    for (auto rows = gone.rigid.rbegin(); rows != gone.rigid.rend(); ++rows)
+        model.stiff_bodies.erase(model.stiff_bodies.begin() + rows->begin, model.stiff_bodies.begin() + rows->end);
     erase_rows(model.bodies, gone.bodies);
     erase_records(moves.body_now, model.body_records);
     model.body_mass.erase(gone.bodies);

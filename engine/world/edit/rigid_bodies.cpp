@@ -69,12 +69,32 @@ void set_motion(RigidBodyTable& table, std::size_t r, const Vec3& velocity, cons
     table.angular_momentum[r] = rotation * table.moments[r].cwiseProduct(rotation.transpose() * angular_velocity);
 }
 
+Mat3 frame_of_mesh(const RigidBodyTable& table, std::size_t r) {
+    return table.rotation[r] * table.axes[r].transpose();
+}
+
+/// What nodes have beside the motion of the body as a whole, in the frame of the mesh; empty where it is rigid.
+struct Deformation {
+    std::span<Vec3> displacement, velocity;
+
+    Deformation(Model& model, std::size_t body)
+        : displacement(rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body])),
+          velocity(rows_of(model.implicit_nodes.velocity, model.bodies.implicit[body])) {}
+    bool any() const { return !displacement.empty(); }
+};
+
 void give_nodes_velocity(Model& model, std::size_t body) {
     const RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
     const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
-    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n)
+    const Deformation deformation(model, body);
+    const Mat3 from_mesh = frame_of_mesh(table, r);
+    const Range nodes = model.bodies.nodes[body];
+    for (Index n = nodes.begin; n < nodes.end; ++n) {
         model.nodes.velocity[n] = velocity + turn.cross(model.nodes.position[n] - table.center[r]);
+        if (deformation.any())
+            model.nodes.velocity[n] += from_mesh * deformation.velocity[static_cast<std::size_t>(n - nodes.begin)];
+    }
 }
 
 }  // namespace
@@ -83,6 +103,7 @@ void append_rigid_body(Model& model, Index row, const NewBody& body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = table.size();
     table.for_each_column([r](const char*, auto& column, ColumnRole) { column.resize(r + 1); });
+    model.stiff_bodies.resize(r + 1);
     table.for_each_column([r]<class T>(const char*, Column<T>& column, ColumnRole) {
         if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Mat3>) column[r].setZero();
     });
@@ -99,7 +120,7 @@ void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
     const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
-    const Mat3 from_mesh = table.rotation[r] * table.axes[r].transpose();
+    const Mat3 from_mesh = frame_of_mesh(table, r);
     write_masses(mass_properties(as_new, densities(model, as_new)), r, table);
     table.rotation[r] = from_mesh * table.axes[r];
     set_motion(table, r, velocity, turn);
@@ -138,10 +159,10 @@ NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const
 }  // namespace
 
 RigidPose pose_of_body(const Model& model, std::size_t body) {
-    if (model.is_rigid(body)) {
+    if (model.has_frame(body)) {
         const RigidBodyTable& table = model.rigid_bodies;
         const std::size_t r = rigid_row(model, body);
-        const Mat3 from_mesh = table.rotation[r] * table.axes[r].transpose();
+        const Mat3 from_mesh = frame_of_mesh(table, r);
         return {table.center[r] - from_mesh * table.rest_center[r], from_mesh};
     }
     const NearestFrame frame = nearest_frame(model, body, rows_of(model.nodes.position, model.bodies.nodes[body]));
@@ -168,9 +189,30 @@ void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Ma
     const std::size_t r = rigid_row(model, body);
     table.center[r] = center;
     table.rotation[r] = rotation;
-    const Mat3 from_mesh = rotation * table.axes[r].transpose();
-    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n)
-        model.nodes.position[n] = center + from_mesh * (model.nodes.rest_position[n] - table.rest_center[r]);
+    const Mat3 from_mesh = frame_of_mesh(table, r);
+    const Deformation deformation(model, body);
+    const Range nodes = model.bodies.nodes[body];
+    for (Index n = nodes.begin; n < nodes.end; ++n) {
+        Vec3 shape = model.nodes.rest_position[n];
+        if (deformation.any()) shape += deformation.displacement[static_cast<std::size_t>(n - nodes.begin)];
+        model.nodes.position[n] = center + from_mesh * (shape - table.rest_center[r]);
+    }
+    give_nodes_velocity(model, body);
+}
+
+void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const RigidFit fit = fit_rigid_body(model, body, position);
+    table.center[r] = fit.center;
+    table.rotation[r] = fit.rotation;
+    const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[body]);
+    const Deformation deformation(model, body);
+    for (std::size_t n = 0; n < position.size(); ++n)
+        deformation.displacement[n] = table.rest_center[r] + to_mesh * (position[n] - fit.center) - rest[n];
+    model.stiff_bodies[r].take_rigid_motion(deformation.displacement);
+    std::ranges::copy(position, rows_of(model.nodes.position, model.bodies.nodes[body]).begin());
     give_nodes_velocity(model, body);
 }
 
@@ -186,17 +228,35 @@ void follow_node_velocities(Model& model, std::size_t body) {
         second += model.nodes.mass[n] * arm * arm.transpose();
     }
     const Mat3 inertia = second.trace() * Mat3::Identity() - second;
-    set_motion(table, r, momentum / table.mass[r], inertia.inverse() * turning);
+    const Vec3 velocity = momentum / table.mass[r], turn = inertia.inverse() * turning;
+    set_motion(table, r, velocity, turn);
+    const Deformation deformation(model, body);
+    if (deformation.any()) {
+        const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
+        const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+        for (std::size_t n = 0; n < deformation.velocity.size(); ++n)
+            deformation.velocity[n] = to_mesh * (model.nodes.velocity[first + n] - velocity -
+                                                 turn.cross(model.nodes.position[first + n] - table.center[r]));
+        model.stiff_bodies[r].take_rigid_motion(deformation.velocity);
+    }
     give_nodes_velocity(model, body);
 }
 
 RigidSums rigid_sums(const Model& model, std::size_t body) {
-    if (!model.is_rigid(body)) return {};
+    if (!model.has_frame(body)) return {};
     const RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
     const Vec3 &momentum = table.momentum[r], &angular = table.angular_momentum[r];
-    return {(momentum.squaredNorm() / table.mass[r] + angular.dot(spin(table, r))) / 2, momentum,
-            angular + table.center[r].cross(momentum)};
+    RigidSums sums{(momentum.squaredNorm() / table.mass[r] + angular.dot(spin(table, r))) / 2, 0, momentum,
+                   angular + table.center[r].cross(momentum)};
+    const Range rows = model.bodies.implicit[body];
+    if (rows.size() == 0) return sums;
+    const std::span<const Vec3> velocity = rows_of(model.implicit_nodes.velocity, rows);
+    const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+    for (std::size_t n = 0; n < velocity.size(); ++n)
+        sums.kinetic += model.nodes.mass[first + n] * velocity[n].squaredNorm() / 2;
+    sums.elastic = model.stiff_bodies[r].elastic_energy(rows_of(model.implicit_nodes.displacement, rows));
+    return sums;
 }
 
 }  // namespace skerry

@@ -28,12 +28,14 @@ RigidPose pose_of_body(const Model& model, std::size_t body);
 
 /// The pose of a body, and its nodes where that has them. Angular momentum and velocity stay as they are.
 void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
-/// The rigid motion nearest to the velocities of its nodes.
+/// The pose of a body that moves implicitly nearest to these positions, and what is beside it as its deformation.
+void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position);
+/// The rigid motion nearest to the velocities of its nodes; the rest deforms it, where it can.
 void follow_node_velocities(Model& model, std::size_t body);
 
-/// What a rigid body carries; zero for one that deforms.
+/// What a body carries that has a row of RigidBodyTable; zero for others.
 struct RigidSums {
-    Real kinetic = 0;                      // J
+    Real kinetic = 0, elastic = 0;         // J
     Vec3 momentum = Vec3::Zero();          // kg m/s
     Vec3 angular_momentum = Vec3::Zero();  // kg m^2/s, about the origin
 };

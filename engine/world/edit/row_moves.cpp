@@ -37,6 +37,7 @@ OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body) {
     rows.bvh_nodes = table.bvh_nodes[body];
     rows.bvh_leaves = table.bvh_leaves[body];
     rows.rigid = table.rigid[body];
+    rows.implicit = table.implicit[body];
     const VertexTable& vertices = model.surface.vertices;
     if (rows.vertices.size() > 0)
         rows.vertex_triangles = {vertices.triangle_begin[static_cast<std::size_t>(rows.vertices.begin)],

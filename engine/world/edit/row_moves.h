@@ -15,7 +15,7 @@ namespace skerry {
 template <class T>
 struct OfBodyTables {
     T bodies{}, nodes{}, node_blocks{}, blocks{}, element_nodes{}, tetrahedron_blocks{}, triangles{}, edges{},
-        vertices{}, vertex_triangles{}, bvh_nodes{}, bvh_leaves{}, rigid{};
+        vertices{}, vertex_triangles{}, bvh_nodes{}, bvh_leaves{}, rigid{}, implicit{};
 
     /// The only list of them.
     static constexpr auto members() {
@@ -23,7 +23,7 @@ struct OfBodyTables {
         return std::array{&Of::bodies,        &Of::nodes,     &Of::node_blocks,        &Of::blocks,
                           &Of::element_nodes, &Of::edges,     &Of::tetrahedron_blocks, &Of::triangles,
                           &Of::vertices,      &Of::bvh_nodes, &Of::vertex_triangles,   &Of::bvh_leaves,
-                          &Of::rigid};
+                          &Of::rigid,         &Of::implicit};
     }
 };
 

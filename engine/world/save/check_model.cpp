@@ -36,6 +36,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     all("element_nodes", model.element_nodes, model.element_nodes.node.size());
     all("bodies", model.bodies, model.bodies.slot.size());
     all("rigid_bodies", model.rigid_bodies, model.rigid_bodies.size());
+    all("implicit_nodes", model.implicit_nodes, model.implicit_nodes.size());
     all("materials", model.materials, model.materials.slot.size());
     expect_one_size(file, "colliders", model.colliders.slot.size(),
                     [&](auto&& visit) { model.colliders.for_each_row_column(visit); });
@@ -94,6 +95,7 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     expect_partition(file, "/bodies/element_nodes", bodies.element_nodes, model.element_nodes.node.size());
     expect_partition(file, "/bodies/tetrahedron_blocks", bodies.tetrahedron_blocks, model.tetrahedra.node.size());
     expect_partition(file, "/bodies/rigid", bodies.rigid, model.rigid_bodies.size());
+    expect_partition(file, "/bodies/implicit", bodies.implicit, model.implicit_nodes.size());
     expect_between(file, "/bodies/level", bodies.level, 0, step_level_count - element_level_count);
     expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
     expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
@@ -118,6 +120,9 @@ void check_bodies(const Hdf5File& file, const Model& model) {
             complain("rigid", std::to_string(bodies.rigid[b].size()) + " rows", "one of a rigid body, else none");
         if (bodies.rigid[b].size() > 0 && bodies.blocks[b].size() > 0)
             complain("blocks", std::to_string(bodies.blocks[b].size()), "none of a rigid body");
+        const Index implicit = bodies.implicit[b].size();
+        if (implicit > 0 && (bodies.rigid[b].size() == 0 || implicit != bodies.nodes[b].size()))
+            complain("implicit", std::to_string(implicit) + " rows", "one a node of a body with a row of rigid_bodies");
     }
 }
 
@@ -299,6 +304,14 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
     }
 }
 
+void check_implicit_nodes(const Hdf5File& file, const ImplicitNodeTable& table) {
+    for (std::size_t row = 0; row < table.size(); ++row) {
+        const std::string found = "what is not finite at row " + std::to_string(row);
+        if (!table.displacement[row].allFinite()) file.complain("/implicit_nodes/displacement", found, "numbers (m)");
+        if (!table.velocity[row].allFinite()) file.complain("/implicit_nodes/velocity", found, "numbers (m/s)");
+    }
+}
+
 }  // namespace
 
 void check_model(const Hdf5File& file, Model& model) {
@@ -312,6 +325,7 @@ void check_model(const Hdf5File& file, Model& model) {
     check_disabled_pairs(file, model);
     check_clusters(file, model);
     check_rigid_bodies(file, model.rigid_bodies);
+    check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }
 

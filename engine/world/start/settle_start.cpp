@@ -161,7 +161,7 @@ std::vector<StartMove> take_over_shifts(const StartSearch& search, Model& model)
             model.nodes.position[n] += shift;
             model.nodes.displacement_origin[n] = model.nodes.position[n];
         }
-        if (model.is_rigid(b))
+        if (model.has_frame(b))
             model.rigid_bodies.center[static_cast<std::size_t>(model.bodies.rigid[b].begin)] += shift;
         moves.push_back({model.body_map.handle_of_slot(model.bodies.slot[b]), model.body_records[b].name, shift});
     }

@@ -92,6 +92,26 @@ void Model::note_loads(std::size_t body, bool before) {
     loaded = loaded_bodies > 0;
 }
 
+ElementList Model::elements_of_implicit(std::size_t body) const {
+    const BodyRecord& record = body_records[body];
+    std::vector<MaterialZone> zones;
+    for (std::size_t t = 0; t < record.tetrahedra.size(); ++t) {
+        const Index material =
+            record.tetrahedron_material.empty() ? bodies.material[body] : record.tetrahedron_material[t];
+        auto zone = std::ranges::find(zones, material, &MaterialZone::material);
+        if (zone == zones.end()) zone = zones.insert(zones.end(), {material, record.element, {}});
+        zone->tetrahedra.push_back(static_cast<Index>(t));
+    }
+    return elements_of({record.tetrahedra, rows_of(nodes.rest_position, bodies.nodes[body])}, zones);
+}
+
+void Model::stiffen(std::size_t body) {
+    const Range of_body = bodies.nodes[body];
+    stiff_bodies[static_cast<std::size_t>(bodies.rigid[body].begin)] =
+        StiffBody(elements_of_implicit(body), materials.constants, rows_of(nodes.mass, of_body),
+                  rows_of(nodes.rest_position, of_body));
+}
+
 void Model::extend_derived() {
     const std::size_t first_node = patches.slots_of_node.size(), first_body = body_mass.size();
     build_patches(elements, nodes.position.size(), element_nodes, patches);
@@ -120,6 +140,9 @@ void Model::derive_all() {
     patches = {};
     body_mass.clear();
     extend_derived();
+    stiff_bodies.assign(rigid_bodies.size(), {});
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b)
+        if (bodies.implicit[b].size() > 0) stiffen(b);
     loaded_bodies = 0;
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) note_loads(b, false);
     // What a step leaves where it has nothing to do: nodes at rest, and nodes that no contact pushes.

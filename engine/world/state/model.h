@@ -12,6 +12,7 @@
 #include "components/collision_filter.h"
 #include "components/element_table.h"
 #include "components/handle.h"
+#include "components/implicit_node_table.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
 #include "components/node_clusters.h"
@@ -25,6 +26,7 @@
 #include "skerry/settings.h"
 #include "skerry/world.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
+#include "systems/dynamics/implicit/move_implicit_bodies.h"
 
 namespace skerry {
 
@@ -66,6 +68,8 @@ struct Model {
     // Of the implicit elements. State: the matrices of elements that have stiffened were updated, not made anew.
     NodeClusters clusters;
     RigidBodyTable rigid_bodies;
+    ImplicitNodeTable implicit_nodes;
+    StiffBodies stiff_bodies;  // by row of rigid_bodies; derived: derive_all, stiffen
     SurfaceTables surface;
     BvhTable bvh;
     BvhLeafTable bvh_leaves;
@@ -113,10 +117,21 @@ struct Model {
     /// After loads were set: those of one body, which had some before or not.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
-    bool is_rigid(std::size_t body) const { return bodies.rigid[body].size() > 0; }
-    bool node_is_rigid(std::size_t node) const {
-        return rigid_bodies.size() > 0 && is_rigid(static_cast<std::size_t>(nodes.body[node]));
+    bool is_rigid(std::size_t body) const { return dynamics_of(body) == BodyDynamics::rigid; }
+    BodyDynamics dynamics_of(std::size_t body) const {
+        return !has_frame(body)                    ? BodyDynamics::explicit_elastic
+               : bodies.implicit[body].size() == 0 ? BodyDynamics::rigid
+                                                   : BodyDynamics::implicit_elastic;
     }
+    /// Whether it has a row of rigid_bodies: momentum is there, not with its nodes, and it has no elements.
+    bool has_frame(std::size_t body) const { return bodies.rigid[body].size() > 0; }
+    bool node_has_frame(std::size_t node) const {
+        return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
+    }
+    /// The elements that a body moving implicitly has, in no table; its nodes numbered from zero.
+    ElementList elements_of_implicit(std::size_t body) const;
+    /// Makes stiff_bodies of a body that moves implicitly, from its record, masses and materials.
+    void stiffen(std::size_t body);
     /// What is derived of the rows that came last; those that have it keep it.
     void extend_derived();
     /// The same of all rows, and of loads, and what a step leaves of velocities where it has nothing to do.
@@ -141,6 +156,7 @@ struct Model {
         visit("bvh_leaves", bvh_leaves);
         visit("bodies", bodies);
         visit("rigid_bodies", rigid_bodies);
+        visit("implicit_nodes", implicit_nodes);
         visit("materials", materials);
         visit("colliders", colliders);
         visit("attachments", attachments);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "components/contact_table.h"
+#include "components/implicit_coupling.h"
 #include "components/region_table.h"
 #include "components/step_levels.h"
 #include "skerry/settings.h"
@@ -46,8 +47,9 @@ struct StepFindings {
     ContactMeasures measures;
     ExternalWork external;
     TakenByRest rest;
-    Real relaxed = 0;  // J, taken out by what relaxes in the elements in this step
-    Real damped = 0;   // J, taken out by damping in this step
+    Real relaxed = 0;   // J, taken out by what relaxes in the elements in this step
+    Real damped = 0;    // J, taken out by damping in this step
+    Real strained = 0;  // J, damped by the implicit steps of bodies in this step
 };
 
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
@@ -64,6 +66,8 @@ struct KeptVelocities {
     Column<Vec3> velocity;          // m/s, at the start of the step
     Column<Vec3> velocity_next;     // m/s, predicted
     Column<Vec3> position, center;  // m, of nodes and of rigid bodies, at the start of the step; where any is rigid
+    Column<Mat3> rotation;          // of rigid bodies, at the start of the step
+    Column<Vec3> deforming, deforming_before;  // m/s, of implicit bodies: kicked, at the start of the step
 };
 
 /// What contacts and attachments give in one step.
@@ -96,6 +100,8 @@ struct StepScratch {
     ForceScratch forces;
     Column<Real> stiffness_sum;       // of stable_step, by node
     Column<Vec3> cluster_kick;        // of kick_clusters
+    ImplicitCoupling coupling;        // of couple_implicit_bodies
+    Column<Real> strain_parts;        // of strain_implicit_bodies
     Column<std::uint8_t> pressed;     // by body at rest, in this step
     WarmStartTable warm_start_next;   // of store_warm_start
     Column<ExternalWork> work_parts;  // of measure_work

@@ -23,15 +23,17 @@ Present measure(const Model& model, Real lag) {
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
         now.potential -= nodes.mass[n] * model.settings.gravity.dot(nodes.position[n]);
-        if (!(nodes.inverse_mass[n] > 0) || model.node_is_rigid(n)) continue;
+        if (!(nodes.inverse_mass[n] > 0) || model.node_has_frame(n)) continue;
         const Vec3 momentum = nodes.mass[n] * nodes.velocity[n];
         now.kinetic += momentum.dot(nodes.velocity[n]) / 2;
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
     }
+    Real implicit = 0;  // J
     for (const Index body : model.rigid_bodies.body) {
         const RigidSums sums = rigid_sums(model, static_cast<std::size_t>(body));
         now.kinetic += sums.kinetic;
+        implicit += sums.elastic;
         now.momentum += sums.momentum;
         now.momentum_size += sums.momentum.norm();
     }
@@ -46,7 +48,7 @@ Present measure(const Model& model, Real lag) {
                 if (nodes.inverse_mass[n] > 0) power += nodes.load[n].dot(nodes.velocity[n]);
         now.kinetic += lag * power;
     }
-    now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position);
+    now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position) + implicit;
     return now;
 }
 
@@ -84,7 +86,7 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
     const Real work = push_work + external.work + contacts.outer_work - contacts.dissipated - step.findings.damped -
-                      step.findings.relaxed - step.findings.rest.energy;
+                      step.findings.strained - step.findings.relaxed - step.findings.rest.energy;
     ++balance.steps;
     balance.impulse += impulse;
     balance.momentum_flow += impulse.norm();

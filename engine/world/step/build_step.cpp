@@ -11,6 +11,7 @@
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/clusters/kick_clusters.h"
+#include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
@@ -46,6 +47,10 @@ void list_watch(WorldState& w, TaskGraph& g) {
             make(w.scratch.watch_parts), make(m.watch));
 }
 
+auto implicit_bodies(const Model& m) {
+    return inputs<ImplicitBodies>(m.rigid_bodies, m.bodies, m.materials, m.implicit_nodes, m.any_asleep);
+}
+
 void list_force_branch(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     NodeTable& n = m.nodes;
@@ -66,6 +71,9 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep),
             inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h), outputs<RigidKicks>(m.rigid_bodies, n));
+    g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
+            inputs<ImplicitLoads>(n, m.loaded), value(p.h), make(m.stiff_bodies),
+            outputs<ImplicitKicks>(m.implicit_nodes, n));
 }
 
 auto collision_inputs(const Model& m) {
@@ -90,6 +98,8 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies), value(p.contact_regions),
             make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
+    g.stage("dynamics/couple_implicit_bodies", couple_implicit_bodies, implicit_bodies(m), read(c.stencil),
+            read(m.nodes.body), value(p.h), make(m.stiff_bodies), make(w.scratch.coupling));
 }
 
 void list_solve(WorldState& w, TaskGraph& g) {
@@ -98,12 +108,13 @@ void list_solve(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.problem_wanted));
     g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next), read(n.position),
-            read(w.model.rigid_bodies.center), make(w.scratch.kept_velocities), if_wanted);
+            inputs<KeptFrames>(w.model.rigid_bodies, w.model.implicit_nodes), make(w.scratch.kept_velocities),
+            if_wanted);
     g.stage("solver/solve_regions", kernels().solve_regions,
             inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity, w.model.clusters, w.scratch.cluster_kick,
-                                 w.model.bodies, w.model.rigid_bodies),
+                                 w.model.bodies, w.model.rigid_bodies, w.model.implicit_nodes, w.scratch.coupling),
             value(p.solver), value(p.h), make(w.scratch.solver_memory), make(w.scratch.regions),
-            outputs<RegionOutputs>(c, n, w.model.rigid_bodies));
+            outputs<RegionOutputs>(c, n, w.model.rigid_bodies, w.model.implicit_nodes));
     g.stage_with_result("contact/measure_contacts", w.scratch.findings.measures, measure_contacts, read(c),
                         read(n.inverse_mass), read(n.velocity), read(n.velocity_next), write(c.slip), write(c.state),
                         value(p.solver.friction));
@@ -127,9 +138,13 @@ void list_forces(WorldState& w, TaskGraph& g) {
 /// From here on velocity_next of a rigid body is that of the straight way to where it will be.
 void list_turns(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
+    g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
+                        implicit_bodies(m), read(m.stiff_bodies), value(w.scratch.parameters.h),
+                        outputs<ImplicitStrains>(m.implicit_nodes), make(w.scratch.strain_parts));
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
             inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep), inputs<RigidImpulses>(m.rigid_bodies),
-            read(m.nodes.position), value(w.scratch.parameters.h), outputs<RigidTurns>(m.rigid_bodies, m.nodes));
+            inputs<ElasticMotion>(m.implicit_nodes), read(m.nodes.position), value(w.scratch.parameters.h),
+            outputs<RigidTurns>(m.rigid_bodies, m.nodes));
 }
 
 /// Looks at the step.
@@ -178,12 +193,13 @@ void list_commit(WorldState& w, TaskGraph& g) {
             outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
     RigidBodyTable& r = w.model.rigid_bodies;
     g.stage("dynamics/move_rigid_bodies", move_rigid_bodies, inputs<RigidBodies>(r, b, n, w.model.any_asleep),
-            inputs<RigidImpulses>(r), read(r.center_next), read(r.rotation_next), outputs<RigidMoves>(r, n), if_taken);
+            inputs<RigidImpulses>(r), inputs<ElasticMotion>(w.model.implicit_nodes), read(r.center_next),
+            read(r.rotation_next), outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
                         inputs<RestInputs>(a, b, n, r), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
-                        outputs<RestOutputs>(b, n, r), if_taken, if_sleepy);
+                        outputs<RestOutputs>(b, n, r, w.model.implicit_nodes), if_taken, if_sleepy);
     g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse),
             inputs<IdlePairs>(w.cache.pairs), value(p.h), make(w.cache.warm_start), make(w.scratch.warm_start_next),
             if_taken);

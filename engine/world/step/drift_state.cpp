@@ -27,6 +27,14 @@ void forget_impulses(RigidBodyTable& rigid) {
         std::ranges::fill(*column, Vec3::Zero());
 }
 
+/// What deforms goes on with the velocity that it has.
+void drift_displacements(ImplicitNodeTable& implicit, Real seconds) {
+    for (std::size_t row = 0; row < implicit.size(); ++row) {
+        implicit.displacement_next[row] = implicit.displacement[row] + seconds * implicit.velocity[row];
+        implicit.velocity_next[row] = implicit.velocity[row];
+    }
+}
+
 }  // namespace
 
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search) {
@@ -41,13 +49,15 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
     const bool pushed = false;  // by contacts, which are not of this part of the step
     RigidBodyTable& r = model.rigid_bodies;
+    ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
+    drift_displacements(i, seconds);
     turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidImpulses::bind({}, r),
-                      n.position, seconds, {r.center_next, r.rotation_next, n.velocity});
+                      ElasticMotion::bind({}, i), n.position, seconds, {r.center_next, r.rotation_next, n.velocity});
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
                       Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
     move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidImpulses::bind({}, r),
-                      r.center_next, r.rotation_next, RigidMoves::bind({}, r, n));
+                      ElasticMotion::bind({}, i), r.center_next, r.rotation_next, RigidMoves::bind({}, r, n, i));
     measure_displacement_of(executor, model, seconds, search);
     add_collider_travel(std::abs(seconds), search.collider_extent, c);
     clock.time += seconds;

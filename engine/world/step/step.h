@@ -75,9 +75,22 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders);
 
 // watch_problems.cpp
+/// What moves with a frame, before contacts are solved.
+struct KeptFrames {
+    std::span<const Vec3> center;                       // RigidBodyTable
+    std::span<const Mat3> rotation;                     // RigidBodyTable
+    std::span<const Vec3> deforming, deforming_before;  // ImplicitNodeTable
+
+    static KeptFrames bind(const Binder& binder, const RigidBodyTable& rigid, const ImplicitNodeTable& implicit) {
+        return {.center = binder.read(rigid.center),
+                .rotation = binder.read(rigid.rotation),
+                .deforming = binder.read(implicit.velocity_next),
+                .deforming_before = binder.read(implicit.velocity)};
+    }
+};
 /// Copies what the contact problem of this step is made of.
 void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
-                     std::span<const Vec3> position, std::span<const Vec3> rigid_center, KeptVelocities& kept);
+                     std::span<const Vec3> position, const KeptFrames& frames, KeptVelocities& kept);
 /// Hands over the contact problem of the step just taken, if somebody wants it.
 void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record);
 

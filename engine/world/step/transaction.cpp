@@ -223,6 +223,7 @@ void StepTransaction::begin_call(const Model& model, const Clock& clock) {
     velocity_ = model.nodes.velocity;
     center_ = model.rigid_bodies.center;
     rotation_ = model.rigid_bodies.rotation;
+    displacement_ = model.implicit_nodes.displacement;
 }
 
 void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
@@ -231,6 +232,7 @@ void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
     model.nodes.velocity = velocity_;
     model.rigid_bodies.center = center_;
     model.rigid_bodies.rotation = rotation_;
+    model.implicit_nodes.displacement = displacement_;
     clock.time = time_;
     clock.offset = 0;
 }

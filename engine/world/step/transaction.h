@@ -81,6 +81,7 @@ private:
     Column<Vec3> position_, velocity_;      // m, m/s, of all nodes
     Column<Vec3> center_;                   // m, of rigid bodies
     Column<Mat3> rotation_;                 // of rigid bodies
+    Column<Vec3> displacement_;             // m, of implicit bodies
 };
 
 }  // namespace skerry

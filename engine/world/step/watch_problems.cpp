@@ -11,7 +11,8 @@ namespace skerry {
 
 namespace {
 
-void copy(std::span<const Vec3> from, Column<Vec3>& to) {
+template <class T>
+void copy(std::span<const T> from, Column<T>& to) {
     to.resize(from.size());
     std::copy(from.begin(), from.end(), to.begin());
 }
@@ -19,12 +20,15 @@ void copy(std::span<const Vec3> from, Column<Vec3>& to) {
 }  // namespace
 
 void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
-                     std::span<const Vec3> position, std::span<const Vec3> rigid_center, KeptVelocities& kept) {
+                     std::span<const Vec3> position, const KeptFrames& frames, KeptVelocities& kept) {
     copy(velocity, kept.velocity);
     copy(velocity_next, kept.velocity_next);
-    if (rigid_center.empty()) return;
+    if (frames.center.empty()) return;
     copy(position, kept.position);
-    copy(rigid_center, kept.center);
+    copy(frames.center, kept.center);
+    copy(frames.rotation, kept.rotation);
+    copy(frames.deforming, kept.deforming);
+    copy(frames.deforming_before, kept.deforming_before);
 }
 
 void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record) {
@@ -32,9 +36,13 @@ void show_contact_problem(const Model& model, const StepScratch& scratch, Real t
     const ContactTable& c = scratch.contacts;
     const KeptVelocities& kept = scratch.kept_velocities;
     RegionInputs inputs = RegionInputs::bind({}, c, model.nodes, kept.velocity, scratch.parameters.collision.gravity,
-                                             model.clusters, scratch.cluster_kick, model.bodies, model.rigid_bodies);
+                                             model.clusters, scratch.cluster_kick, model.bodies, model.rigid_bodies,
+                                             model.implicit_nodes, scratch.coupling);
     inputs.rigid.position = kept.position;
     inputs.rigid.center = kept.center;
+    inputs.implicit.rotation = kept.rotation;
+    inputs.implicit.velocity = kept.deforming;
+    inputs.implicit.velocity_before = kept.deforming_before;
     StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region}, scratch.parameters.solver,
                                        scratch.parameters.h);
     if (problem.problem.q.empty()) return;

@@ -25,19 +25,24 @@ std::vector<std::vector<Index>> neighbours_of(const ElementList& elements, std::
                 if (a != b) neighbours[static_cast<std::size_t>(a)].push_back(b);
     for (std::vector<Index>& of_node : neighbours) {
         std::ranges::sort(of_node);
-        of_node.erase(std::ranges::unique(of_node).begin(), of_node.end());
+        of_node.erase(std::unique(of_node.begin(), of_node.end()), of_node.end());
     }
     return neighbours;
 }
 
+std::vector<Index> inverse_of(std::span<const Index> place) {
+    std::vector<Index> node(place.size());
+    for (std::size_t n = 0; n < place.size(); ++n) node[static_cast<std::size_t>(place[n])] = static_cast<Index>(n);
+    return node;
+}
+
 /// Zeros where nodes share elements, and on the diagonal.
-BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> place) {
-    std::vector<std::size_t> node_at(place.size());
-    for (std::size_t n = 0; n < place.size(); ++n) node_at[static_cast<std::size_t>(place[n])] = n;
+BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> place,
+                     std::span<const Index> node) {
     BlockRows rows;
     for (std::size_t k = 0; k < place.size(); ++k) {
         const std::size_t first = rows.column.size();
-        for (const Index other : neighbours[node_at[k]])
+        for (const Index other : neighbours[static_cast<std::size_t>(node[k])])
             if (const Index column = place[static_cast<std::size_t>(other)]; column < static_cast<Index>(k))
                 rows.column.push_back(column);
         std::sort(rows.column.begin() + static_cast<std::ptrdiff_t>(first), rows.column.end());
@@ -66,7 +71,8 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
                      std::span<const Real> mass, std::span<const Vec3> rest_position) {
     const std::vector<std::vector<Index>> neighbours = neighbours_of(elements, mass.size());
     place_ = elimination_places(neighbours);
-    stiffness_ = pattern_of(neighbours, place_);
+    node_ = inverse_of(place_);
+    stiffness_ = pattern_of(neighbours, place_, node_);
     for (std::size_t e = 0; e < elements.size(); ++e) {
         const MaterialConstants material =
             part_of(constants[static_cast<std::size_t>(elements.material[e])], elements.part[e]);
@@ -100,6 +106,33 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     matrix_ = stiffness_;
     factor_ = BlockCholesky(stiffness_);
     slot_of_.assign(mass.size(), no_index);
+}
+
+Real StiffBody::elastic_energy(std::span<const Vec3> displacement) const {
+    const auto at = [&](Index place) -> const Vec3& {
+        return displacement[static_cast<std::size_t>(node_[static_cast<std::size_t>(place)])];
+    };
+    Real twice = 0;
+    for (std::size_t k = 0; k < size(); ++k) {
+        const auto row = static_cast<Index>(k);
+        for (auto i = static_cast<std::size_t>(stiffness_.offset[k]);
+             i < static_cast<std::size_t>(stiffness_.offset[k + 1]); ++i) {
+            const Index column = stiffness_.column[i];
+            twice += (column == row ? 1 : 2) * at(row).dot(stiffness_.block[i] * at(column));
+        }
+    }
+    return twice / 2;
+}
+
+void StiffBody::take_rigid_motion(std::span<Vec3> velocity) const {
+    Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero();
+    for (std::size_t k = 0; k < size(); ++k) {
+        const Vec3 of_node = mass_[k] * velocity[static_cast<std::size_t>(node_[k])];
+        momentum += of_node;
+        moment += arm_[k].cross(of_node);
+    }
+    const Vec3 mean = momentum / total_mass_, spin = inverse_inertia_ * moment;
+    for (std::size_t k = 0; k < size(); ++k) velocity[static_cast<std::size_t>(node_[k])] -= mean + spin.cross(arm_[k]);
 }
 
 bool StiffBody::prepare(Real inertia, Real stiffness) {

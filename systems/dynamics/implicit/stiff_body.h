@@ -33,6 +33,10 @@ public:
     void elastic_forces(std::span<const Vec3> displacement, std::span<Vec3> out) const {
         stiffness_.multiply(displacement, out);
     }
+    /// u K u / 2, J; `displacement`: by node of the body.
+    Real elastic_energy(std::span<const Vec3> displacement) const;
+    /// Takes the motion as a whole out of velocities (m/s), by node of the body.
+    void take_rigid_motion(std::span<Vec3> velocity) const;
     /// Makes A = inertia M + stiffness K the matrix of respond(). A factor that is there is kept. Returns false where
     /// A is not positive definite.
     bool prepare(Real inertia, Real stiffness);
@@ -55,6 +59,7 @@ private:
     void respond_to(std::span<X> impulse) const;
 
     std::vector<Index> place_;  // by node
+    std::vector<Index> node_;   // by place
     std::vector<Real> mass_;    // kg, by place
     std::vector<Vec3> arm_;     // m, from the centre of mass, by place
     Real total_mass_ = 0;

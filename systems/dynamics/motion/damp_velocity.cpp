@@ -18,7 +18,9 @@ Real damping_of(const DampingInputs& bodies, std::size_t body) {
 }
 
 bool is_damped(const DampingInputs& bodies, std::size_t body) {
-    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0 && !bodies.body_asleep[body];
+    const bool has_frame = !bodies.body_rigid.empty() && bodies.body_rigid[body].size() > 0;
+    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0 && !bodies.body_asleep[body] &&
+           !has_frame;
 }
 
 /// A body without pinned nodes keeps its rigid motion.

@@ -32,9 +32,22 @@ void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& stat
     state.momentum[r] = state.angular_momentum[r] = Vec3::Zero();
 }
 
+/// What deforms in the frame of a body.
+void stop_deforming(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
+    const Range rows = bodies.body_implicit[body];
+    for (Index row = rows.begin; row < rows.end; ++row) {
+        const Index n = bodies.nodes[body].begin + row - rows.begin;
+        taken.energy += bodies.mass[n] * state.deforming[row].squaredNorm() / 2;
+        state.deforming[row] = Vec3::Zero();
+    }
+}
+
 void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
     const Index rigid = bodies.rigid(body);
-    if (rigid != no_index) stop_rigid(bodies, static_cast<std::size_t>(rigid), state, taken);
+    if (rigid != no_index) {
+        stop_rigid(bodies, static_cast<std::size_t>(rigid), state, taken);
+        stop_deforming(bodies, body, state, taken);
+    }
     for (Index n = bodies.nodes[body].begin; n < bodies.nodes[body].end; ++n) {
         if (bodies.inverse_mass[n] > 0 && rigid == no_index) {
             taken.energy += bodies.mass[n] * state.velocity[n].squaredNorm() / 2;

@@ -10,6 +10,7 @@
 #include "components/collider_table.h"
 #include "components/column.h"
 #include "components/contact_table.h"
+#include "components/implicit_node_table.h"
 #include "components/node_table.h"
 #include "components/options.h"
 #include "components/rigid_body_table.h"
@@ -94,7 +95,8 @@ struct RestInputs {
     std::span<const Real> mass;          // kg, by node
     std::span<const Real> inverse_mass;  // 1/kg, by node
     // BodyTable, RigidBodyTable
-    std::span<const Range> body_rigid = {};  // empty: none is
+    std::span<const Range> body_rigid = {};     // empty: none is
+    std::span<const Range> body_implicit = {};  // of ImplicitNodeTable
     std::span<const Real> rigid_mass = {};
     std::span<const Vec3> rigid_moments = {};
     std::span<const Mat3> rigid_rotation = {};
@@ -111,6 +113,7 @@ struct RestInputs {
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass),
                 .body_rigid = binder.read(body.rigid),
+                .body_implicit = binder.read(body.implicit),
                 .rigid_mass = binder.read(rigid.mass),
                 .rigid_moments = binder.read(rigid.moments),
                 .rigid_rotation = binder.read(rigid.rotation)};
@@ -129,8 +132,10 @@ struct RestOutputs {
     std::span<Vec3> still_position;                        // m, by node
     std::span<Vec3> velocity, velocity_next;               // m/s, by node
     std::span<Vec3> momentum = {}, angular_momentum = {};  // of rigid bodies
+    std::span<Vec3> deforming = {};                        // m/s, of implicit bodies
 
-    static RestOutputs bind(const Binder& binder, BodyTable& body, NodeTable& node, RigidBodyTable& rigid) {
+    static RestOutputs bind(const Binder& binder, BodyTable& body, NodeTable& node, RigidBodyTable& rigid,
+                            ImplicitNodeTable& implicit) {
         return {.asleep = binder.write(body.asleep),
                 .still_time = binder.write(body.still_time),
                 .drift = binder.write(body.drift),
@@ -139,7 +144,8 @@ struct RestOutputs {
                 .velocity = binder.write(node.velocity),
                 .velocity_next = binder.write(node.velocity_next),
                 .momentum = binder.write(rigid.momentum),
-                .angular_momentum = binder.write(rigid.angular_momentum)};
+                .angular_momentum = binder.write(rigid.angular_momentum),
+                .deforming = binder.write(implicit.velocity)};
     }
 };
 

@@ -37,6 +37,26 @@ void for_each_body(Executor& executor, const RigidBodies& bodies, auto&& visit) 
     });
 }
 
+/// Node `n` of a body in the frame of its mesh, deformed where it moves implicitly.
+struct ShapeNext {
+    const RigidBodies& bodies;
+    const ElasticMotion& elastic;
+    Index first_row;  // of ImplicitNodeTable; no_index: it is rigid
+    std::size_t first_node;
+
+    ShapeNext(const RigidBodies& of, const ElasticMotion& motion, std::size_t r)
+        : bodies(of),
+          elastic(motion),
+          first_row(of.implicit(r).size() > 0 ? of.implicit(r).begin : no_index),
+          first_node(static_cast<std::size_t>(of.nodes(r).begin)) {}
+
+    bool deforms() const { return first_row != no_index; }
+    std::size_t row(std::size_t n) const { return static_cast<std::size_t>(first_row) + (n - first_node); }
+    Vec3 at(std::size_t n) const {
+        return deforms() ? Vec3(bodies.rest_position[n] + elastic.displacement[row(n)]) : bodies.rest_position[n];
+    }
+};
+
 bool is_moved(const RigidImpulses& impulses, std::size_t r) {
     return !impulses.contact_impulse[r].isZero(0) || !impulses.contact_moment[r].isZero(0) ||
            !impulses.push_velocity[r].isZero(0) || !impulses.push_spin[r].isZero(0);
@@ -75,7 +95,7 @@ bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
 }
 
 bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
-                       std::span<const Vec3> position, Real h, const RigidTurns& out) {
+                       const ElasticMotion& elastic, std::span<const Vec3> position, Real h, const RigidTurns& out) {
     if (bodies.size() == 0) return false;
     for_each_body(executor, bodies, [&](std::size_t r) {
         out.center_next[r] = bodies.center[r];
@@ -86,15 +106,16 @@ bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
             turned_freely(bodies.rotation[r], bodies.moments[r], angular_momentum_after(bodies, impulses, r), h);
         out.rotation_next[r] = without_strain(rotation_matrix(h * impulses.push_spin[r]) * turned);
         const RigidPlace place(bodies, r, out.center_next[r], out.rotation_next[r]);
-        for_each_node(bodies.nodes(r), [&](std::size_t n) {
-            out.velocity_next[n] = (place.of(bodies.rest_position[n]) - position[n]) / h;
-        });
+        const ShapeNext shape(bodies, elastic, r);
+        for_each_node(bodies.nodes(r),
+                      [&](std::size_t n) { out.velocity_next[n] = (place.of(shape.at(n)) - position[n]) / h; });
     });
     return true;
 }
 
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
-                       std::span<const Vec3> center_next, std::span<const Mat3> rotation_next, const RigidMoves& out) {
+                       const ElasticMotion& elastic, std::span<const Vec3> center_next,
+                       std::span<const Mat3> rotation_next, const RigidMoves& out) {
     if (bodies.size() == 0) return false;
     for_each_body(executor, bodies, [&](std::size_t r) {
         if (bodies.asleep(r)) return;
@@ -107,9 +128,15 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         out.rotation[r] = rotation_next[r];
         out.momentum[r] = momentum;
         out.angular_momentum[r] = angular_momentum;
+        const ShapeNext shape(bodies, elastic, r);
         for_each_node(bodies.nodes(r), [&](std::size_t n) {
-            out.position[n] = place.of(bodies.rest_position[n]);
+            out.position[n] = place.of(shape.at(n));
             out.velocity[n] = field.at(out.position[n]);
+            if (!shape.deforms()) return;
+            const std::size_t row = shape.row(n);
+            out.displacement[row] = elastic.displacement[row];
+            out.displacement_velocity[row] = elastic.velocity[row];
+            out.velocity[n] += place.from_mesh * elastic.velocity[row];
         });
     });
     return true;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "components/body_table.h"
+#include "components/implicit_node_table.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
 #include "jobs/access.h"
@@ -13,10 +14,12 @@
 
 namespace skerry {
 
-/// What rigid bodies are, and where they are at the start of the step.
+/// What rigid bodies are, and where they are at the start of the step. Those that move implicitly are among them: what
+/// moves as a rigid body does is the frame of their mesh, and their centre of mass.
 struct RigidBodies {
     std::span<const Index> body;
     std::span<const Range> body_nodes;          // BodyTable
+    std::span<const Range> body_implicit;       // BodyTable
     std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: none is
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
@@ -28,6 +31,7 @@ struct RigidBodies {
                             const NodeTable& node, const bool& any_asleep) {
         return {.body = binder.read(rigid.body),
                 .body_nodes = binder.read(of_body.nodes),
+                .body_implicit = binder.read(of_body.implicit),
                 .body_asleep = binder.read_if(binder.value(any_asleep), of_body.asleep),
                 .mass = binder.read(rigid.mass),
                 .moments = binder.read(rigid.moments),
@@ -45,6 +49,18 @@ struct RigidBodies {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
     }
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
+    /// Rows of ImplicitNodeTable.
+    Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
+};
+
+/// How implicit bodies are deformed at the end of the step, in the frames of their meshes: by row of ImplicitNodeTable.
+struct ElasticMotion {
+    std::span<const Vec3> displacement, velocity;  // m, m/s
+
+    static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit) {
+        return {.displacement = binder.read(implicit.displacement_next),
+                .velocity = binder.read(implicit.velocity_next)};
+    }
 };
 
 struct RigidForces {
@@ -111,20 +127,23 @@ struct RigidTurns {
 
 /// Where the bodies are at the end of the step. Parallel over bodies. Returns false where there is none (skipped).
 bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
-                       std::span<const Vec3> position, Real h, const RigidTurns& out);
+                       const ElasticMotion& elastic, std::span<const Vec3> position, Real h, const RigidTurns& out);
 
 struct RigidMoves {
     std::span<Vec3> center, momentum, angular_momentum;
     std::span<Mat3> rotation;
-    std::span<Vec3> position, velocity;  // by node
+    std::span<Vec3> position, velocity;                   // by node
+    std::span<Vec3> displacement, displacement_velocity;  // ImplicitNodeTable
 
-    static RigidMoves bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
+    static RigidMoves bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node, ImplicitNodeTable& implicit) {
         return {.center = binder.write(rigid.center),
                 .momentum = binder.write(rigid.momentum),
                 .angular_momentum = binder.write(rigid.angular_momentum),
                 .rotation = binder.write(rigid.rotation),
                 .position = binder.write(node.position),
-                .velocity = binder.write(node.velocity)};
+                .velocity = binder.write(node.velocity),
+                .displacement = binder.write(implicit.displacement),
+                .displacement_velocity = binder.write(implicit.velocity)};
     }
 };
 
@@ -132,6 +151,7 @@ struct RigidMoves {
 /// `rotation_next`), and go on with the momenta that the step gave them. Parallel over bodies. Returns false where
 /// there is none (skipped).
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
-                       std::span<const Vec3> center_next, std::span<const Mat3> rotation_next, const RigidMoves& out);
+                       const ElasticMotion& elastic, std::span<const Vec3> center_next,
+                       std::span<const Mat3> rotation_next, const RigidMoves& out);
 
 }  // namespace skerry

@@ -4,6 +4,8 @@
 #include <span>
 
 #include "components/contact_table.h"
+#include "components/implicit_coupling.h"
+#include "components/implicit_node_table.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
@@ -40,6 +42,47 @@ struct RigidInputs {
     }
 };
 
+/// Bodies that move implicitly: what deforms in their frames, which are among the rigid bodies.
+struct ImplicitInputs {
+    std::span<const Range> body_implicit{};      // BodyTable
+    const ImplicitCoupling* coupling = nullptr;  // null, or without nodes: contacts touch none
+    // ImplicitNodeTable, m/s, in the frame of the mesh: kicked, and at the start of the step
+    std::span<const Vec3> velocity{}, velocity_before{};
+    std::span<const Mat3> axes{}, rotation{};  // RigidBodyTable
+
+    static ImplicitInputs bind(const Binder& binder, const BodyTable& body, const RigidBodyTable& rigid,
+                               const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling) {
+        return {.body_implicit = binder.read(body.implicit),
+                .coupling = &binder.read(coupling),
+                .velocity = binder.read(implicit.velocity_next),
+                .velocity_before = binder.read(implicit.velocity),
+                .axes = binder.read(rigid.axes),
+                .rotation = binder.read(rigid.rotation)};
+    }
+
+    bool any() const { return coupling != nullptr && coupling->nodes.size() > 0; }
+    /// Row of ImplicitNodeTable, or no_index.
+    Index row(Index node, const RigidNodes& nodes) const {
+        if (!any()) return no_index;
+        const auto body = static_cast<std::size_t>(nodes.node_body[static_cast<std::size_t>(node)]);
+        const Range rows = body_implicit[body];
+        return rows.size() == 0 ? no_index : rows.begin + node - nodes.body_nodes[body].begin;
+    }
+    /// m/s, world: beside the motion of the frame. `row`: of ImplicitNodeTable; `body`: of RigidBodyTable.
+    Vec3 deforming(Index row, Index body) const {
+        const auto r = static_cast<std::size_t>(body);
+        return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
+    }
+    /// m/s, world: what the elasticity of its body gave a node in the kick, which contacts take back where it is in
+    /// equilibrium with them.
+    Vec3 thrown(Index node, const RigidNodes& nodes) const {
+        const Index row = this->row(node, nodes);
+        if (row == no_index) return Vec3::Zero();
+        const auto r = static_cast<std::size_t>(nodes.row(node)), at = static_cast<std::size_t>(row);
+        return rotation[r] * (axes[r].transpose() * (velocity[at] - velocity_before[at]));
+    }
+};
+
 /// What the stage reads beside the contacts.
 struct RegionInputs {
     std::span<const Stencil> stencil;
@@ -55,13 +98,15 @@ struct RegionInputs {
     const NodeClusters* clusters = nullptr;  // nodes that move together; none, or null: every node by its own mass
     std::span<const Vec3> cluster_kick{};    // N s, of this step, by item of clusters->nodes
     RigidInputs rigid{};                     // bodies that move as a whole; none by default
+    ImplicitInputs implicit{};               // those of them that deform; none by default
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
     /// `velocity`: of the nodes, at the start of the step.
     static RegionInputs bind(const Binder& binder, const ContactTable& contact, const NodeTable& node,
                              const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
-                             const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid) {
+                             const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid,
+                             const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling) {
         return {.stencil = binder.read(contact.stencil),
                 .normal = binder.read(contact.normal),
                 .gap = binder.read(contact.gap),
@@ -75,7 +120,8 @@ struct RegionInputs {
                 .key = binder.read(contact.key),
                 .clusters = &binder.value(clusters),
                 .cluster_kick = binder.read(cluster_kick),
-                .rigid = RigidInputs::bind(binder, node, body, rigid)};
+                .rigid = RigidInputs::bind(binder, node, body, rigid),
+                .implicit = ImplicitInputs::bind(binder, body, rigid, implicit, coupling)};
     }
 };
 
@@ -85,15 +131,18 @@ struct RegionOutputs {
     std::span<Vec3> push_out;       // by node, but for those of rigid bodies
     // by row of RigidBodyTable, from zero
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
+    std::span<Vec3> deforming_impulse{};  // N s, by row of ImplicitNodeTable, from zero
 
-    static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid) {
+    static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
+                              ImplicitNodeTable& implicit) {
         return {.impulse = binder.write(contact.impulse),
                 .velocity_next = binder.write(node.velocity_next),
                 .push_out = binder.write(node.push_out),
                 .contact_impulse = binder.write(rigid.contact_impulse),
                 .contact_moment = binder.write(rigid.contact_moment),
                 .push_velocity = binder.write(rigid.push_velocity),
-                .push_spin = binder.write(rigid.push_spin)};
+                .push_spin = binder.write(rigid.push_spin),
+                .deforming_impulse = binder.write(implicit.contact_impulse)};
     }
 };
 

@@ -6,7 +6,7 @@
 namespace skerry {
 namespace {
 
-/// m/s, velocity of the contact at the start of the step and as predicted.
+/// m/s, velocity of the contact at the start of the step and as predicted, without what implicit bodies deform.
 struct AroundKick {
     Vec3 before, now;
 };
@@ -19,6 +19,10 @@ inline AroundKick around_kick(const RegionInputs& inputs, Index row, std::span<c
         velocity.before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
         velocity.now += stencil.weight[a] * velocity_next[stencil.node[a]];
     }
+    if (inputs.implicit.any())
+        for (std::size_t a = 0; a < 4; ++a)
+            if (stencil.weight[a] != 0)
+                velocity.now -= stencil.weight[a] * inputs.implicit.thrown(stencil.node[a], inputs.rigid.nodes);
     return velocity;
 }
 

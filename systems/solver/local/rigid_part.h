@@ -36,7 +36,7 @@ struct RigidPart {
     Columns3 mobility;  // 1/kg, W_ii
     Columns3 frame;     // normal and two tangents
     LocalBlock block;   // of W_ii, in the frame
-    Real along_normal;  // 1/kg, n W_ii n
+    Real along_normal;  // 1/kg, n W_ii n where nothing deforms
     Real steepest;      // 1/kg, at least the largest eigenvalue of W_ii
 };
 

@@ -108,7 +108,7 @@ void FreedomOperator::assemble(Eigen::MatrixXd& matrix) const {
     for (Index i = 0; i < size(); ++i)
         for (Index j = 0; j < size(); ++j)
             matrix.block<3, 3>(3 * i, 3 * j) =
-                walk_.coupling(contact(i), contact(j)) * Mat3::Identity() + rigid_coupling(part(i), part(j));
+                walk_.coupling(contact(i), contact(j)) + rigid_coupling(part(i), part(j));
 }
 
 }  // namespace skerry

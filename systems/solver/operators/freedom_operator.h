@@ -10,7 +10,7 @@
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/newton_memory.h"
-#include "systems/solver/operators/through_clusters.h"
+#include "systems/solver/operators/through_groups.h"
 
 namespace skerry {
 
@@ -31,7 +31,7 @@ public:
     using Number = Real;
 
     /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse.
-    FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughClusters& walk)
+    FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughGroups& walk)
         : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
 
     Index size() const { return static_cast<Index>(memory_.contact.size()); }
@@ -69,6 +69,11 @@ public:
     Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
     }
+    /// The same impulse on what does not deform, nor does what it pushes.
+    void push(Index i, const Vec4& impulse, Vec4* velocity) const {
+        walk_.apply_undeformed(contact(i), impulse, velocity);
+        apply_to_rigid(part(i), impulse, velocity);
+    }
     void apply(Index i, const Vec4& impulse, Vec4* velocity) const {
         walk_.apply(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
@@ -87,7 +92,7 @@ private:
     FreedomMemory memory_;
     Friction friction_;
     Real scale_;
-    ThroughClusters walk_;
+    ThroughGroups walk_;
 };
 
 }  // namespace skerry

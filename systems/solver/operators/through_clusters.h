@@ -19,38 +19,39 @@ public:
     ThroughClusters(const NodeClusters& clusters, std::span<const Index> node) : clusters_(&clusters), node_(node) {}
 
     void apply(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
-        for (Index a = 0; a < contact.node_count; ++a) {
-            const Index n = contact.node[a], global = node_[static_cast<std::size_t>(n)];
-            const Index cluster = clusters_->cluster(global);
-            if (cluster == no_index) {
-                velocity[n] += contact.step[static_cast<std::size_t>(a)] * impulse;
-                continue;
-            }
-            const Index place = clusters_->place[global];
-            const Vec4 weighted = contact.weight[static_cast<std::size_t>(a)] * impulse;
-            Vec4* const first = velocity + (n - place);
-            const std::span<const Real> row = clusters_->row(cluster, place);
-            for (std::size_t k = 0; k < row.size(); ++k) first[k] += row[k] * weighted;
-        }
+        for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
+            apply_to_node(contact, a, impulse, velocity);
     }
     Real coupling(const LumpedContact& a, const LumpedContact& b) const {
         Real sum = 0;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(a.node_count); ++k) {
-            const Index n = a.node[k], global = node_[static_cast<std::size_t>(n)];
-            const Index cluster = clusters_->cluster(global);
-            for (std::size_t l = 0; l < static_cast<std::size_t>(b.node_count); ++l) {
-                if (cluster == no_index) {
-                    if (n == b.node[l]) sum += a.weight[k] * b.step[l];
-                    continue;
-                }
-                const Index other = node_[static_cast<std::size_t>(b.node[l])];
-                if (clusters_->cluster(other) == cluster)
-                    sum += a.weight[k] * b.weight[l] *
-                           clusters_->row(cluster,
-                                          clusters_->place[global])[static_cast<std::size_t>(clusters_->place[other])];
-            }
-        }
+        for (std::size_t k = 0; k < static_cast<std::size_t>(a.node_count); ++k)
+            for (std::size_t l = 0; l < static_cast<std::size_t>(b.node_count); ++l)
+                sum += coupling_of_nodes(a, k, b, l);
         return sum;
+    }
+
+    /// The share of one node.
+    void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
+        const Index n = contact.node[a], global = node_[static_cast<std::size_t>(n)];
+        const Index cluster = clusters_->cluster(global);
+        if (cluster == no_index) {
+            velocity[n] += contact.step[a] * impulse;
+            return;
+        }
+        const Index place = clusters_->place[global];
+        const Vec4 weighted = contact.weight[a] * impulse;
+        Vec4* const first = velocity + (n - place);
+        const std::span<const Real> row = clusters_->row(cluster, place);
+        for (std::size_t k = 0; k < row.size(); ++k) first[k] += row[k] * weighted;
+    }
+    Real coupling_of_nodes(const LumpedContact& a, std::size_t k, const LumpedContact& b, std::size_t l) const {
+        const Index n = a.node[k], global = node_[static_cast<std::size_t>(n)];
+        const Index cluster = clusters_->cluster(global);
+        if (cluster == no_index) return n == b.node[l] ? a.weight[k] * b.step[l] : 0;
+        const Index other = node_[static_cast<std::size_t>(b.node[l])];
+        if (clusters_->cluster(other) != cluster) return 0;
+        return a.weight[k] * b.weight[l] *
+               clusters_->row(cluster, clusters_->place[global])[static_cast<std::size_t>(clusters_->place[other])];
     }
 
 private:

@@ -12,13 +12,14 @@ namespace {
 
 const NodeClusters no_clusters;
 
-/// A region with its part of the memory. Rows of its velocities: two a rigid body, then nodes of clusters, then others.
+/// A region with its part of the memory. Rows of its velocities: two a rigid body, then nodes of those that deform,
+/// then nodes of clusters, then others.
 struct FreedomRegion {
     std::span<const Index> row;    // of its contacts
     std::span<const Index> rigid;  // rows of RigidBodyTable
     std::span<const Index> node;   // rows of NodeTable; no_index where a rigid body has its rows
     FreedomMemory memory;
-    ThroughClusters walk;
+    ThroughGroups walk;
     LoadSums sums;
     Real scale;  // sqrt(J), of e_nat
     Index base;
@@ -40,7 +41,8 @@ public:
                   .rigid = data_.region_rigid[static_cast<std::size_t>(number)],
                   .node = {},
                   .memory = {},
-                  .walk = ThroughClusters(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters, node_),
+                  .walk = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
+                                        stage.inputs.implicit, stage.inputs.rigid.nodes, node_),
                   .sums = {},
                   .scale = 0,
                   .base = base},
@@ -74,6 +76,10 @@ private:
             velocities()[count_ + 1] = padded(rigid.spin(r));
             count_ += 2;
         }
+        if (stage_.inputs.implicit.any())
+            for (const Index body : region_.rigid)
+                for (const Index n : stage_.inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)])
+                    place_of(n);
         for (const Index c : data_.region_clusters[static_cast<std::size_t>(number_)])
             for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) place_of(n);
     }
@@ -84,7 +90,10 @@ private:
         if (static_cast<std::size_t>(place) < count_ && node_[static_cast<std::size_t>(place)] == global) return place;
         place = static_cast<Index>(count_);
         node_[count_] = global;
-        velocities()[count_++] = padded(stage_.out.velocity_next[static_cast<std::size_t>(global)]);
+        const Index row = stage_.inputs.implicit.row(global, stage_.inputs.rigid.nodes);
+        velocities()[count_++] =
+            padded(row == no_index ? stage_.out.velocity_next[static_cast<std::size_t>(global)]
+                                   : stage_.inputs.implicit.deforming(row, stage_.inputs.rigid.nodes.row(global)));
         return place;
     }
 
@@ -99,7 +108,7 @@ private:
             [&](Index node, Real weight) {
                 const Index body = rigid.row(node);
                 if (body != no_index) add_term(part, body, node, weight);
-                return body != no_index;
+                return body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index;
             });
         data_.impulse[first_ + i].setZero();
         find_mobility(contact, part);
@@ -121,20 +130,23 @@ private:
     }
 
     void find_mobility(LumpedContact& contact, RigidPart& part) const {
-        Mat3 mobility = contact.node_count > 0 ? Mat3(region_.walk.coupling(contact, contact) * Mat3::Identity())
-                                               : Mat3(Mat3::Zero());
+        const bool moves_nodes = contact.node_count > 0;
+        Mat3 mobility = moves_nodes ? region_.walk.coupling(contact, contact) : Mat3(Mat3::Zero());
         for (Index k = 0; k < part.term_count; ++k) {
             RigidTerm& term = part.term[static_cast<std::size_t>(k)];
             const auto r = static_cast<std::size_t>(term.row);
             term.step = term.weight / stage_.inputs.rigid.mass[r];
             term.spin_step = columns_of(stage_.inputs.rigid.inverse_inertia[r] * cross_matrix(term.arm.head<3>()));
         }
-        mobility += rigid_coupling(part, part);
+        const Mat3 rigid = rigid_coupling(part, part);
+        mobility += rigid;
         const Vec3 normal = contact.normal.head<3>();
         const TangentFrame tangents = tangent_frame(normal);
         part.frame = {contact.normal, padded(tangents.first), padded(tangents.second)};
         part.mobility = columns_of(mobility);
         part.along_normal = normal.dot(mobility * normal);
+        if (moves_nodes && part.term_count > 0 && stage_.inputs.implicit.any())
+            part.along_normal = normal.dot((region_.walk.undeformed_coupling(contact, contact) + rigid) * normal);
         part.steepest = part.term_count > 0 ? mobility.norm() : mobility(0, 0);
         if (part.term_count > 0) {
             const Mat3 frame = matrix_of(part.frame);
@@ -195,6 +207,19 @@ bool start(const RegionStage& stage, const FreedomRegion& region, FreedomOperato
     return start_from_warm_impulse(op, settings, outcome);
 }
 
+/// The nodes of a contact that deform a body get their shares of its impulse.
+void write_deforming(const RegionStage& stage, const FreedomRegion& region, std::size_t i) {
+    if (!stage.inputs.implicit.any()) return;
+    const LumpedContact& contact = region.memory.contact[i];
+    for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
+        const Index node = region.node[static_cast<std::size_t>(contact.node[a])];
+        const Index row = stage.inputs.implicit.row(node, stage.inputs.rigid.nodes);
+        if (row != no_index)
+            stage.out.deforming_impulse[static_cast<std::size_t>(row)] +=
+                contact.weight[a] * region.memory.impulse[i].head<3>();
+    }
+}
+
 /// Velocities of nodes, also of those of rigid bodies that contacts name, and what rigid bodies got.
 void write_solution(const RegionStage& stage, const FreedomRegion& region, RegionOutcome& outcome) {
     const FreedomMemory& memory = region.memory;
@@ -219,9 +244,13 @@ void write_solution(const RegionStage& stage, const FreedomRegion& region, Regio
                 2 * (std::find(region.rigid.begin(), region.rigid.end(), body) - region.rigid.begin()));
             const Vec3 arm =
                 rigid.position[static_cast<std::size_t>(node)] - rigid.center[static_cast<std::size_t>(body)];
-            stage.out.velocity_next[static_cast<std::size_t>(node)] =
-                memory.velocity[slot].head<3>() + memory.velocity[slot + 1].head<3>().cross(arm);
+            Vec3& next = stage.out.velocity_next[static_cast<std::size_t>(node)];
+            next = memory.velocity[slot].head<3>() + memory.velocity[slot + 1].head<3>().cross(arm);
+            if (stage.inputs.implicit.row(node, rigid.nodes) != no_index)
+                next += memory.velocity[static_cast<std::size_t>(stage.memory.place[static_cast<std::size_t>(node)])]
+                            .head<3>();
         }
+        write_deforming(stage, region, i);
         stage.out.impulse[row] = memory.impulse[i].head<3>();
         outcome.dissipated += dissipated_by(stage, region.row[i]);
     }
@@ -263,7 +292,7 @@ bool push(const RegionStage& stage, const FreedomRegion& region, const FreedomOp
             const Real next = std::max(Real(0), memory.impulse[at] - along / mobility);
             const Real change = next - memory.impulse[at];
             if (change == 0) continue;
-            op.apply(i, change * normal, memory.velocity.data());
+            op.push(i, change * normal, memory.velocity.data());
             memory.impulse[at] = next;
             size += mobility * change * change;
         }
@@ -301,7 +330,8 @@ void push_out(const RegionStage& stage, const FreedomRegion& region, const Freed
         stage.out.push_spin[r] = velocity[2 * k + 1].head<3>();
     }
     for (std::size_t n = 2 * region.rigid.size(); n < region.node.size(); ++n)
-        stage.out.push_out[static_cast<std::size_t>(region.node[n])] = velocity[n].head<3>();
+        if (stage.inputs.implicit.row(region.node[n], stage.inputs.rigid.nodes) == no_index)
+            stage.out.push_out[static_cast<std::size_t>(region.node[n])] = velocity[n].head<3>();
     outcome.push_work = push_work_of(stage, region, velocity);
     stage.memory.pushed.store(true, std::memory_order_relaxed);
 }

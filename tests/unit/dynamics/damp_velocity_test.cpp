@@ -47,8 +47,19 @@ struct Cloud {
     }
     bool damp_from(Executor& executor, Real h, std::vector<Vec3>& velocity_next) {
         return damp_velocity(executor,
-                             {block_begin, block_end, block_body, node_blocks, body_material, pinned, asleep, damping,
-                              position, mass, inverse_mass, lag},
+                             {block_begin,
+                              block_end,
+                              block_body,
+                              node_blocks,
+                              body_material,
+                              pinned,
+                              {},
+                              asleep,
+                              damping,
+                              position,
+                              mass,
+                              inverse_mass,
+                              lag},
                              velocity, h, sums, velocity_next, dissipated);
     }
 };

@@ -223,9 +223,18 @@ class ProgramTest(ProgramCase):
         self.assertAlmostEqual(found["stable_dt"], 1 / 120)
         self.assertGreaterEqual(found["steps"], 120 * SCENE["seconds"])
         said = self.skerry("inspect", alone).stdout
-        self.assertIn("8.33 ms (all bodies are rigid)", said)
+        self.assertIn("8.33 ms (no body sets one)", said)
         self.assertNotIn("inf", said.lower().replace("info", ""))
         self.assertNotIn("stable up to", self.skerry("run", alone).stdout)
+
+    def test_implicit_bodies_run_and_set_no_step(self):
+        beam = {**SCENE["bodies"][0], "name": "beam", "dynamics": "implicit", "position": [0, 0, 0.5]}
+        scene = self.write("implicit.json", {**SCENE, "probes": [], "bodies": [beam]})
+        found = json.loads(self.skerry("inspect", scene, "--json").stdout)
+        self.assertEqual(found["body_kinds"][0]["dynamics"], "implicit")
+        self.assertAlmostEqual(found["stable_dt"], 1 / 120)
+        self.assertIn("tetrahedra (implicit)", self.skerry("inspect", scene).stdout)
+        self.assertIn("steps", self.skerry("run", scene).stdout)
 
     def test_inspect_says_what_another_value_would_do(self):
         written = json.loads(self.skerry("inspect", self.scene, "--json").stdout)

@@ -1,0 +1,173 @@
+#include "systems/dynamics/implicit/move_implicit_bodies.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "jobs/parallel_for.h"
+
+namespace skerry {
+
+namespace {
+
+/// The rows of one body, by node and by place.
+struct OfBody {
+    const StiffBody& stiff;
+    std::size_t first_node, first_row, count;
+
+    OfBody(const ImplicitBodies& bodies, const StiffBody& of, std::size_t r)
+        : stiff(of),
+          first_node(static_cast<std::size_t>(bodies.nodes(r).begin)),
+          first_row(static_cast<std::size_t>(bodies.rows(r).begin)),
+          count(static_cast<std::size_t>(bodies.rows(r).size())) {}
+
+    template <class T>
+    std::span<T> rows(std::span<T> column) const {
+        return column.subspan(first_row, count);
+    }
+    std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
+};
+
+void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& visit) {
+    parallel_for(executor, bodies.body.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t r = first; r < last; ++r)
+            if (bodies.rows(r).size() > 0) visit(r);
+    });
+}
+
+/// With the length of the step to twelve digits: steps that part a time evenly differ in the last ones.
+bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, StiffBody& stiff) {
+    constexpr int bits = 40;
+    int exponent = 0;
+    const Real fraction = std::frexp(h, &exponent);
+    const Real rounded = std::ldexp(std::nearbyint(std::ldexp(fraction, bits)), exponent - bits);
+    return stiff.prepare(1 + rounded * bodies.damping(r), rounded * rounded);
+}
+
+}  // namespace
+
+bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
+                          StiffBodies& stiff, const ImplicitKicks& out) {
+    if (!bodies.any()) return false;
+    for_each_implicit(executor, bodies, [&](std::size_t r) {
+        const OfBody of(bodies, stiff[r], r);
+        const std::span<Vec3> next = of.rows(out.velocity_next);
+        std::ranges::fill(of.rows(out.contact_impulse), Vec3::Zero());
+        std::ranges::fill(next, Vec3::Zero());
+        if (bodies.asleep(r)) return;
+        const std::span<Vec3> impulse = of.rows(out.impulse), force = of.rows(out.elastic_force);
+        const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
+        for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement[n];
+        of.stiff.elastic_forces(impulse, force);
+        const Mat3 turn = bodies.turn(r);
+        for (std::size_t n = 0; n < of.count; ++n) {
+            const std::size_t k = of.place(n);
+            impulse[k] = of.stiff.mass(k) * velocity[n] - h * force[k];
+            if (!loads.load.empty()) impulse[k] += h * (turn.transpose() * loads.load[of.first_node + n]);
+        }
+        if (make_factor(bodies, r, h, stiff[r]))
+            of.stiff.respond(impulse);
+        else  // the step is refused
+            std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
+        for (std::size_t n = 0; n < of.count; ++n) {
+            next[n] = impulse[of.place(n)];
+            out.node_velocity_next[of.first_node + n] += turn * next[n];
+        }
+    });
+    return true;
+}
+
+bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
+                            std::span<const Index> node_body, Real h, StiffBodies& stiff, ImplicitCoupling& coupling) {
+    coupling.nodes.clear();
+    if (!bodies.any()) return false;
+    constexpr Index touched = 0;
+    coupling.place.assign(bodies.displacement.size(), no_index);
+    bool any = false;
+    for (const Stencil& of_contact : stencil)
+        for (std::size_t a = 0; a < 4; ++a) {
+            if (of_contact.weight[a] == 0) continue;
+            const Index node = of_contact.node[a];
+            const auto body = static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)]);
+            const Range rows = bodies.body_implicit[body];
+            if (rows.size() == 0) continue;
+            coupling.place[static_cast<std::size_t>(rows.begin + node - bodies.body_nodes[body].begin)] = touched;
+            any = true;
+        }
+    if (!any) return false;
+    coupling.nodes.offset.push_back(0);
+    coupling.first_block.resize(bodies.body.size());
+    std::size_t blocks = 0;
+    for (std::size_t r = 0; r < bodies.body.size(); ++r) {
+        Index count = 0;
+        for (Index row = bodies.rows(r).begin; row < bodies.rows(r).end; ++row) {
+            Index& place = coupling.place[static_cast<std::size_t>(row)];
+            if (place == no_index) continue;
+            place = count++;
+            coupling.nodes.item.push_back(bodies.nodes(r).begin + row - bodies.rows(r).begin);
+        }
+        coupling.nodes.offset.push_back(static_cast<Index>(coupling.nodes.item.size()));
+        coupling.first_block[r] = blocks;
+        blocks += static_cast<std::size_t>(count) * static_cast<std::size_t>(count);
+    }
+    coupling.block.resize(blocks);
+    for_each_implicit(executor, bodies, [&](std::size_t r) {
+        const std::span<const Index> nodes = coupling.nodes[r];
+        if (nodes.empty()) return;
+        const bool sound = make_factor(bodies, r, h, stiff[r]);
+        const OfBody of(bodies, stiff[r], r);
+        const Mat3 turn = bodies.turn(r);
+        const std::span<PaddedMat3> block =
+            coupling.block.span().subspan(coupling.first_block[r], nodes.size() * nodes.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (!sound) break;
+            const std::span<const Mat3> column = stiff[r].column(static_cast<std::size_t>(nodes[i]) - of.first_node);
+            for (std::size_t j = i; j < nodes.size(); ++j) {
+                const std::size_t place = of.place(static_cast<std::size_t>(nodes[j]) - of.first_node);
+                const Mat3 there = turn * column[place] * turn.transpose();
+                block[i * nodes.size() + j] << there, Eigen::RowVector3d::Zero();
+                block[j * nodes.size() + i] << there.transpose(), Eigen::RowVector3d::Zero();
+            }
+        }
+    });
+    return true;
+}
+
+Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const StiffBodies& stiff, Real h,
+                            const ImplicitStrains& out, Column<Real>& damped) {
+    if (!bodies.any()) return 0;
+    damped.assign(bodies.body.size(), 0);
+    for_each_implicit(executor, bodies, [&](std::size_t r) {
+        const OfBody of(bodies, stiff[r], r);
+        const std::span<Vec3> impulse = of.rows(out.impulse), rate = of.rows(out.force_rate),
+                              next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
+        const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
+                                    force = of.rows(out.elastic_force), contact = of.rows(out.contact_impulse);
+        const bool touched = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
+        if (touched) {
+            const Mat3 back = bodies.turn(r).transpose();
+            for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = back * contact[n];
+            of.stiff.respond(impulse);
+            for (std::size_t n = 0; n < of.count; ++n) next[n] += impulse[of.place(n)];
+        }
+        for (std::size_t n = 0; n < of.count; ++n) displacement_next[n] = displacement[n] + h * next[n];
+        if (bodies.asleep(r)) return;
+        for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = next[n];
+        of.stiff.elastic_forces(impulse, rate);
+        Real taken = 0;
+        const Real damping = bodies.damping(r);
+        for (std::size_t n = 0; n < of.count; ++n) {
+            const std::size_t k = of.place(n);
+            // h/2 (u+ K w - u K w+), u+ = u + h w+
+            taken += h / 2 * (force[k].dot(velocity[n] - next[n]) + h * rate[k].dot(velocity[n]));
+            if (damping > 0) taken += damping * h / 2 * of.stiff.mass(k) * next[n].dot(velocity[n] + next[n]);
+        }
+        damped[r] = taken;
+    });
+    Real sum = 0;
+    for (const Real of_body : damped) sum += of_body;
+    return sum;
+}
+
+}  // namespace skerry

@@ -1,0 +1,116 @@
+// What deforms in the frame of a body that moves implicitly: kicked by forces, coupled where contacts touch it,
+// strained once they are solved. Its frame moves as rigid bodies do (docs/methods/implicit_bodies.md 2, 4).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "components/body_table.h"
+#include "components/contact_table.h"
+#include "components/implicit_coupling.h"
+#include "components/implicit_node_table.h"
+#include "components/material_table.h"
+#include "components/node_table.h"
+#include "components/rigid_body_table.h"
+#include "jobs/access.h"
+#include "jobs/executor.h"
+#include "systems/dynamics/implicit/stiff_body.h"
+
+namespace skerry {
+
+/// By row of RigidBodyTable; empty where a body does not deform.
+using StiffBodies = std::vector<StiffBody>;
+
+struct ImplicitBodies {
+    std::span<const Index> body;                // RigidBodyTable
+    std::span<const Mat3> axes, rotation;       // RigidBodyTable
+    std::span<const Range> body_nodes;          // BodyTable
+    std::span<const Range> body_implicit;       // BodyTable
+    std::span<const Index> body_material;       // BodyTable
+    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: none is
+    std::span<const Real> material_damping;     // 1/s
+    std::span<const Vec3> displacement;         // m
+    std::span<const Vec3> velocity;             // m/s
+
+    static ImplicitBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
+                               const MaterialTable& material, const ImplicitNodeTable& node, const bool& any_asleep) {
+        return {.body = binder.read(rigid.body),
+                .axes = binder.read(rigid.axes),
+                .rotation = binder.read(rigid.rotation),
+                .body_nodes = binder.read(of_body.nodes),
+                .body_implicit = binder.read(of_body.implicit),
+                .body_material = binder.read(of_body.material),
+                .body_asleep = binder.read_if(binder.value(any_asleep), of_body.asleep),
+                .material_damping = binder.read(material.damping),
+                .displacement = binder.read(node.displacement),
+                .velocity = binder.read(node.velocity)};
+    }
+
+    bool any() const { return !displacement.empty(); }
+    /// Rows of ImplicitNodeTable of a row of RigidBodyTable; none where it does not deform.
+    Range rows(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
+    Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
+    bool asleep(std::size_t r) const {
+        return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
+    }
+    /// 1/s
+    Real damping(std::size_t r) const {
+        return material_damping[static_cast<std::size_t>(body_material[static_cast<std::size_t>(body[r])])];
+    }
+    /// Frame of the mesh to the world.
+    Mat3 turn(std::size_t r) const { return rotation[r] * axes[r].transpose(); }
+};
+
+struct ImplicitLoads {
+    std::span<const Vec3> load;  // N, by node; empty: none
+
+    static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const bool& loaded) {
+        return {.load = binder.read_if(binder.value(loaded), node.load)};
+    }
+};
+
+struct ImplicitKicks {
+    std::span<Vec3> elastic_force, impulse, velocity_next, contact_impulse;  // ImplicitNodeTable
+    std::span<Vec3> node_velocity_next;                                      // m/s, by node
+
+    static ImplicitKicks bind(const Binder& binder, ImplicitNodeTable& implicit, NodeTable& node) {
+        return {.elastic_force = binder.write(implicit.elastic_force),
+                .impulse = binder.write(implicit.impulse),
+                .velocity_next = binder.write(implicit.velocity_next),
+                .contact_impulse = binder.write(implicit.contact_impulse),
+                .node_velocity_next = binder.write(node.velocity_next)};
+    }
+};
+
+/// velocity_next = A^-1 P (M w - h K u + h Q^T f), to which kick_rigid_bodies has come first: nodes get what is added
+/// to their motion with the frame. Factors of this step's length are made where they are not there. Parallel over
+/// bodies. Returns false where there is none (skipped).
+bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
+                          StiffBodies& stiff, const ImplicitKicks& out);
+
+/// Lists the nodes that contacts touch, and what impulses on them do to each other. Returns false where no contact
+/// touches an implicit body (skipped).
+bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
+                            std::span<const Index> node_body, Real h, StiffBodies& stiff, ImplicitCoupling& coupling);
+
+struct ImplicitStrains {
+    std::span<const Vec3> elastic_force, contact_impulse;                   // ImplicitNodeTable
+    std::span<Vec3> impulse, force_rate, velocity_next, displacement_next;  // ImplicitNodeTable
+
+    static ImplicitStrains bind(const Binder& binder, ImplicitNodeTable& implicit) {
+        return {.elastic_force = binder.read(implicit.elastic_force),
+                .contact_impulse = binder.read(implicit.contact_impulse),
+                .impulse = binder.write(implicit.impulse),
+                .force_rate = binder.write(implicit.force_rate),
+                .velocity_next = binder.write(implicit.velocity_next),
+                .displacement_next = binder.write(implicit.displacement_next)};
+    }
+};
+
+/// The velocities and displacements at the end of the step. Returns what the step damped, J; `damped` is memory, by row
+/// of RigidBodyTable. Parallel over bodies.
+Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const StiffBodies& stiff, Real h,
+                            const ImplicitStrains& out, Column<Real>& damped);
+
+}  // namespace skerry

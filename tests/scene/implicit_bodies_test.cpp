@@ -1,0 +1,295 @@
+// Implicit bodies in whole steps (docs/methods/implicit_bodies.md).
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/temporary_folder.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+
+struct ImplicitCube {
+    World world;
+    MaterialHandle material;
+    BodyHandle body;
+
+    explicit ImplicitCube(const Settings& settings, BodySettings body_settings = {}, const MaterialSettings& of = {},
+                          const Mesh& mesh = cube)
+        : world(settings), material(world.add_material(of)) {
+        body_settings.material = material;
+        body_settings.dynamics = BodyDynamics::implicit_elastic;
+        body = world.add_body(mesh, body_settings);
+    }
+};
+
+Settings without_gravity(Real h) {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.step_size = h;
+    return settings;
+}
+
+/// An implicit block on a plane tilted by `degrees`, at rest.
+ImplicitCube on_incline(Real degrees, Real mu, Real h, Real modulus) {
+    Settings settings = accurate(tilted_gravity(degrees), 1e-10);
+    settings.step_size = h;
+    ImplicitCube scene(settings, {.position = {0, 0, 0.025}, .contact_distance = 0},
+                       {.young_modulus = modulus, .poisson_ratio = 0.3, .friction = mu},
+                       mesh::box({0.1, 0.1, 0.05}, {2, 2, 1}));
+    scene.world.add_collider(Plane{});
+    return scene;
+}
+
+/// Two cubes, one thrown at the other, beside an elastic one that is not implicit.
+struct Collision {
+    World world;
+    std::array<BodyHandle, 3> body;
+
+    explicit Collision(int threads = 1, bool with_explicit = true) : world(settings(threads)) {
+        const auto stiff = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3});
+        const auto soft = world.add_material({.young_modulus = 1e5});
+        body[0] = world.add_body(cube, {.material = stiff,
+                                        .velocity = {2, 0, 0},
+                                        .angular_velocity = {1, 2, 3},
+                                        .dynamics = BodyDynamics::implicit_elastic});
+        body[1] = world.add_body(
+            cube, {.material = stiff, .position = {0.13, 0.02, 0.01}, .dynamics = BodyDynamics::implicit_elastic});
+        if (with_explicit) body[2] = world.add_body(cube, {.material = soft, .position = {0.27, 0, 0}});
+    }
+    static Settings settings(int threads) {
+        Settings settings;
+        settings.gravity = Vec3::Zero();
+        settings.threads = threads;
+        return settings;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a free implicit body keeps its momenta, and loses no energy of its spin", "[scene][implicit]") {
+    const Mesh brick = mesh::box({0.1, 0.2, 0.3}, {1, 2, 3});
+    ImplicitCube scene(without_gravity(1.0 / 60), {.velocity = {0.1, 0.2, 0.3}, .angular_velocity = {0.2, 6, 0.3}},
+                       {.young_modulus = 1e8}, brick);
+    const WorldReport before = scene.world.report();
+    REQUIRE(scene.world.advance(20).ok());
+    const WorldReport after = scene.world.report();
+    CHECK((after.momentum - before.momentum).norm() < 1e-14 * before.momentum.norm());
+    CHECK((after.angular_momentum - before.angular_momentum).norm() < 1e-12 * before.angular_momentum.norm());
+    CHECK(std::abs(after.energy.kinetic / before.energy.kinetic - 1) < 1e-3);
+    CHECK(after.energy.elastic < 1e-20);
+    const Real mass = 6;  // of a solid brick, with the density of water
+    CHECK(before.angular_momentum.y() == Approx(6 * mass * (0.01 + 0.09) / 12).epsilon(1e-12));
+}
+
+TEST_CASE("an implicit block stands below the friction angle without creep, and slides above it by the law",
+          "[scene][implicit]") {
+    const Real mu = 0.3, critical = std::atan(mu) * 180 / std::numbers::pi;
+    for (const Real modulus : {1e7, 1e9, 2e11})
+        for (const Real h : {1.0 / 60, 1.0 / 1000}) {
+            CAPTURE(modulus, h);
+            ImplicitCube still = on_incline(critical - 0.1, mu, h, modulus);
+            REQUIRE(still.world.advance(1).ok());
+            const Vec3 start = still.world.center_of_mass(still.body);
+            REQUIRE(still.world.advance(1).ok());
+            CHECK((still.world.center_of_mass(still.body) - start).norm() < 1e-9);
+
+            ImplicitCube slides = on_incline(critical + 0.1, mu, h, modulus);
+            const auto speed = [&] { return slides.world.report().momentum.x() / 0.5; };
+            REQUIRE(slides.world.advance(1).ok());
+            const Real before = speed();
+            REQUIRE(slides.world.advance(1).ok());
+            const Real angle = (critical + 0.1) * std::numbers::pi / 180;
+            const Real expected = standard_gravity * (std::sin(angle) - mu * std::cos(angle));
+            CHECK(speed() - before == Approx(expected).epsilon(1e-3));
+        }
+}
+
+TEST_CASE("an implicit body in equilibrium stays where it is, whatever the step", "[scene][implicit]") {
+    Settings settings = accurate({0, 0, -standard_gravity}, 1e-10);
+    settings.step_size = 1e-3;
+    ImplicitCube scene(settings, {.position = {0, 0, 0.05}, .contact_distance = 0}, {.young_modulus = 1e6});
+    scene.world.add_collider(Plane{});
+    REQUIRE(scene.world.advance(2).ok());
+    const std::vector<Vec3> still(scene.world.positions(scene.body).begin(), scene.world.positions(scene.body).end());
+    Real force = 0;
+    for (const Contact& contact : scene.world.contacts()) force += contact.impulse.z() / 1e-3;
+    CHECK(force == Approx(standard_gravity).epsilon(1e-9));
+    // it is compressed as a column under its weight: rho g L^2 / (2 E), where the floor lets it widen
+    CHECK(scene.world.positions(scene.body)[0].z() < 0.1 - 0.3 * 1000 * standard_gravity * 0.01 / 2e6);
+    REQUIRE(scene.world.advance(1).ok());
+    for (std::size_t n = 0; n < still.size(); ++n)
+        CHECK((scene.world.positions(scene.body)[n] - still[n]).norm() < 1e-12);
+}
+
+TEST_CASE("implicit bodies exchange momentum with each other and with explicit ones, and energy adds up",
+          "[scene][implicit]") {
+    Collision scene;
+    const WorldReport before = scene.world.report();
+    REQUIRE(scene.world.advance(0.3).ok());
+    const WorldReport after = scene.world.report();
+    CHECK(after.mean_contacts > 0);
+    CHECK((after.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
+    // contacts have a distance, across which their impulses are no pair
+    CHECK((after.angular_momentum - before.angular_momentum).norm() < 2e-3 * before.momentum.norm() * 0.1);
+    CHECK(after.energy.kinetic + after.energy.elastic < before.energy.kinetic);
+    CHECK(after.energy_error_share < 1e-2);  // of the explicit one
+    CHECK(scene.world.velocities(scene.body[2])[0].x() > 0.1);
+}
+
+TEST_CASE("energy of implicit bodies that hit each other adds up to rounding", "[scene][implicit]") {
+    Collision scene(1, false);
+    const WorldReport before = scene.world.report();
+    REQUIRE(scene.world.advance(0.1).ok());
+    const WorldReport after = scene.world.report();
+    CHECK(after.mean_contacts > 0);
+    CHECK(after.energy.dissipated > 0.1 * before.energy.kinetic);
+    CHECK(after.energy.kinetic + after.energy.elastic + after.energy.dissipated ==
+          Approx(before.energy.kinetic).epsilon(1e-12));
+    CHECK(after.energy_error_share < 1e-12);
+}
+
+TEST_CASE("a world with implicit bodies goes on bit by bit when it is cloned or saved, on any number of workers",
+          "[scene][implicit]") {
+    Collision reference;
+    REQUIRE(reference.world.advance(0.02).ok());
+    const TemporaryFolder folder;
+    reference.world.save(folder.path() / "world");
+    World loaded = World::load(folder.path() / "world"), cloned = reference.world.clone();
+    Collision with_two(2);
+    REQUIRE(with_two.world.advance(0.02).ok());
+    for (World* world : {&reference.world, &loaded, &cloned, &with_two.world}) REQUIRE(world->advance(0.2).ok());
+    CHECK(loaded.state_hash() == reference.world.state_hash());
+    CHECK(cloned.state_hash() == reference.world.state_hash());
+    CHECK(with_two.world.state_hash() == reference.world.state_hash());
+}
+
+TEST_CASE("an implicit body vibrates at the frequency of a rod, damped by the step", "[scene][implicit]") {
+    // free-free, first mode, stretched: period 2 L sqrt(rho/E) with nu = 0
+    const Real length = 1, modulus = 1e6, density = 1000, period = 2 * length * std::sqrt(density / modulus);
+    const Mesh bar = mesh::box({length, 0.05, 0.05}, {20, 1, 1});
+    ImplicitCube scene(without_gravity(period / 400), {},
+                       {.young_modulus = modulus, .poisson_ratio = 0, .density = density}, bar);
+    std::vector<Vec3> stretched;
+    for (const Vec3& x : bar.nodes)
+        stretched.push_back(x + Vec3(1e-3 * std::sin(std::numbers::pi * x.x() / length), 0, 0));
+    scene.world.set_positions(scene.body, stretched);
+    const auto end = [&] { return scene.world.positions(scene.body).back().x() - bar.nodes.back().x(); };
+    const Real start = end();
+    CHECK(start == Approx(1e-3).epsilon(1e-9));
+    // zero after a quarter, back after a whole
+    Real crossing = 0;
+    for (int k = 0; k < 400 && crossing == 0; ++k) {
+        const Real before = end();
+        REQUIRE(scene.world.advance(period / 400).ok());
+        if (end() <= 0) crossing = period / 400 * (k + before / (before - end()));
+    }
+    CHECK(crossing == Approx(period / 4).epsilon(0.02));
+    REQUIRE(scene.world.advance(2 * period).ok());
+    CHECK(scene.world.report().energy_error_share < 1e-9);
+}
+
+TEST_CASE("an implicit body that is set by hand keeps its deformation", "[scene][implicit]") {
+    ImplicitCube scene(without_gravity(1e-3), {}, {.young_modulus = 1e6});
+    std::vector<Vec3> position, velocity;
+    const Mat3 turn = Eigen::AngleAxis<Real>(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    for (const Vec3& x : cube.nodes) {
+        position.push_back(Vec3(1, 2, 3) + turn * Vec3(1.01 * x.x(), x.y(), x.z() + 0.1 * x.x() * x.x()));
+        velocity.push_back(Vec3(0.1, 0.2, 0.3) + Vec3(1, 0, 2).cross(position.back()) + turn * (0.5 * x));
+    }
+    scene.world.set_positions(scene.body, position);
+    scene.world.set_velocities(scene.body, velocity);
+    for (std::size_t n = 0; n < position.size(); ++n) {
+        CHECK((scene.world.positions(scene.body)[n] - position[n]).norm() < 1e-12);
+        // the spin of the solid is that of the nodes where they turn as a whole
+        CHECK((scene.world.velocities(scene.body)[n] - velocity[n]).norm() < 1e-3);
+    }
+    CHECK(scene.world.dynamics(scene.body) == BodyDynamics::implicit_elastic);
+    const Energy before = scene.world.report().energy;
+    CHECK(before.elastic > 0);
+    REQUIRE(scene.world.advance(0.5).ok());
+    CHECK(scene.world.report().energy.elastic < 1e-3 * before.elastic);  // it has swung out
+}
+
+TEST_CASE("a load on a node of an implicit body deforms it as its stiffness says", "[scene][implicit]") {
+    ImplicitCube scene(without_gravity(1e-2), {}, {.young_modulus = 1e6});
+    // squeezed between two opposite corners
+    std::vector<Vec3> load(cube.nodes.size(), Vec3::Zero());
+    std::size_t high = 0, low = 0;
+    for (std::size_t n = 0; n < cube.nodes.size(); ++n) {
+        if (cube.nodes[n].sum() > cube.nodes[high].sum()) high = n;
+        if (cube.nodes[n].sum() < cube.nodes[low].sum()) low = n;
+    }
+    const Vec3 force = 0.5 * (cube.nodes[low] - cube.nodes[high]).normalized();
+    load[high] = force;
+    load[low] = -force;
+    scene.world.set_loads(scene.body, load);
+    REQUIRE(scene.world.advance(5).ok());
+    const std::span<const Vec3> position = scene.world.positions(scene.body);
+    const Vec3 squeezed = (position[high] - cube.nodes[high]) - (position[low] - cube.nodes[low]);
+    // Clapeyron: the work of the loads, slowly applied, is the energy
+    CHECK(scene.world.report().energy.elastic == Approx(force.dot(squeezed) / 2).epsilon(1e-9));
+    CHECK(scene.world.report().energy.kinetic < 1e-20);
+}
+
+TEST_CASE("what an implicit body cannot have is refused by name", "[scene][implicit]") {
+    ImplicitCube scene(Settings{});
+    CHECK_THROWS_WITH(scene.world.attach(scene.body, std::vector<Index>{0}, {}),
+                      Catch::Contains("the implicit body") && Catch::Contains("neither rigid nor implicit"));
+    CHECK_THROWS_WITH(
+        scene.world.add_body(
+            cube, {.material = scene.material, .self_contact = true, .dynamics = BodyDynamics::implicit_elastic}),
+        Catch::Contains("self_contact") && Catch::Contains("dynamics are implicit"));
+}
+
+TEST_CASE("an implicit body comes to rest, sleeps, and wakes when it is hit", "[scene][implicit]") {
+    Settings settings;
+    settings.step_size = 1.0 / 240;
+    settings.sleep = true;
+    ImplicitCube scene(settings, {.position = {0, 0, 0.06}}, {.young_modulus = 1e8});
+    scene.world.add_collider(Plane{});
+    REQUIRE(scene.world.advance(3).ok());
+    CHECK(scene.world.asleep(scene.body));
+    const WorldReport asleep = scene.world.report();
+    CHECK(asleep.energy.kinetic == 0);
+    CHECK(asleep.energy_error_share < 1e-3);
+    scene.world.add_body(cube, {.material = scene.material,
+                                .position = {0.02, 0, 0.25},
+                                .velocity = {0, 0, -1},
+                                .dynamics = BodyDynamics::implicit_elastic});
+    REQUIRE(scene.world.advance(0.2).ok());
+    CHECK(!scene.world.asleep(scene.body));
+}
+
+TEST_CASE("rows of implicit bodies follow when others go", "[scene][implicit]") {
+    const auto scene = [](bool with_first) {
+        ImplicitCube of(without_gravity(1e-3), {.position = {-9, 0, 0}}, {.young_modulus = 1e6});
+        const BodySettings second{.material = of.material,
+                                  .position = {0, 0, 0},
+                                  .velocity = {1, 0, 0},
+                                  .dynamics = BodyDynamics::implicit_elastic};
+        const BodyHandle body = of.world.add_body(cube, second);
+        of.world.add_collider(Plane{.normal = {-1, 0, 0}}, {.position = {0.06, 0, 0}});
+        if (with_first) of.world.remove(of.body);
+        REQUIRE(of.world.advance(0.1).ok());
+        return std::vector<Vec3>(of.world.positions(body).begin(), of.world.positions(body).end());
+    };
+    CHECK(scene(true) == scene(false));
+}
+
+TEST_CASE("leapfrog moves implicit bodies, too", "[scene][implicit]") {
+    Settings settings;
+    settings.step_size = 1.0 / 128;
+    settings.integrator = Integrator::leapfrog;
+    ImplicitCube scene(settings, {.position = {0, 0, 1}, .angular_velocity = {0, 3, 1}}, {.young_modulus = 1e7});
+    scene.world.add_collider(Plane{});
+    REQUIRE(scene.world.advance(0.4).ok());
+    CHECK(scene.world.center_of_mass(scene.body).z() == Approx(1 - standard_gravity * 0.08).epsilon(1e-12));
+    REQUIRE(scene.world.advance(1).ok());
+    CHECK(scene.world.center_of_mass(scene.body).z() > 0.04);
+}
