@@ -118,8 +118,8 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
     }
     collect_contacts(contact_region, region_count, regions);
     resize_results(region_count, regions);
-    if (mode == ContactRegions::paper_algorithm_1)
-        regions.independent = count_shared_nodes(stencil, inverse_mass, regions) == 0;
+    if (mode == ContactRegions::paper_algorithm_1)  // which looks at nodes alone: regions may share groups of them
+        regions.independent = groups.empty() && count_shared_nodes(stencil, inverse_mass, regions) == 0;
     return true;
 }
 

@@ -5,6 +5,7 @@
 
 #include "components/options.h"
 #include "random_numbers.h"
+#include "skerry/settings.h"
 
 namespace skerry::test {
 
@@ -239,6 +240,8 @@ private:
             }
             body["pin"] = pin;
         }
+        if (!body.contains("pin") && !body.contains("self_contact") && of_frames_.chance(0.35))
+            body["dynamics"] = name_of(of_frames_.chance(0.5) ? BodyDynamics::rigid : BodyDynamics::implicit_elastic);
         return body;
     }
 
@@ -290,6 +293,7 @@ private:
 
     const std::uint64_t seed_;
     RandomNumbers random_;
+    RandomNumbers of_frames_{~seed_};  // a list of its own: other draws stay as they were before
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material
     Real wave_speed_ = 0;               // m/s, of it

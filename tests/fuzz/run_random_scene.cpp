@@ -83,6 +83,7 @@ private:
     }
 
     void attach(BodyHandle body, RandomNumbers& random) {
+        if (world_.dynamics(body) != BodyDynamics::explicit_elastic) return;
         const auto count = static_cast<int>(world_.positions(body).size());
         std::vector<Index> nodes(static_cast<std::size_t>(random.count(1, count)));
         std::iota(nodes.begin(), nodes.end(), 0);

@@ -14,7 +14,12 @@ void note(Index block, Index region, Column<Index>& region_of, Ragged<Index>& li
 
 std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t contacts, Index number) {
     const auto r = static_cast<std::size_t>(number);
-    std::size_t room = 4 * contacts + 2 * memory.region_rigid[r].size();
+    std::size_t room = 4 * contacts;
+    for (const Index body : memory.region_rigid[r]) {
+        room += 2;
+        // all touched nodes, also those that only contacts of other regions name (paper_algorithm_1)
+        if (inputs.implicit.any()) room += inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)].size();
+    }
     for (const Index c : memory.region_clusters[r]) room += inputs.clusters->nodes[static_cast<std::size_t>(c)].size();
     return room;
 }
