@@ -208,6 +208,10 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "what is done about bodies that overlap each other or colliders at the start: resolve "
                              "(default) moves them apart where the way out is short and refuses them where it is not, "
                              "refuse refuses them, ignore reports them and begins as it is"})
+            .key("theta", &S::theta,
+                 {.meaning = "of the steps of implicit bodies, from 0.5 to 1: 1 damps what vibrates, 0.55 a tenth as "
+                             "much; less than 1 with symplectic_euler only",
+                  .limits = at_least(0.5)})
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step in which F of an element changes by more (Frobenius norm) is tried again, shorter",
                   .limits = above(0)})

@@ -130,6 +130,10 @@ void validate(const Settings& settings) {
     require(settings.sleep_speed >= 0, "settings", "sleep_speed", settings.sleep_speed, "a speed >= 0 (m/s)");
     require(settings.sleep_time >= 0, "settings", "sleep_time", settings.sleep_time, "a time >= 0 (s)");
     require(settings.max_strain_step > 0, "settings", "max_strain_step", settings.max_strain_step, "a fraction > 0");
+    require(settings.theta >= 0.5 && settings.theta <= 1, "settings", "theta", settings.theta,
+            "a number from 0.5 to 1");
+    require(settings.theta == 1 || settings.integrator == Integrator::symplectic_euler, "settings", "theta",
+            settings.theta, "1 with this integrator; less goes with symplectic_euler only");
 }
 
 void validate(const MaterialSettings& material, const Settings& settings) {

@@ -288,6 +288,7 @@ struct MembersOf<Settings> {
                           Member{"restitution_speed", &S::restitution_speed},
                           Member{"recovery_speed", &S::recovery_speed},
                           Member{"max_strain_step", &S::max_strain_step},
+                          Member{"theta", &S::theta},
                           Member{"start_overlaps", &S::start_overlaps},
                           Member{"sleep", &S::sleep},
                           Member{"sleep_speed", &S::sleep_speed},
@@ -300,7 +301,7 @@ struct MembersOf<Settings> {
                           Member{"freeze_contacts", &S::freeze_contacts},
                           Member{"small_regions_in_lanes", &S::small_regions_in_lanes}};
     }
-    static_assert(sizeof(Settings) == 168, "a setting is not saved");
+    static_assert(sizeof(Settings) == 176, "a setting is not saved");
 };
 
 /// The type of HDF5 that numbers have in memory and in files.

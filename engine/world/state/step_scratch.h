@@ -32,6 +32,7 @@ struct StepParameters {
     CollisionSettings collision;
     SolverSettings solver;
     Real max_strain_step = 0;
+    Real theta = 1;
     SleepSettings sleep;
     bool let_invert = false;           // the last of the tries to avoid it
     bool problem_wanted = false;       // somebody wants to see the contact problem of this step

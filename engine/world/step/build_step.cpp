@@ -72,7 +72,7 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep),
             inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h), outputs<RigidKicks>(m.rigid_bodies, n));
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
-            inputs<ImplicitLoads>(n, m.loaded), value(p.h), make(m.stiff_bodies),
+            inputs<ImplicitLoads>(n, m.loaded), value(p.h), value(p.theta), make(m.stiff_bodies),
             outputs<ImplicitKicks>(m.implicit_nodes, n));
 }
 
@@ -99,7 +99,7 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies), value(p.contact_regions),
             make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
     g.stage("dynamics/couple_implicit_bodies", couple_implicit_bodies, implicit_bodies(m), read(c.stencil),
-            read(m.nodes.body), value(p.h), make(m.stiff_bodies), make(w.scratch.coupling));
+            read(m.nodes.body), value(p.h), value(p.theta), make(m.stiff_bodies), make(w.scratch.coupling));
 }
 
 void list_solve(WorldState& w, TaskGraph& g) {
@@ -139,7 +139,8 @@ void list_forces(WorldState& w, TaskGraph& g) {
 void list_turns(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
-                        implicit_bodies(m), read(m.stiff_bodies), value(w.scratch.parameters.h),
+                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, m.loaded), read(m.stiff_bodies),
+                        value(w.scratch.parameters.h), value(w.scratch.parameters.theta),
                         outputs<ImplicitStrains>(m.implicit_nodes), make(w.scratch.strain_parts));
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
             inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep), inputs<RigidImpulses>(m.rigid_bodies),

@@ -37,18 +37,19 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
 }
 
 /// With the length of the step to twelve digits: steps that part a time evenly differ in the last ones.
-bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, StiffBody& stiff) {
+bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff) {
     constexpr int bits = 40;
     int exponent = 0;
     const Real fraction = std::frexp(h, &exponent);
     const Real rounded = std::ldexp(std::nearbyint(std::ldexp(fraction, bits)), exponent - bits);
-    return stiff.prepare(1 + rounded * bodies.damping(r), rounded * rounded);
+    const Real within = theta * rounded;
+    return stiff.prepare(1 + within * bodies.damping(r), within * within);
 }
 
 }  // namespace
 
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
-                          StiffBodies& stiff, const ImplicitKicks& out) {
+                          Real theta, StiffBodies& stiff, const ImplicitKicks& out) {
     if (!bodies.any()) return false;
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const OfBody of(bodies, stiff[r], r);
@@ -63,10 +64,10 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
         const Mat3 turn = bodies.turn(r);
         for (std::size_t n = 0; n < of.count; ++n) {
             const std::size_t k = of.place(n);
-            impulse[k] = of.stiff.mass(k) * velocity[n] - h * force[k];
-            if (!loads.load.empty()) impulse[k] += h * (turn.transpose() * loads.load[of.first_node + n]);
+            impulse[k] = of.stiff.mass(k) * velocity[n] - theta * h * force[k];
+            if (!loads.load.empty()) impulse[k] += theta * h * (turn.transpose() * loads.load[of.first_node + n]);
         }
-        if (make_factor(bodies, r, h, stiff[r]))
+        if (make_factor(bodies, r, h, theta, stiff[r]))
             of.stiff.respond(impulse);
         else  // the step is refused
             std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
@@ -79,7 +80,8 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
 }
 
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
-                            std::span<const Index> node_body, Real h, StiffBodies& stiff, ImplicitCoupling& coupling) {
+                            std::span<const Index> node_body, Real h, Real theta, StiffBodies& stiff,
+                            ImplicitCoupling& coupling) {
     coupling.nodes.clear();
     if (!bodies.any()) return false;
     constexpr Index touched = 0;
@@ -115,7 +117,7 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const std::span<const Index> nodes = coupling.nodes[r];
         if (nodes.empty()) return;
-        const bool sound = make_factor(bodies, r, h, stiff[r]);
+        const bool sound = make_factor(bodies, r, h, theta, stiff[r]);
         const OfBody of(bodies, stiff[r], r);
         const Mat3 turn = bodies.turn(r);
         const std::span<PaddedMat3> block =
@@ -125,7 +127,7 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
             const std::span<const Mat3> column = stiff[r].column(static_cast<std::size_t>(nodes[i]) - of.first_node);
             for (std::size_t j = i; j < nodes.size(); ++j) {
                 const std::size_t place = of.place(static_cast<std::size_t>(nodes[j]) - of.first_node);
-                const Mat3 there = turn * column[place] * turn.transpose();
+                const Mat3 there = theta * turn * column[place] * turn.transpose();
                 block[i * nodes.size() + j] << there, Eigen::RowVector3d::Zero();
                 block[j * nodes.size() + i] << there.transpose(), Eigen::RowVector3d::Zero();
             }
@@ -134,8 +136,9 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
     return true;
 }
 
-Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const StiffBodies& stiff, Real h,
-                            const ImplicitStrains& out, Column<Real>& damped) {
+Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
+                            const StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
+                            Column<Real>& damped) {
     if (!bodies.any()) return 0;
     damped.assign(bodies.body.size(), 0);
     for_each_implicit(executor, bodies, [&](std::size_t r) {
@@ -145,9 +148,9 @@ Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, co
         const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
                                     force = of.rows(out.elastic_force), contact = of.rows(out.contact_impulse);
         const bool touched = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
+        const Mat3 back = bodies.turn(r).transpose();
         if (touched) {
-            const Mat3 back = bodies.turn(r).transpose();
-            for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = back * contact[n];
+            for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = theta * (back * contact[n]);
             of.stiff.respond(impulse);
             for (std::size_t n = 0; n < of.count; ++n) next[n] += impulse[of.place(n)];
         }
@@ -156,12 +159,19 @@ Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, co
         for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = next[n];
         of.stiff.elastic_forces(impulse, rate);
         Real taken = 0;
-        const Real damping = bodies.damping(r);
         for (std::size_t n = 0; n < of.count; ++n) {
             const std::size_t k = of.place(n);
-            // h/2 (u+ K w - u K w+), u+ = u + h w+
-            taken += h / 2 * (force[k].dot(velocity[n] - next[n]) + h * rate[k].dot(velocity[n]));
-            if (damping > 0) taken += damping * h / 2 * of.stiff.mass(k) * next[n].dot(velocity[n] + next[n]);
+            const Vec3 &before = velocity[n], &during = next[n];
+            const Vec3 after = before + (during - before) / theta;
+            // what contacts and loads are said to have done, less what energy has grown by
+            taken += (back * contact[n]).dot(before + during) / 2;
+            if (!loads.load.empty()) {
+                const Vec3 load = back * loads.load[of.first_node + n];
+                taken += h * load.dot(during - (after - before) / 2);
+            }
+            taken -= of.stiff.mass(k) / 2 * (after - before).dot(after + before);
+            taken -= h * during.dot(force[k] + h / 2 * rate[k]);
+            next[n] = after;
         }
         damped[r] = taken;
     });

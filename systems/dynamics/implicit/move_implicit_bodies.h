@@ -83,16 +83,17 @@ struct ImplicitKicks {
     }
 };
 
-/// velocity_next = A^-1 P (M w - h K u + h Q^T f), to which kick_rigid_bodies has come first: nodes get what is added
-/// to their motion with the frame. Factors of this step's length are made where they are not there. Parallel over
-/// bodies. Returns false where there is none (skipped).
+/// velocity_next = A^-1 P (M w + theta h (Q^T f - K u)), the velocity of the step's displacement, to which
+/// kick_rigid_bodies has come first: nodes get what is added to their motion with the frame. Factors of this step's
+/// length are made where they are not there. Parallel over bodies. Returns false where there is none (skipped).
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
-                          StiffBodies& stiff, const ImplicitKicks& out);
+                          Real theta, StiffBodies& stiff, const ImplicitKicks& out);
 
 /// Lists the nodes that contacts touch, and what impulses on them do to each other. Returns false where no contact
 /// touches an implicit body (skipped).
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
-                            std::span<const Index> node_body, Real h, StiffBodies& stiff, ImplicitCoupling& coupling);
+                            std::span<const Index> node_body, Real h, Real theta, StiffBodies& stiff,
+                            ImplicitCoupling& coupling);
 
 struct ImplicitStrains {
     std::span<const Vec3> elastic_force, contact_impulse;                   // ImplicitNodeTable
@@ -110,7 +111,8 @@ struct ImplicitStrains {
 
 /// The velocities and displacements at the end of the step. Returns what the step damped, J; `damped` is memory, by row
 /// of RigidBodyTable. Parallel over bodies.
-Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const StiffBodies& stiff, Real h,
-                            const ImplicitStrains& out, Column<Real>& damped);
+Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
+                            const StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
+                            Column<Real>& damped);
 
 }  // namespace skerry
