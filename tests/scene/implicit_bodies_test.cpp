@@ -254,6 +254,22 @@ TEST_CASE("a load on a node of an implicit body deforms it as its stiffness says
     CHECK(scene.world.report().energy.kinetic < 1e-20);
 }
 
+TEST_CASE("stress and strain of an implicit body turn with it", "[scene][implicit]") {
+    // nu = 0: a stretch by 1e-5 along x gives E times that, and nothing across
+    ImplicitCube scene(without_gravity(1e-3), {}, {.young_modulus = 1e6, .poisson_ratio = 0});
+    const Mat3 turn = Eigen::AngleAxis<Real>(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    std::vector<Vec3> position;
+    for (const Vec3& x : cube.nodes) position.push_back(turn * Vec3((1 + 1e-5) * x.x(), x.y(), x.z()));
+    scene.world.set_positions(scene.body, position);
+    const Mat3 along = turn.col(0) * turn.col(0).transpose();
+    for (const Mat3& stress : scene.world.stress(scene.body)) CHECK((stress - 10 * along).norm() < 1e-3);
+    for (const Mat3& strain : scene.world.strain(scene.body)) CHECK((strain - 1e-5 * along).norm() < 1e-9);
+
+    scene.world.set_material(scene.material, {.young_modulus = 2e6, .poisson_ratio = 0});
+    for (const Mat3& stress : scene.world.stress(scene.body)) CHECK((stress - 20 * along).norm() < 2e-3);
+    CHECK(scene.world.report().energy.elastic == Approx(2e6 * 1e-10 * 1e-3 / 2).epsilon(1e-3));
+}
+
 TEST_CASE("what an implicit body cannot have is refused by name", "[scene][implicit]") {
     ImplicitCube scene(Settings{});
     CHECK_THROWS_WITH(scene.world.attach(scene.body, std::vector<Index>{0}, {}),
