@@ -126,7 +126,9 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     require_changeable(model.settings, now, next);
     if (now.same_elements(next) && now.same_rest(next)) return;
     state_->settle();
-    const std::vector<std::size_t> bodies = bodies_of(model, row);
+    std::vector<std::size_t> bodies = bodies_of(model, row);
+    // those with frames last: they stand any step, so that what is refused has not come to them
+    std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t body) { return !model.has_frame(body); });
     next.write(model.materials, static_cast<std::size_t>(row));
     if (!now.same_elements(next)) {
         std::vector<KeptBody> kept;
