@@ -133,7 +133,7 @@ struct ColliderSettings {
 struct Settings {
     Vec3 gravity = {0, 0, -9.81};  // m/s^2
     // s, at most; by default the stable step of the stiffest body, which is never exceeded, and no more than 1/120
-    // where a body is rigid
+    // where a body is rigid or implicit
     std::optional<Real> step_size{};
     Real step_safety = 1.0;  // fraction of the stable step that is used, in (0, 1]
     // Of the steps of implicit bodies, from 0.5 to 1: 1 damps what vibrates, 0.55 a tenth as much. Less than 1 with
