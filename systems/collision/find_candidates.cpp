@@ -130,15 +130,17 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
                   const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
+    if (pair.kind != PairKind::collider) {
+        // before the search: what is apart is looked for less far
+        if (pairs.state[p] != PairState::apart)
+            pairs.state[p] = surfaces_cross(inputs, pair, boxes) ? PairState::overlapping : PairState::apart;
+        pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
+    }
     pair.travel_base = pair_travel_base(inputs, pairs, p);
     pair.margin = settings.pair_skin * pair.scale.edge + std::max(closing(pairs, p), pairs.longer_motion[p]);
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
     if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
-    if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart)
-        pairs.state[p] =
-            !found.empty() && surfaces_cross(inputs, pair, boxes) ? PairState::overlapping : PairState::apart;
-
     pairs.candidates[p].resize(found.size());
     pairs.asleep_until[p].resize(found.size());
     for (std::size_t i = 0; i < found.size(); ++i) {

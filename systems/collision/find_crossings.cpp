@@ -211,8 +211,9 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            // to a collider distances are signed
-            if (pairs.kind[p] != PairKind::collider) pairs.state[p] = PairState::overlapping;
+            if (pairs.kind[p] == PairKind::collider) continue;  // distances are signed
+            pairs.state[p] = PairState::overlapping;
+            pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();  // of what overlaps more is listed
         }
 }
 

@@ -25,8 +25,7 @@ class PairContacts : PairLook {
 public:
     PairContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs, Index p,
                  Column<ContactRow>& found)
-        : PairLook(inputs, settings, h, pairs, p, found),
-          apart_(pairs.state[p] == PairState::apart && settings.continuous) {}
+        : PairLook(inputs, settings, h, pairs, p, found), state_(pairs.state[p]) {}
 
     /// Returns the least distance of the features that were looked at, m.
     Real run(Range range) {
@@ -56,8 +55,7 @@ private:
             const Real distance = found.distance[i];
             const bool far = !(distance <= std::max(near_, zone));
             // Of surfaces that are apart nothing has come through the other.
-            const bool out_of_reach =
-                surfaces_ == Surfaces::apart && (found.behind >> i & 1) == 0 && !within_reach(distance, found.speed[i]);
+            const bool out_of_reach = surfaces_ == Surfaces::apart && !within_reach(distance, found.speed[i]);
             if (!far && !out_of_reach) {
                 wake(waiting_[i]);
                 continue;
@@ -77,8 +75,9 @@ private:
     }
 
     void prepare_surfaces() {
-        // Without a shell touching surfaces may overlap by rounding.
-        if (prepare()) surfaces_ = apart_ && scale_.contact_distance > 0 ? Surfaces::apart : Surfaces::may_overlap;
+        if (!prepare()) return;
+        surfaces_ = is_held_apart(settings_, state_, scale_) ? Surfaces::apart : Surfaces::may_overlap;
+        scale_ = pair_scale_as_known(settings_, state_, scale_);
     }
 
     void point_against_triangle(Index c, const Candidate& candidate) {
@@ -129,7 +128,7 @@ private:
             Vec3::Zero());
     }
 
-    const bool apart_;
+    const PairState state_;
     CandidateRows waiting_;
     std::size_t waiting_count_ = 0;
     bool edges_wait_ = false;  // or points

@@ -64,6 +64,19 @@ inline Real face_zone(const PairScale& scale) {
 
 PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second);
 
+/// Whether nothing of a pair can have come through the other: contacts hold it from both sides, and find_crossings sees
+/// to it. Without a shell touching surfaces may overlap by rounding.
+inline bool is_held_apart(const CollisionSettings& settings, PairState state, const PairScale& scale) {
+    return settings.continuous && state == PairState::apart && scale.contact_distance > 0;
+}
+
+/// What is held apart is a contact at the contact distance from either side, so that no depth behind a surface needs a
+/// zone.
+inline PairScale pair_scale_as_known(const CollisionSettings& settings, PairState state, PairScale scale) {
+    if (is_held_apart(settings, state, scale)) scale.zone = scale.edge_depth;
+    return scale;
+}
+
 /// Friction and restitution of a pair: geometric mean and maximum. A collider without surface properties takes the
 /// body's.
 SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second);

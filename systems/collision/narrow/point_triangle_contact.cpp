@@ -112,7 +112,7 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const Real height = q.offset.dot(face_normal);  // of the point above the plane of the face
     const Real aside_squared = std::max(Real(0), distance * distance - height * height);
     contact.sleep = distance - scale.edge_depth;  // not less than the contact distance
-    if (height < 0) {
+    if (height < 0 && surfaces == Surfaces::may_overlap) {
         // It can also come to lie behind the face, at most face_depth below.
         const Real below = std::max(Real(0), -height - scale.face_depth);
         contact.sleep = std::min(contact.sleep, std::sqrt(aside_squared + below * below));

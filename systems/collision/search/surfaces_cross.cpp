@@ -77,8 +77,9 @@ private:
 }  // namespace
 
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes) {
-    return CrossingSearch(inputs, pair, boxes)
-        .run(inputs.body.bvh_nodes[pair.first].begin, inputs.body.bvh_nodes[pair.second].begin);
+    const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
+    if (first.size() == 0 || second.size() == 0) return false;
+    return CrossingSearch(inputs, pair, boxes).run(first.begin, second.begin);
 }
 
 }  // namespace skerry
