@@ -33,6 +33,13 @@ struct CandidatePlace {
     Index candidate;
 };
 
+/// Features that find_contacts looked at and that are near enough to meet within the step.
+struct NearCandidate {
+    Index pair;       // row of PairTable
+    Index candidate;  // place in its list
+    Real distance;    // m, at the start of the step
+};
+
 /// One row per pair whose bounding boxes were close at the last broad search, in the order of ContactKey::pair. The
 /// candidate lists are columns of their own, so that one pair is searched again without moving the others; lists beyond
 /// size() are memory for later.
@@ -59,7 +66,8 @@ struct PairTable {
         asleep_until;                 // m, by pair and candidate: it cannot touch while travel_bound is below this
     Column<CandidatePlace> block;     // where the blocks of find_contacts start, and one past the last
     Column<std::size_t> block_first;  // row of ContactTable where the contacts of a block start
-    std::vector<Column<ContactRow>> found;  // this step's contacts, by block, in candidate order
+    std::vector<Column<ContactRow>> found;    // this step's contacts, by block, in candidate order
+    std::vector<Column<NearCandidate>> near;  // of two bodies, by block, in candidate order: for find_crossings
     // m: no features that were looked at in this block are nearer to each other
     Column<Real> block_nearest;
 

@@ -62,13 +62,15 @@ void look_at_block(const CollisionInputs& inputs, const CollisionSettings& setti
                    PairTable& pairs) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     Column<ContactRow>& found = pairs.found[b];
+    Column<NearCandidate>& near = pairs.near[b];
     found.clear();
+    near.clear();
     Real nearest = std::numeric_limits<Real>::infinity();
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
         if (from < to && !pairs.idle[p])
-            nearest = std::min(nearest, look_at_candidates(inputs, settings, h, p, {from, to}, pairs, found));
+            nearest = std::min(nearest, look_at_candidates(inputs, settings, h, p, {from, to}, pairs, found, near));
     }
     pairs.block_nearest[b] = nearest;
 }
@@ -118,6 +120,7 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
     }
     pairs.block_nearest.resize(static_cast<std::size_t>(blocks));
     if (pairs.found.size() < static_cast<std::size_t>(blocks)) pairs.found.resize(static_cast<std::size_t>(blocks));
+    if (pairs.near.size() < static_cast<std::size_t>(blocks)) pairs.near.resize(static_cast<std::size_t>(blocks));
     parallel_for(executor, static_cast<std::size_t>(blocks), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) look_at_block(inputs, settings, h, static_cast<Index>(b), pairs);
     });

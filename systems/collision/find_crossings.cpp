@@ -11,6 +11,7 @@
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/geometry/closest_points.h"
@@ -27,6 +28,9 @@ struct Nearest {
     Vec3 point;   // m, on the second
 };
 
+// Lanes and the scalar twin that decides may differ by rounding, by much less than this.
+constexpr Real lane_rounding = 1e-6;
+
 class PairCrossings {
 public:
     PairCrossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, Index p,
@@ -40,18 +44,52 @@ public:
           travel_(pairs.travel[p]),
           candidates_(pairs.candidates[p].span()),
           asleep_until_(pairs.asleep_until[p].span()),
-          found_(found) {}
+          found_(found),
+          scale_(pair_scale(inputs, kind_, first_, second_)) {}
 
     /// Looks at the candidates that can have met by `travel_bound`. Returns how many were tested.
     std::uint64_t run(Index begin, Index end, Real travel_bound) {
-        scale_ = pair_scale(inputs_, kind_, first_, second_);
         std::uint64_t tested = 0;
         for (Index c = begin; c < end; ++c)
             if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel_);
         return tested;
     }
 
+    /// The same of what find_contacts has looked at, as long as the pair closes no more than that took into account;
+    /// `motion`: m, by which the pair moves. What is fast enough for its distance is found eight at a time.
+    std::uint64_t run(std::span<const NearCandidate> near, Real motion, Real travel_bound) {
+        std::uint64_t tested = 0;
+        for (const NearCandidate& at : near)
+            if (motion > slow_fraction * at.distance && !(travel_bound < asleep_until_[at.candidate]))
+                tested += wait(at);
+        return tested + test_waiting();
+    }
+
 private:
+    /// Candidates of a kind are tested together, in their order.
+    std::uint64_t wait(const NearCandidate& at) {
+        const bool edges = is_edge_edge(candidates_[at.candidate].feature);
+        const std::uint64_t tested = waiting_count_ == waiting_.size() || edges != edges_wait_ ? test_waiting() : 0;
+        edges_wait_ = edges;
+        distance_[waiting_count_] = at.distance;
+        waiting_[waiting_count_++] = at.candidate;
+        return tested;
+    }
+
+    std::uint64_t test_waiting() {
+        if (waiting_count_ == 0) return 0;
+        std::fill(waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_count_), waiting_.end(), waiting_[0]);
+        const auto approach = edges_wait_ ? edge_edge_approaches(inputs_, motion_, candidates_, waiting_)
+                                          : point_triangle_approaches(inputs_, motion_, candidates_, waiting_);
+        std::uint64_t tested = 0;
+        for (std::size_t i = 0; i < waiting_count_; ++i) {
+            const Real least = (1 - lane_rounding) * distance_[i];
+            if (approach[i] > slow_fraction * least) tested += test(candidates_[waiting_[i]], least);
+        }
+        waiting_count_ = 0;
+        return tested;
+    }
+
     /// `least`: m, no distance is below it.
     bool test(const Candidate& candidate, Real least) {
         const bool edges = is_edge_edge(candidate.feature);
@@ -123,7 +161,11 @@ private:
     std::span<const Candidate> candidates_;
     std::span<const Real> asleep_until_;
     Column<ContactRow>& found_;
-    PairScale scale_;
+    const PairScale scale_;
+    CandidateRows waiting_;
+    std::array<Real, candidate_lanes> distance_;
+    std::size_t waiting_count_ = 0;
+    bool edges_wait_ = false;  // or points
 };
 
 /// How far a pair can come in this step, m.
@@ -159,10 +201,19 @@ bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) 
            pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).contact_distance > 0;
 }
 
-std::uint64_t look_at_block(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
-                            std::size_t b, Column<ContactRow>& found) {
+/// What of a block's pair find_contacts has looked at, `next` the first that is not yet passed.
+std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, Index p, std::size_t& next) {
+    while (next < near.size() && near[next].pair < p) ++next;
+    const std::size_t first = next;
+    while (next < near.size() && near[next].pair == p) ++next;
+    return near.subspan(first, next - first);
+}
+
+std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
+                            const PairTable& pairs, std::size_t b, Column<ContactRow>& found) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     std::uint64_t tested = 0;
+    std::size_t next = 0;
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
@@ -171,12 +222,16 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const StepMotion& mot
         // Of the block's candidates, those awake in find_contacts have D >= block_nearest, so that a motion below
         // slow_fraction block_nearest cannot bring them together; those asleep have g > reach as long as the motion
         // stays within the front of find_contacts.
-        const bool slow =
-            reach.motion <= slow_fraction * pairs.block_nearest[b] && reach.travel_bound <= pairs.travel_bound[p];
+        const bool in_front = reach.travel_bound <= pairs.travel_bound[p];
+        const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && in_front;
         if (slow || !is_watched(inputs, pairs, p)) continue;
-        tested += pairs.kind[p] == PairKind::collider
-                      ? find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found)
-                      : PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.travel_bound);
+        if (pairs.kind[p] == PairKind::collider)
+            tested += find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
+        else if (in_front && settings.use_budgets)
+            tested += PairCrossings(inputs, motion, pairs, p, found)
+                          .run(take_near(pairs.near[b].span(), p, next), reach.motion, reach.travel_bound);
+        else
+            tested += PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.travel_bound);
     }
     return tested;
 }
@@ -237,7 +292,8 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     std::atomic<std::uint64_t> tested{0};
     for (auto& found : crossings.found) found.clear();
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) tested += look_at_block(inputs, motion, pairs, b, crossings.found[b]);
+        for (std::size_t b = begin; b < end; ++b)
+            tested += look_at_block(inputs, settings, motion, pairs, b, crossings.found[b]);
     });
     crossings.tested += tested;
     std::size_t hits = 0;

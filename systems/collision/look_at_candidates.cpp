@@ -24,8 +24,12 @@ namespace {
 class PairContacts : PairLook {
 public:
     PairContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs, Index p,
-                 Column<ContactRow>& found)
-        : PairLook(inputs, settings, h, pairs, p, found), state_(pairs.state[p]) {}
+                 Column<ContactRow>& found, Column<NearCandidate>& near)
+        : PairLook(inputs, settings, h, pairs, p, found),
+          state_(pairs.state[p]),
+          pair_(p),
+          can_meet_((pairs.travel_bound[p] - pairs.travel[p]) / slow_fraction),
+          meeting_(near) {}
 
     /// Returns the least distance of the features that were looked at, m.
     Real run(Range range) {
@@ -53,6 +57,7 @@ private:
         const Real zone = edges_wait_ ? scale_.edge_depth : scale_.zone;
         for (std::size_t i = 0; i < waiting_count_; ++i) {
             const Real distance = found.distance[i];
+            if (distance < can_meet_) meeting_.push_back({pair_, waiting_[i], distance});
             const bool far = !(distance <= std::max(near_, zone));
             // Of surfaces that are apart nothing has come through the other.
             const bool out_of_reach = surfaces_ == Surfaces::apart && !within_reach(distance, found.speed[i]);
@@ -129,6 +134,9 @@ private:
     }
 
     const PairState state_;
+    const Index pair_;
+    const Real can_meet_;  // m
+    Column<NearCandidate>& meeting_;
     CandidateRows waiting_;
     std::size_t waiting_count_ = 0;
     bool edges_wait_ = false;  // or points
@@ -139,9 +147,9 @@ private:
 }  // namespace
 
 Real look_at_candidates(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
-                        PairTable& pairs, Column<ContactRow>& found) {
+                        PairTable& pairs, Column<ContactRow>& found, Column<NearCandidate>& near) {
     if (pairs.kind[p] == PairKind::collider) return look_at_collider(inputs, settings, h, p, range, pairs, found);
-    return PairContacts(inputs, settings, h, pairs, p, found).run(range);
+    return PairContacts(inputs, settings, h, pairs, p, found, near).run(range);
 }
 
 }  // namespace skerry

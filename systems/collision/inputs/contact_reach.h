@@ -34,6 +34,9 @@ namespace skerry {
 // contact shell.
 inline constexpr Real speed_safety = 2.0;
 
+// Features that approach each other by less than this fraction of their distance in the step cannot meet, by far.
+inline constexpr Real slow_fraction = 0.5;
+
 // Fraction of the contact distance that counts as touching already: a resting pile keeps its contacts while it
 // trembles.
 inline constexpr Real touching_fraction = 0.1;

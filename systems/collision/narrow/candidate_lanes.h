@@ -7,6 +7,7 @@
 #include "components/lanes.h"
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
+#include "systems/collision/inputs/step_motion.h"
 
 namespace skerry {
 
@@ -18,7 +19,6 @@ using CandidateRows = std::array<Index, candidate_lanes>;
 struct CandidateDistances {
     Lanes<Real, candidate_lanes> distance;  // m; not a number where a position is none
     Lanes<Real, candidate_lanes> speed;     // m/s, the greatest difference of two velocities, one of each feature
-    unsigned behind = 0;                    // a bit for each point that is not in front of the plane of its triangle
 };
 
 /// Of points and triangles.
@@ -27,5 +27,11 @@ CandidateDistances point_triangle_distances(const CollisionInputs& inputs, std::
 /// Of edges and edges.
 CandidateDistances edge_edge_distances(const CollisionInputs& inputs, std::span<const Candidate> candidates,
                                        const CandidateRows& row);
+
+/// m, greatest_approach of each while every node moves by h (velocity_next + push_out).
+Lanes<Real, candidate_lanes> point_triangle_approaches(const CollisionInputs& inputs, const StepMotion& motion,
+                                                       std::span<const Candidate> candidates, const CandidateRows& row);
+Lanes<Real, candidate_lanes> edge_edge_approaches(const CollisionInputs& inputs, const StepMotion& motion,
+                                                  std::span<const Candidate> candidates, const CandidateRows& row);
 
 }  // namespace skerry

@@ -59,16 +59,53 @@ struct Build {
     }
 };
 
-/// Fits the boxes of the first `count` lanes; the others stay empty. Returns the box around them.
+/// The lesser of both in each lane, a where b is not a number; the same for the greater.
+[[gnu::always_inline]] inline Real8 lesser(const Real8& a, const Real8& b) {
+    return b < a ? b : a;
+}
+[[gnu::always_inline]] inline Real8 greater(const Real8& a, const Real8& b) {
+    return b > a ? b : a;
+}
+
+Real least_of(const Lanes<Real, leaf_lanes>& lanes) {
+    Lanes<Real, leaf_lanes> least = lanes;
+    for (std::size_t half = leaf_lanes / 2; half > 0; half /= 2)
+        for (std::size_t l = 0; l < half; ++l) least[l] = least[l + half] < least[l] ? least[l + half] : least[l];
+    return least[0];
+}
+Real greatest_of(const Lanes<Real, leaf_lanes>& lanes) {
+    Lanes<Real, leaf_lanes> greatest = lanes;
+    for (std::size_t half = leaf_lanes / 2; half > 0; half /= 2)
+        for (std::size_t l = 0; l < half; ++l)
+            greatest[l] = greatest[l + half] > greatest[l] ? greatest[l + half] : greatest[l];
+    return greatest[0];
+}
+
+/// Fits the boxes of the first `count` lanes, side by side; the others stay empty. Returns the box around them.
 Aabb fit_leaf(const LeafTriangles& triangle, Index count, std::span<const std::array<Index, 3>> triangle_node,
               std::span<const Vec3> position, LeafBoxes& boxes) {
-    Aabb all = empty_box();
-    for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) {
-        Aabb fitted = empty_box();
-        for (Index n : triangle_node[triangle[l]]) grow(fitted, position[n]);
-        set_lane(boxes, l, fitted);
-        grow(all, fitted);
+    std::array<std::array<Index, leaf_lanes>, 3> node;
+    for (std::size_t l = 0; l < leaf_lanes; ++l) {
+        const std::array<Index, 3>& corner = triangle_node[triangle[l] == no_index ? triangle[0] : triangle[l]];
+        for (std::size_t k = 0; k < 3; ++k) node[k][l] = corner[k];
     }
+    Aabb all;
+    for (int i = 0; i < 3; ++i) {
+        Real8 lower = Real8{} + infinite, upper = Real8{} - infinite;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto at = [&](std::size_t l) { return position[node[k][l]][i]; };
+            const Real8 x{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+            lower = lesser(lower, x);
+            upper = greater(upper, x);
+        }
+        const auto axis = static_cast<std::size_t>(i);
+        store(lower, boxes.lower[axis]);
+        store(upper, boxes.upper[axis]);
+        // lanes without a triangle repeat the first here
+        all.lower[i] = least_of(boxes.lower[axis]);
+        all.upper[i] = greatest_of(boxes.upper[axis]);
+    }
+    for (std::size_t l = static_cast<std::size_t>(count); l < leaf_lanes; ++l) set_lane(boxes, l, empty_box());
     return all;
 }
 

@@ -1,0 +1,17 @@
+// The motion that is about to be taken.
+#pragma once
+
+#include <span>
+
+#include "components/types.h"
+
+namespace skerry {
+
+struct StepMotion {
+    std::span<const Vec3> velocity_next, push_out;  // m/s, by node
+    Real h;                                         // s
+
+    Vec3 of(Index node) const { return h * (velocity_next[node] + push_out[node]); }
+};
+
+}  // namespace skerry
