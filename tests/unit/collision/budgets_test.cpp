@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <set>
 
@@ -142,6 +143,44 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
     // They must have saved something, too.
     CHECK(thrifty.w.search.broad_searches < 300);
     CHECK(thrifty.w.search.pair_searches * 3 < thorough.w.search.pair_searches);
+}
+
+TEST_CASE("what is held apart is looked for less far, and all contacts are found", "[unit]") {
+    // Balls that swing above and below a plate thinner than the depth to which a point behind a face is looked at.
+    struct Swing {
+        CollisionWorld w;
+        test::Random random{17};
+        std::size_t candidates = 0, contacts = 0;
+
+        Swing() {
+            w.add_solid(test::box_mesh({4, 4, 1}, {4, 4, 0.1}), w.at({0, 0, -0.05}), 0.02);
+            const test::SolidMesh ball = test::ball_mesh(0.5, 3);
+            w.add_solid(ball, w.at({-0.4, 0.2, 0.905}, random.rotation()), 0.02);
+            w.add_solid(ball, w.at({0.7, 0.2, -1.005}, random.rotation()), 0.02);
+        }
+        void step(int number) {
+            const Real phase = 2 * M_PI * number / 100, speed = -0.2 * 2 * M_PI / (100 * h) * std::sin(phase);
+            const std::array<Vec3, 3> aim{Vec3::Zero(), Vec3(0.3, 0.1, speed), Vec3(-0.2, 0.4, -speed)};
+            for (std::size_t b = 0; b < aim.size(); ++b)
+                for (Index n = w.body.nodes[b].begin; n < w.body.nodes[b].end; ++n)
+                    w.nodes.velocity[n] = aim[b] + 0.1 * random.vector();
+            if (number % 10 == 0) w.follow_bodies();
+            w.measure_speed();
+            w.find(h);
+            candidates += w.search.candidate_count;
+            contacts += w.contacts.size();
+        }
+    } held, thorough, deep;
+    thorough.w.settings.use_budgets = false;
+    deep.w.settings.continuous = false;
+    for (int step = 0; step < 300; ++step) {
+        for (Swing* swing : {&held, &thorough, &deep}) swing->step(step);
+        REQUIRE(bits(held.w.contacts) == bits(thorough.w.contacts));
+        for (const PairState state : held.w.pairs.state) REQUIRE(state == PairState::apart);
+        for (Swing* swing : {&held, &thorough, &deep}) swing->w.drift(h);
+    }
+    CHECK(held.contacts > 100);
+    CHECK(10 * held.candidates < 9 * deep.candidates);
 }
 
 TEST_CASE("contacts are the same bits on any number of workers", "[unit][determinism]") {

@@ -1,6 +1,7 @@
 #include "systems/collision/find_crossings.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "systems/collision/inputs/contact_key.h"
@@ -206,4 +207,46 @@ TEST_CASE("two edges that would go through each other become a contact although 
     CHECK(std::find(w.contacts.key.begin(), w.contacts.key.end(), crossing->key) == w.contacts.key.end());
     w.find(h);
     CHECK(std::find(w.contacts.key.begin(), w.contacts.key.end(), crossing->key) != w.contacts.key.end());
+}
+
+TEST_CASE("what find_contacts has looked at is all that a test of every feature finds to cross", "[unit]") {
+    // Balls near each other get a speed, and then another: less than find_contacts takes into account, or more.
+    const Real change = GENERATE(Real(0.3), Real(120));
+    CAPTURE(change);
+    std::size_t crossings = 0;
+    for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+        std::array<CollisionWorld, 2> world;
+        for (CollisionWorld& w : world) {
+            test::Random random{seed};
+            w.settings.use_budgets = &w == &world[0];
+            const test::SolidMesh ball = test::ball_mesh(0.5, 3);
+            for (int i = 0; i < 3; ++i)
+                w.add_solid(ball, w.at(Vec3(1.03 * i, 0.02 * i, 0.03 * i), random.rotation()), shell);
+            const auto accelerate = [&](Real speed) {
+                for (std::size_t b = 0; b < 3; ++b) {
+                    const Vec3 aim = speed * random.vector();
+                    for (Index n = w.body.nodes[b].begin; n < w.body.nodes[b].end; ++n)
+                        w.nodes.velocity[n] += aim + 0.2 * speed * random.vector();
+                }
+                w.measure_speed();
+            };
+            accelerate(40);
+            w.find(h);
+            for (const PairState state : w.pairs.state) REQUIRE(state == PairState::apart);
+            accelerate(change);
+            w.crossings.extends_lists = false;
+            const std::vector<Vec3> none(w.nodes.position.size(), Vec3::Zero());
+            find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, none, w.pairs, w.crossings);
+        }
+        const CollisionWorld &thrifty = world[0], &thorough = world[1];
+        REQUIRE(thrifty.crossings.row.size() == thorough.crossings.row.size());
+        CHECK(thrifty.crossings.tested == thorough.crossings.tested);
+        for (std::size_t i = 0; i < thorough.crossings.row.size(); ++i) {
+            CHECK(thrifty.crossings.row[i].key == thorough.crossings.row[i].key);
+            CHECK(thrifty.crossings.row[i].stencil.weight == thorough.crossings.row[i].stencil.weight);
+            CHECK(thrifty.crossings.row[i].gap == thorough.crossings.row[i].gap);
+        }
+        crossings += thorough.crossings.row.size();
+    }
+    CHECK(crossings > 30);
 }
