@@ -1,9 +1,11 @@
 #include "random_scene.h"
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "components/options.h"
+#include "random_mesh.h"
 #include "random_numbers.h"
 #include "skerry/settings.h"
 
@@ -173,6 +175,12 @@ private:
         return mesh;
     }
 
+    Json mesh_file(Real size) {
+        const std::string name = "mesh_" + std::to_string(seed_) + "_" + std::to_string(scene_.meshes.size()) + ".msh";
+        scene_.meshes.emplace_back(name, make_poor_mesh(of_meshes_, size));
+        return {{"file", name}};
+    }
+
     Json rotation() {
         return {{"axis", list(random_.direction())}, {"radians", random_.one_of<Real>({0, random_.within(-4, 4)})}};
     }
@@ -217,6 +225,7 @@ private:
         Json body;
         body["name"] = "b" + std::to_string(number);
         body["mesh"] = mesh(size);
+        if (of_meshes_.chance(0.25)) body["mesh"] = mesh_file(size);
         body["material"] = "m" + std::to_string(random_.count(0, material_count_ - 1));
         const Vec3 place = number == 0 ? Vec3(Vec3::Zero()) : next_to_last(size);
         if (number == 0) last_size_ = size;
@@ -293,7 +302,9 @@ private:
 
     const std::uint64_t seed_;
     RandomNumbers random_;
-    RandomNumbers of_frames_{~seed_};  // a list of its own: other draws stay as they were before
+    // lists of their own: other draws stay as they were before
+    RandomNumbers of_frames_{~seed_};
+    RandomNumbers of_meshes_{~seed_ * 3};
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material
     Real wave_speed_ = 0;               // m/s, of it
@@ -306,6 +317,14 @@ private:
 };
 
 }  // namespace
+
+std::filesystem::path write_random_scene(const RandomScene& scene, const std::filesystem::path& folder,
+                                         const std::string& name) {
+    for (const auto& [mesh_name, content] : scene.meshes) mesh::write((folder / mesh_name).string(), content);
+    const std::filesystem::path file = folder / name;
+    std::ofstream(file) << scene.json;
+    return file;
+}
 
 RandomScene make_random_scene(std::uint64_t seed) {
     return SceneMaker(seed).make();

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "components/types.h"
+#include "skerry/mesh.h"
 
 namespace skerry::test {
 
@@ -31,7 +34,8 @@ struct SceneChange {
 
 struct RandomScene {
     std::string json;
-    std::vector<SceneChange> changes;  // by ascending advance
+    std::vector<std::pair<std::string, Mesh>> meshes;  // names of files beside the JSON, and what is in them
+    std::vector<SceneChange> changes;                  // by ascending advance
     int advances = 0;
     Real steps_per_advance = 1;   // stable steps
     Real length = 1;              // m, of its bodies, about
@@ -40,9 +44,13 @@ struct RandomScene {
     bool oversized_step = false;  // it asks for a step that may be longer than the stable one
 };
 
-/// The same seed gives the same scene on every machine. Bodies of all built-in shapes that overlap, touch or nearly
-/// touch; 1 mm to 100 m, E 1e3 to 1e9 Pa, nu -0.3 to 0.499, density 1 to 1e4 kg/m^3, friction 0 to 10, speeds up to 100
-/// m/s; every kind of collider, still or moved; pins, self contact, all methods, laws and switches.
+/// Writes the scene and its meshes into a folder that is there; returns the file of the scene.
+std::filesystem::path write_random_scene(const RandomScene& scene, const std::filesystem::path& folder,
+                                         const std::string& name);
+
+/// The same seed gives the same scene on every machine. Bodies of all built-in shapes and of poor meshes that overlap,
+/// touch or nearly touch; 1 mm to 100 m, E 1e3 to 1e9 Pa, nu -0.3 to 0.499, density 1 to 1e4 kg/m^3, friction 0 to 10,
+/// speeds up to 100 m/s; every kind of collider, still or moved; pins, self contact, all methods, laws and switches.
 RandomScene make_random_scene(std::uint64_t seed);
 
 }  // namespace skerry::test

@@ -15,6 +15,21 @@ TEST_CASE("the same seed gives the same random scene, another seed another one",
     CHECK(scene.json != make_random_scene(8).json);
 }
 
+TEST_CASE("random scenes have meshes of all qualities", "[unit]") {
+    int poor = 0;
+    Real flattest = 1;  // altitude of the flattest tetrahedron over the mean edge
+    for (std::uint64_t seed = 1; seed <= 60; ++seed)
+        for (const auto& [name, content] : make_random_scene(seed).meshes) {
+            INFO("seed " << seed << ", " << name);
+            const MeshReport report = inspect(content);
+            CHECK(report.inverted + report.flat == 0);
+            flattest = std::min(flattest, report.min_altitude / report.mean_edge);
+            ++poor;
+        }
+    CHECK(poor > 20);
+    CHECK(flattest < 0.01);
+}
+
 TEST_CASE("random scenes run or are refused, with finite numbers all the way", "[scene]") {
     const TemporaryFolder folder;
     std::uint64_t steps = 0;

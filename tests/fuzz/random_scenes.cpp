@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cinttypes>
 #include <cstdio>
-#include <fstream>
 #include <map>
 
 #include "run_random_scene.h"
@@ -128,7 +127,7 @@ int main(int argc, char** argv) {
                         scene.passive ? "passive " : "", verdict.text.c_str());
         if (bad && !options.out.empty()) {
             std::filesystem::create_directories(options.out);
-            std::ofstream(options.out / ("scene_" + std::to_string(seed) + ".json")) << scene.json;
+            write_random_scene(scene, options.out, "scene_" + std::to_string(seed) + ".json");
         }
         if (clock.seconds() - shown > 30 && !options.list) {
             shown = clock.seconds();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <stdexcept>
@@ -173,8 +172,7 @@ Real extent_of(const World& world, const RandomScene& scene) {
 
 SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path& folder,
                           const SceneOverrides& overrides, double seconds) {
-    const std::filesystem::path file = folder / "scene.json";
-    std::ofstream(file) << scene.json;
+    const std::filesystem::path file = write_random_scene(scene, folder, "scene.json");
     const double start = cpu_seconds();
     SceneRun run;
     std::optional<Scene> built;
