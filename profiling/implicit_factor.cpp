@@ -1,12 +1,12 @@
-// profile_implicit_factor: what the factor of an implicit body costs, by its size: the table of
-// docs/methods/implicit_bodies.md 3.
+// profile_implicit_factor: what the factor of an implicit body costs, by its size, and whole steps of such bodies
+// beside explicit ones: the tables of docs/methods/implicit_bodies.md 3 and 6.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "profiling/measure.h"
-#include "skerry/mesh.h"
+#include "skerry/world.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/implicit/stiff_body.h"
 #include "systems/material/material_law.h"
@@ -35,13 +35,64 @@ void print_row(int cells) {
     std::fflush(stdout);
 }
 
+struct Steps {
+    double first = 0, later = 0;  // s of CPU time, of the first step and of one of the next
+};
+
+/// Of a cube of smoothed elements that lies on a floor, in short steps, so that explicit ones stand them, too.
+Steps time_steps(int cells, BodyDynamics dynamics) {
+    constexpr Real step = 1e-5;  // s
+    constexpr int steps = 20;
+    Settings settings;
+    settings.step_size = step;
+    settings.backend = Backend::serial;
+    settings.clusters = false;
+    World world(settings);
+    const MaterialHandle material = world.add_material({.young_modulus = 3e7});
+    world.add_body(mesh::box(Vec3::Constant(0.1), {cells, cells, cells}),
+                   {.material = material, .position = {0, 0, 0.05}, .dynamics = dynamics});
+    world.add_collider(Plane{});
+    Steps took;
+    const double start = profiling::cpu_seconds();
+    world.advance(step);
+    took.first = profiling::cpu_seconds() - start;
+    std::vector<double> later;
+    for (int i = 0; i < steps; ++i) {
+        const double before = profiling::cpu_seconds();
+        world.advance(step);
+        later.push_back(profiling::cpu_seconds() - before);
+    }
+    took.later = profiling::median(later);
+    return took;
+}
+
+void print_steps(int cells) {
+    const Steps as_explicit = time_steps(cells, BodyDynamics::explicit_elastic);
+    const Steps as_implicit = time_steps(cells, BodyDynamics::implicit_elastic);
+    std::printf("| %d | %d | %.3f | %.3f | %.1f | %.1f |\n", 6 * cells * cells * cells,
+                (cells + 1) * (cells + 1) * (cells + 1), 1e3 * as_explicit.later, 1e3 * as_implicit.later,
+                1e3 * as_implicit.first, as_implicit.later / as_explicit.later);
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"The factor of an implicit body, for cubes of linear tetrahedra; median times of one thread."};
     int most = 22;
     app.add_option("--cells", most, "cells along an edge of the largest cube, up to 36")->check(CLI::PositiveNumber);
+    bool steps = false;
+    app.add_flag("--steps", steps,
+                 "instead: whole steps of cubes of smoothed elements on a floor, explicit and implicit");
     CLI11_PARSE(app, argc, argv);
+    if (steps) {
+        std::printf(
+            "| tetrahedra | nodes | explicit step, ms | implicit step, ms | first one, ms | implicit over explicit |\n"
+            "|---|---|---|---|---|---|\n");
+        for (const int cells : {2, 4, 8, 12})
+            if (cells <= most) print_steps(cells);
+        return 0;
+    }
     std::printf("| tetrahedra | nodes | factor, ms | two triangular solves, ms |\n|---|---|---|---|\n");
     for (const int cells : {8, 11, 16, 22, 28, 36})
         if (cells <= most) print_row(cells);

@@ -7,6 +7,7 @@
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/course.h"
+#include "engine/program/dynamics_text.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
@@ -168,7 +169,7 @@ struct BodyKindReport {
     BodyDynamics dynamics;
     StepBound bound;  // of one that sets no step: none, and a step without end
 
-    bool sets_step() const { return dynamics == BodyDynamics::explicit_elastic; }
+    bool sets_step() const { return dynamics != BodyDynamics::rigid && dynamics != BodyDynamics::implicit_elastic; }
 };
 
 /// The body as one that deforms, whatever it is: what its mesh would allow.
@@ -202,13 +203,14 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     return named;
 }
 
-/// Each kind of body in a world of its own: that is the step it would allow.
-std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details) {
+/// Each kind of body in a world of its own: that is the step it would allow. `became`: what each body of the plan is in
+/// the world; empty: what the plan says.
+std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std::span<const BodyDynamics> became = {}) {
     std::map<std::tuple<std::size_t, std::size_t, BodyDynamics>, std::size_t> row;
     std::vector<BodyKindReport> kinds;
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
-        const BodyDynamics dynamics = body.settings.dynamics;
+        const BodyDynamics dynamics = became.empty() ? body.settings.dynamics : became[b];
         const auto [at, is_new] = row.try_emplace({body.mesh, body.material, dynamics}, kinds.size());
         if (is_new) {
             const MeshReport mesh = inspect(plan.meshes[body.mesh]);
@@ -354,7 +356,9 @@ int inspect_scene(const InspectOptions& options) {
     }
     SceneStart start = start_of(plan);
     Scene& scene = start.scene;
-    const std::vector<BodyKindReport> kinds = body_kinds(plan, true);
+    std::vector<BodyDynamics> became;
+    for (const BodyHandle body : scene.world.bodies()) became.push_back(scene.world.dynamics(body));
+    const std::vector<BodyKindReport> kinds = body_kinds(plan, true, became);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
     const double steps = course_of(scene, run).steps(scene.world);
@@ -389,6 +393,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"stable_dt", stable_step},
                            {"stable_dt_body", report.stable_step_body},
                            {"steps", steps},
+                           {"dynamics_choices", choices_json(report)},
                            {"clusters",
                             {{"count", report.clusters},
                              {"nodes", report.cluster_nodes},
@@ -414,6 +419,7 @@ int inspect_scene(const InspectOptions& options) {
               << " a simulated second, as it starts; " << duration_text(cost.seconds_per_second * scene.seconds)
               << " for all of it\n"
               << "  contacts      " << cost.contacts << " at the start\n";
+    for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "

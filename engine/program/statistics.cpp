@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/program/dynamics_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
 #include "skerry/instruction_set.h"
@@ -100,6 +101,7 @@ Json statistics_of(const RunResult& result) {
           {"level_elements", r.level_elements},
           {"element_steps", r.element_steps},
           {"element_impulses", r.element_impulses}}},
+        {"dynamics_choices", choices_json(r)},
         {"clusters",
          {{"on", result.settings.clusters},
           {"count", r.clusters},

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "engine/program/cluster_text.h"
+#include "engine/program/dynamics_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
@@ -151,6 +152,7 @@ std::string summary_of(const RunResult& result) {
                                     : ""));
     if (!r.start_moves.empty()) text += line("start", moves_text(r));
     text += limit_lines(r);
+    for (const std::string& choice : choice_texts(r)) text += line("dynamics", choice);
     if (r.clusters > 0) text += line("clusters", cluster_text(r));
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);

@@ -134,7 +134,10 @@ void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
-        body.settings.dynamics = entry.dynamics;
+        // what is held is explicit
+        body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !pins.empty()
+                                     ? BodyDynamics::explicit_elastic
+                                     : entry.dynamics;
         body.settings.collision_group = entry.collision_group;
         body.settings.collision_mask = entry.collision_mask;
         body.settings.element = entry.element;

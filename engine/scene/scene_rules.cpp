@@ -75,9 +75,11 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                   .unit = "m",
                   .limits = at_least(0)})
             .key("self_contact", &BodyEntry::self_contact, {.meaning = "whether it touches itself; false by default"})
-            .key("dynamics", &BodyEntry::dynamics,
-                 {.meaning = "how it moves: \"rigid\" as a whole, with the mass and inertia of its mesh; \"implicit\" "
-                             "deforming by little, in any step, for what is stiff"})
+            .key(
+                "dynamics", &BodyEntry::dynamics,
+                {.meaning = "how it moves: \"rigid\" as a whole, with the mass and inertia of its mesh; \"implicit\" "
+                            "deforming by little, in any step, for what is stiff; \"automatic\" is one of \"explicit\" "
+                            "(the default) and \"implicit\", by predicted cost"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "what carries its stress"})

@@ -97,6 +97,10 @@ MotionKey World::pose(BodyHandle body) const {
     return {time(), pose.position, rotation_vector(pose.rotation)};
 }
 
+DynamicsEstimate World::dynamics_choice(BodyHandle body) const {
+    return state_->model.body_records[static_cast<std::size_t>(state_->model.row(body, "dynamics_choice"))].choice;
+}
+
 BodyDynamics World::dynamics(BodyHandle body) const {
     const auto row = static_cast<std::size_t>(state_->model.row(body, "dynamics"));
     return state_->model.dynamics_of(row);

@@ -222,7 +222,7 @@ void validate(const Mesh& mesh, const BodySettings& body) {
                        "rows of its nodes");
     mesh::require_positive(mesh, object);
     require_apart(mesh, object);
-    if (body.dynamics != BodyDynamics::explicit_elastic && body.self_contact)
+    if ((body.dynamics == BodyDynamics::rigid || body.dynamics == BodyDynamics::implicit_elastic) && body.self_contact)
         refuse(object, "self_contact", "true of a body whose dynamics are " + std::string(name_of(body.dynamics)),
                "false");
     require_labels(mesh, body.materials, object);

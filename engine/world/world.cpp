@@ -154,25 +154,33 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     const Index material = state_->model.row(body.material, "add_body");
     const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(state_->model, mesh, body);
     state_->require_between_steps("add_body");
+    NewBody fresh{.slot = 0,
+                  .kind = BodyKind::deformable,
+                  .self_contact = body.self_contact,
+                  .dynamics = body.dynamics,
+                  .filter = {body.collision_group, body.collision_mask},
+                  .element = body.element,
+                  .material = material,
+                  .tetrahedron_material = tetrahedron_material,
+                  .collider = no_index,
+                  .contact_distance = body.contact_distance.value_or(-1),
+                  .nodes = mesh.nodes,
+                  .tetrahedra = mesh.tetrahedra,
+                  .triangles = {},
+                  .position = body.position,
+                  .rotation = rotation_matrix(body.rotation),
+                  .velocity = body.velocity,
+                  .angular_velocity = body.angular_velocity};
+    DynamicsEstimate choice;
+    if (body.dynamics == BodyDynamics::automatic) {
+        state_->settle();  // what is gone allows no step
+        fresh.dynamics = BodyDynamics::explicit_elastic;
+        fresh.dynamics = choose_dynamics(state_->model, fresh, choice);
+    }
     const BodyHandle handle = state_->model.body_map.insert(static_cast<Index>(state_->model.bodies.slot.size()));
-    append_body(state_->model, state_->scratch.stiffness_sum,
-                {.slot = handle.slot,
-                 .kind = BodyKind::deformable,
-                 .self_contact = body.self_contact,
-                 .dynamics = body.dynamics,
-                 .filter = {body.collision_group, body.collision_mask},
-                 .element = body.element,
-                 .material = material,
-                 .tetrahedron_material = tetrahedron_material,
-                 .collider = no_index,
-                 .contact_distance = body.contact_distance.value_or(-1),
-                 .nodes = mesh.nodes,
-                 .tetrahedra = mesh.tetrahedra,
-                 .triangles = {},
-                 .position = body.position,
-                 .rotation = rotation_matrix(body.rotation),
-                 .velocity = body.velocity,
-                 .angular_velocity = body.angular_velocity});
+    fresh.slot = handle.slot;
+    append_body(state_->model, state_->scratch.stiffness_sum, fresh);
+    state_->model.body_records.back().choice = choice;
     const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
     state_->model.body_records.back().name = name;
     try {

@@ -81,6 +81,24 @@ Real energy_of_rounding(const Model& model) {
 
 }  // namespace
 
+std::string DynamicsChoice::message() const {
+    const DynamicsEstimate& e = estimate;
+    const auto way = [](Real cost, Real step) {
+        return short_text(cost) + " s of a core a simulated second, in steps of " + short_text(step) + " s";
+    };
+    const bool is_implicit = dynamics == BodyDynamics::implicit_elastic;
+    std::string text(name_of(dynamics));
+    if (e.reason == DynamicsReason::given) return text;
+    if (e.reason == DynamicsReason::self_contact) return text + ", since it touches itself";
+    if (e.reason == DynamicsReason::strain) text += ", since it may deform by " + short_text(100 * e.strain) + " %";
+    text += ": " + (is_implicit ? way(e.implicit_cost, e.implicit_step) : way(e.explicit_cost, e.explicit_step)) +
+            (is_implicit ? "; explicit " + way(e.explicit_cost, e.explicit_step)
+                         : "; implicit " + way(e.implicit_cost, e.implicit_step));
+    if (is_implicit && e.damped_above > 0)
+        text += "; what vibrates faster than " + short_text(e.damped_above) + " Hz is damped";
+    return text;
+}
+
 std::string StepReport::message() const {
     const std::string who = body_name.empty() ? "a body" : "body '" + body_name + "'";
     const std::string where = (node < 0 ? "" : ", node " + std::to_string(node)) +
@@ -149,6 +167,10 @@ WorldReport World::report() const {
     report.stable_step = told_step(world.model, &stiffest);
     if (stiffest != no_index)
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;
+    for (std::size_t b = 0; b < world.model.body_records.size(); ++b)
+        if (const BodyRecord& record = world.model.body_records[b]; record.choice.reason != DynamicsReason::given)
+            report.dynamics_choices.push_back({world.model.body_map.handle_of_slot(world.model.bodies.slot[b]),
+                                               record.name, world.model.dynamics_of(b), record.choice});
     report.start_overlaps = world.record.start_overlaps;
     report.start_moves = world.record.start_moves;
     report.step_limits = world.record.limits.report();

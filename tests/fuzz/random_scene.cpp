@@ -251,6 +251,7 @@ private:
         }
         if (!body.contains("pin") && !body.contains("self_contact") && of_frames_.chance(0.35))
             body["dynamics"] = name_of(of_frames_.chance(0.5) ? BodyDynamics::rigid : BodyDynamics::implicit_elastic);
+        if (!body.contains("dynamics") && of_meshes_.chance(0.1)) body["dynamics"] = name_of(BodyDynamics::automatic);
         return body;
     }
 

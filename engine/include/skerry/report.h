@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "components/handle.h"
 #include "components/options.h"
 #include "components/types.h"
+#include "skerry/settings.h"
 
 #pragma GCC visibility push(default)
 namespace skerry {
@@ -124,6 +127,43 @@ struct StepLimitReport {
     Real seconds = 0;         // s, simulated in these steps
 };
 
+/// Why BodyDynamics::automatic made a body explicit or implicit. given: it did not, somebody said what it is.
+/// self_contact: it touches itself, which implicit bodies do not. strain: it may deform by more than they can. cost:
+/// what is predicted to cost less.
+enum class DynamicsReason : std::uint8_t { given, self_contact, strain, cost };
+template <>
+struct EnumNames<DynamicsReason> {
+    static constexpr std::array<std::pair<DynamicsReason, std::string_view>, 4> table{{
+        {DynamicsReason::given, "given"},
+        {DynamicsReason::self_contact, "self_contact"},
+        {DynamicsReason::strain, "strain"},
+        {DynamicsReason::cost, "cost"},
+    }};
+};
+
+/// What the choice was made by (docs/methods/implicit_bodies.md 6).
+struct DynamicsEstimate {
+    DynamicsReason reason = DynamicsReason::given;
+    Real explicit_step = 0;  // s, that the world takes with the body explicit
+    Real implicit_step = 0;  // s, with it implicit
+    // s of one core a simulated second, of the elements of the world and of the solves for this body
+    Real explicit_cost = 0, implicit_cost = 0;
+    Real strain = 0;  // the largest that weight, its speed and a fall of ten times its own size may bring
+    // Hz, of vibrations that implicit steps of this length damp rather than follow: omega h above 1/2
+    Real damped_above = 0;
+};
+
+struct DynamicsChoice {
+    BodyHandle body{};
+    std::string name;
+    BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // what it became
+    DynamicsEstimate estimate{};
+
+    /// "implicit, for 0.8 s of a core a simulated second in steps of 8.3 ms; explicit it would take 9 s in steps of 14
+    /// us. Vibrations above 9.5 Hz are damped, not followed"
+    std::string message() const;
+};
+
 /// Two bodies, or a body and a collider, that overlapped before the first step after one of them was added. Surfaces
 /// that only touch, or lie within the contact distance, do not.
 struct StartOverlap {
@@ -187,6 +227,7 @@ struct WorldReport : RunCounters {
     // Groups of nodes that implicit elements couple, so that these do not make the step shorter
     // (docs/methods/clusters.md).
     std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;
+    std::vector<DynamicsChoice> dynamics_choices;  // of bodies that were added as `automatic`, in the order added
     // Of the last look, which is taken before the first step after something was added.
     std::vector<StartOverlap> start_overlaps;
     std::vector<StartMove> start_moves;

@@ -116,6 +116,8 @@ public:
     /// What it has. `smoothed` is told as what it stands for: where that differs by material, as edge_node_smoothed.
     ElementKind element(BodyHandle body) const;
     BodyDynamics dynamics(BodyHandle body) const;
+    /// Of one that was added as `automatic`, by what it became what it is; of others `given`.
+    DynamicsEstimate dynamics_choice(BodyHandle body) const;
     /// Where the frame of its mesh is now, to which BodySettings took it at first: of a body that deforms the nearest
     /// one, which its centre of mass and its mean rotation have.
     MotionKey pose(BodyHandle body) const;

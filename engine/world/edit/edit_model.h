@@ -49,6 +49,11 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
 /// node: kept from body to body, so that each costs what it has itself.
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body);
 
+// choose_dynamics.cpp
+/// Whether a body that comes, with this as its mesh and place, is better explicit or implicit: says so in the estimate
+/// and returns it. Nothing of the model changes; `body` is explicit.
+BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate);
+
 // body_steps.cpp
 /// Tetrahedra by material, in the order in which the mesh comes to their materials.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body);

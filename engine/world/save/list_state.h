@@ -40,6 +40,8 @@ void list_records(SavedRows& saved, auto&& archive) {
     archive.value("/handles/world", saved.world);
     archive.column("/records/body_element", saved.body_element);
     archive.column("/records/body_settled", saved.body_settled);
+    archive.column("/records/choice_reason", saved.choice_reason);
+    archive.column("/records/choice_estimate", saved.choice_estimate);
     archive.column("/records/collider_settled", saved.collider_settled);
     list_ragged("/records/tetrahedron_material", saved.tetrahedron_material, archive);
     list_ragged("/records/body_name", saved.body_name, archive);

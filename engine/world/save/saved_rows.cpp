@@ -221,6 +221,10 @@ SavedRows rows_to_save(const WorldState& world) {
     for (const BodyRecord& record : model.body_records) {
         saved.body_element.push_back(record.element);
         saved.body_settled.push_back(record.settled);
+        const DynamicsEstimate& e = record.choice;
+        saved.choice_reason.push_back(e.reason);
+        saved.choice_estimate.push_back(
+            {e.explicit_step, e.implicit_step, e.explicit_cost, e.implicit_cost, e.strain, e.damped_above});
         append(std::span<const Index>(record.tetrahedron_material), saved.tetrahedron_material);
         append_text(record.name, saved.body_name);
     }
@@ -261,6 +265,8 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
     expect_ragged(file, "/meshes/covered_item", meshes.covered_item, count, "meshes");
     expect_rows(file, "/records/body_element", saved.body_element.size(), bodies, "bodies");
     expect_rows(file, "/records/body_settled", saved.body_settled.size(), bodies, "bodies");
+    expect_rows(file, "/records/choice_reason", saved.choice_reason.size(), bodies, "bodies");
+    expect_rows(file, "/records/choice_estimate", saved.choice_estimate.size(), bodies, "bodies");
     expect_ragged(file, "/records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
     expect_rows_of(file, "/records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
     expect_ragged(file, "/records/body_name", saved.body_name, bodies, "bodies");
@@ -287,6 +293,10 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         record.name = text_of(saved.body_name[b]);
         record.element = saved.body_element[b];
         record.settled = saved.body_settled[b] != 0;
+        const std::array<Real, 6>& e = saved.choice_estimate[b];
+        if (std::ranges::any_of(e, [](Real value) { return !(value >= 0); }))
+            file.complain("/records/choice_estimate", "a number below zero, or none, of " + body, "numbers from 0 on");
+        record.choice = {saved.choice_reason[b], e[0], e[1], e[2], e[3], e[4], e[5]};
         record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
         record.surface.assign(parts.surface.begin(), parts.surface.end());
         const std::span<const Index> materials = saved.tetrahedron_material[b];

@@ -37,6 +37,8 @@ struct SavedRows {
     std::uint32_t world = 0;  // the number that handles bear
     Column<ElementKind> body_element;
     Column<std::uint8_t> body_settled, collider_settled;
+    Column<DynamicsReason> choice_reason;           // of BodyRecord::choice, and
+    Column<std::array<Real, 6>> choice_estimate;    // its members in their order
     Ragged<Index> tetrahedron_material;             // of BodyRecord
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // the alternative of Shape, and

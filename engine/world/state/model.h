@@ -47,7 +47,8 @@ struct BodyRecord {
     std::vector<Index> tetrahedron_material;       // rows of MaterialTable; empty: all have that of the body
     // the tetrahedra that the element at each place of its blocks covers; none in a lane that is left over
     Ragged<Index> element_tetrahedra;
-    bool settled = false;  // it was looked at for overlaps
+    bool settled = false;       // it was looked at for overlaps
+    DynamicsEstimate choice{};  // of BodyDynamics::automatic
 };
 
 struct ColliderRecord {

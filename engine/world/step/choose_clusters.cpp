@@ -17,9 +17,9 @@ namespace skerry {
 
 namespace {
 
-// ns, of a step: an element with its part of nodes and contacts, and an entry of a cluster's matrix. Six thrown meshes
-// took 100 and 1.5 on a busy core; only their ratio matters.
-constexpr Real element_cost = 70, entry_cost = 0.7;
+// ns, of a step: an entry of a cluster's matrix. Six thrown meshes took 100 an element and 1.5 on a busy core; only
+// their ratio matters.
+constexpr Real entry_cost = 0.7;
 /// What it has to save of the cost of a simulated second, for results that differ a little.
 constexpr Real least_gain = 1.5;
 /// The least moment of inertia of a body may grow by this part.

@@ -41,6 +41,11 @@ Real trusted_step(const Model& model, Index* body) {
     return std::min(stable, model.settings.step_size.value_or(asked));
 }
 
+Real step_with_frame(const Model& model) {
+    return std::min(stable_step(model.bodies) * model.settings.step_safety,
+                    model.settings.step_size.value_or(step_of_rigid_bodies));
+}
+
 namespace {
 
 /// What the explicit elements of a body stand in this shape, s.

@@ -20,6 +20,8 @@ Real stable_step(const BodyTable& bodies, Index* body = nullptr);
 Real told_step(const Model& model, Index* body = nullptr);
 /// The longest step that is taken: that of the settings, or the stable step where that is shorter.
 Real trusted_step(const Model& model, Index* body = nullptr);
+/// The same with another body that is rigid or implicit.
+Real step_with_frame(const Model& model);
 /// Looks at the stable step of one body again, s.
 Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
                          Column<Real>& stiffness_sum);
@@ -36,6 +38,8 @@ void keep_shapes(Model& model, std::uint64_t round);
 Real follow_stiffening(Model& model);
 
 // choose_clusters.cpp
+/// ns, what an element takes of a step, with its part of nodes and contacts, as choices count it.
+inline constexpr Real element_cost = 70;
 /// Whether elements of this world may be implicit.
 bool clusters_allowed(const Settings& settings);
 /// After a change of the world: decides, by what a simulated second is likely to cost, how long steps are to be, and

@@ -183,3 +183,20 @@ TEST_CASE("a world that cannot be written stays, and so does the file before it"
     CHECK(World::load(saved.path).state_hash() == world.state_hash());
     CHECK_THROWS_WITH(world.save(saved.folder.path()), Contains("a folder"));
 }
+
+TEST_CASE("what was chosen, and by what, is kept in files", "[scene]") {
+    const TemporaryFolder folder;
+    World world;
+    const auto steel = world.add_material({.young_modulus = 2e11});
+    const auto body = world.add_body(mesh::box(Vec3::Constant(0.1), {2, 2, 2}),
+                                     {.material = steel, .dynamics = BodyDynamics::automatic, .name = "block"});
+    const std::filesystem::path file = folder.path() / "world.h5";
+    world.save(file);
+    World again = World::load(file);
+    CHECK(again.dynamics_choice(body).reason == DynamicsReason::cost);
+    CHECK(again.dynamics_choice(body).explicit_cost == world.dynamics_choice(body).explicit_cost);
+    REQUIRE(again.report().dynamics_choices.size() == 1);
+    CHECK(again.report().dynamics_choices[0].name == "block");
+    CHECK(again.report().dynamics_choices[0].message() == world.report().dynamics_choices[0].message());
+    CHECK(again.report().dynamics_choices[0].message().find("implicit: ") == 0);
+}

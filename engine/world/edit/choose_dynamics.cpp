@@ -1,0 +1,87 @@
+// Whether a body is better explicit or implicit (docs/methods/implicit_bodies.md 6).
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/world/edit/edit_model.h"
+#include "engine/world/step/step.h"
+
+namespace skerry {
+
+namespace {
+
+// What implicit bodies cost, by the number of nodes: power laws through what profile_implicit_factor --steps prints
+// for cubes of 125 to 2,197 nodes that lie on a face.
+constexpr Real fitted_nodes = 729;
+constexpr Real step_time = 2.5e6, step_power = 1.75;     // ns
+constexpr Real factor_time = 150e6, factor_power = 2.7;  // ns, and the columns of what it touches
+constexpr Real factors_a_second = 1;                     // of simulated time: other lengths of the step
+/// What it has to cost less by: vibrations are damped, and the figures are rough.
+constexpr Real least_saving = 2;
+constexpr Real most_strain = 0.02;  // beyond it linear elasticity is no good
+constexpr Real fall = 10;           // times its own size: as far as it may come down, where nobody says
+
+/// Of the material that strains most: by the weight of the body, and where it is stopped at its own speed or at that of
+/// a fall, v/c, as in a bar.
+Real largest_strain(const Model& model, const NewBody& body) {
+    Vec3 lower = body.nodes.front(), upper = lower;
+    for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+    const Real size = (upper - lower).maxCoeff(), gravity = model.settings.gravity.norm();
+    const Real moves = body.velocity.norm() + body.angular_velocity.norm() * size / 2;
+    const Real speed = std::sqrt(moves * moves + 2 * gravity * fall * size);
+    Real strain = 0;
+    for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+        const auto material = static_cast<std::size_t>(body.material_of(t));
+        const Real modulus = model.materials.young_modulus[material];
+        const Real density = model.materials.constants[material].density;
+        strain = std::max({strain, density * gravity * size / modulus, speed * std::sqrt(density / modulus)});
+    }
+    return strain;
+}
+
+struct ExplicitBody {
+    Real step;      // s, that it stands
+    Real elements;  // their number
+};
+
+/// The body alone in a model of its own.
+ExplicitBody as_explicit(const Model& model, const NewBody& body) {
+    Model alone;
+    alone.settings = model.settings;
+    alone.settings.multirate = false;
+    alone.materials = model.materials;
+    Column<Real> stiffness_sum;
+    append_body(alone, stiffness_sum, body);
+    return {alone.bodies.rest_step[0] * model.settings.step_safety,
+            static_cast<Real>(alone.elements.volume.size() * element_lanes)};
+}
+
+}  // namespace
+
+BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate) {
+    constexpr Real ns = 1e-9;
+    const ExplicitBody alone = as_explicit(model, body);
+    const Real others = static_cast<Real>(model.elements.volume.size() * element_lanes);
+    const Real nodes = static_cast<Real>(body.nodes.size()) / fitted_nodes;
+    estimate = {};
+    estimate.implicit_step = step_with_frame(model);
+    estimate.explicit_step = std::min(trusted_step(model), alone.step);
+    estimate.explicit_cost = ns * element_cost * (others + alone.elements) / estimate.explicit_step;
+    estimate.implicit_cost =
+        ns * ((element_cost * others + step_time * std::pow(nodes, step_power)) / estimate.implicit_step +
+              factors_a_second * factor_time * std::pow(nodes, factor_power));
+    estimate.strain = largest_strain(model, body);
+    const Real damps = 2 * model.settings.theta - 1;
+    if (damps > 0) estimate.damped_above = 1 / (4 * std::numbers::pi * estimate.implicit_step);
+    estimate.reason = DynamicsReason::cost;
+    if (body.self_contact) {
+        estimate.reason = DynamicsReason::self_contact;
+    } else if (!(estimate.strain <= most_strain)) {
+        estimate.reason = DynamicsReason::strain;
+    } else if (estimate.implicit_cost * least_saving < estimate.explicit_cost) {
+        return BodyDynamics::implicit_elastic;
+    }
+    return BodyDynamics::explicit_elastic;
+}
+
+}  // namespace skerry
