@@ -64,6 +64,11 @@ private:
             nearest_ = std::min(nearest_, std::max(distance, flat));
             return;
         }
+        if (motion_.stands_still() && is_convex_part(geometry_, part) &&
+            !within_reach(distance, speed_against(Vec3::Zero(), node))) {
+            nearest_ = std::min(nearest_, distance);  // no point of it is nearer
+            return;
+        }
         const EdgeContact contact = edge_contact(geometry_, part, end[0], end[1]);
         nearest_ = std::min(nearest_, contact.nearest);
         for (std::size_t i = 0; i < contact.count; ++i) {

@@ -9,6 +9,7 @@
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/geometry/lane_mask.h"
 
 namespace skerry {
 
@@ -100,10 +101,12 @@ protected:
 private:
     bool all_asleep(Index begin, Index end) const {
         const Real* const until = asleep_until_.data();
-        bool awake = false;
-#pragma omp simd reduction(| : awake)
-        for (Index i = begin; i < end; ++i) awake |= !(travel_bound_ < until[i]);
-        return !awake;
+        if (end - begin < candidates_at_once)
+            return std::all_of(until + begin, until + end, [&](Real u) { return travel_bound_ < u; });
+        static_assert(candidates_at_once == 2 * element_lanes);
+        const Real8 bound = Real8{} + travel_bound_, first = *reinterpret_cast<const Real8InMemory*>(until + begin),
+                    second = *reinterpret_cast<const Real8InMemory*>(until + begin + element_lanes);
+        return any_bits(~((bound < first) & (bound < second))) == 0;
     }
 
     bool moves(const Stencil& stencil) const {

@@ -58,15 +58,35 @@ private:
     const Real length_;
 };
 
-/// `is_low` holds at `low` and below some place, and not at `high`: what is on both sides of that place.
+/// What is on both sides of a place.
 struct Bracket {
     Real low, high;
 };
 
-Bracket close_in(Bracket on, auto&& is_low) {
-    while (on.high - on.low > place_tolerance) {
-        const Real middle = 0.5 * (on.low + on.high);
-        (is_low(middle) ? on.low : on.high) = middle;
+/// Where a rising function passes zero; `below` and `above`: its values at both ends. Along the chord, by the Illinois
+/// rule: where the slope is smooth that takes a few looks in place of 33 by halves. A kink, or a stretch of one value,
+/// is found by the halving of every fourth round.
+Bracket close_in(Bracket on, Real below, Real above, bool zero_is_below, auto&& value_at) {
+    constexpr int rounds_by_chord = 3;
+    constexpr Real least_step = 0.5 * place_tolerance;  // what is found from one side is passed by this
+    int same_side = 0;                                  // above zero: the last looks were below, so many
+    for (int round = 0; on.high - on.low > place_tolerance; ++round) {
+        Real s = 0.5 * (on.low + on.high);
+        if (round % (rounds_by_chord + 1) != rounds_by_chord)
+            s = std::clamp(on.low - below / (above - below) * (on.high - on.low), on.low + least_step,
+                           on.high - least_step);
+        const Real value = value_at(s);
+        if (value < 0 || (zero_is_below && !(value > 0))) {
+            on.low = s;
+            below = value;
+            same_side = std::max(same_side, 0) + 1;
+            if (same_side > 1) above *= 0.5;
+        } else {
+            on.high = s;
+            above = value;
+            same_side = std::min(same_side, 0) - 1;
+            if (same_side < -1) below *= 0.5;
+        }
     }
     return on;
 }
@@ -93,8 +113,8 @@ public:
             add(1, last_place(flat_slope));
         const Real low = contact_.count > none ? contact_.point[none].s : 1,
                    high = contact_.count > none ? contact_.point[contact_.count - 1].s : 0;
-        if (passes(-steep_slope)) add_before(low, first_place(steep_slope));
-        if (passes(steep_slope)) add_behind(high, last_place(steep_slope));
+        if (passes(-steep_slope)) add_before(low);
+        if (passes(steep_slope)) add_behind(high);
     }
 
 private:
@@ -103,10 +123,14 @@ private:
     /// Where the distance no longer falls by more than `slope`, and where it begins to rise by more; on the flatter
     /// side of a kink, whose normal holds along the stretch.
     Real first_place(Real slope) const {
-        return close_in(interval_, [&](Real s) { return along_.slope(s) < -slope; }).high;
+        return close_in(interval_, slope_low_ + slope, slope_high_ + slope, false,
+                        [&](Real s) { return along_.slope(s) + slope; })
+            .high;
     }
     Real last_place(Real slope) const {
-        return close_in(interval_, [&](Real s) { return !(along_.slope(s) > slope); }).low;
+        return close_in(interval_, slope_low_ - slope, slope_high_ - slope, true,
+                        [&](Real s) { return along_.slope(s) - slope; })
+            .low;
     }
 
     void add_minimum() {
@@ -121,10 +145,18 @@ private:
             add(1, last);
         }
     }
-    void add_before(Real other, Real s) {
+    /// Only where the slope is not too steep a stretch away from the other point; that is known at one look, since
+    /// slopes rise.
+    void add_before(Real other) {
+        const Real last = other - shortest_stretch;
+        if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
+        const Real s = first_place(steep_slope);
         if (other - s > shortest_stretch) add(2, s);
     }
-    void add_behind(Real other, Real s) {
+    void add_behind(Real other) {
+        const Real first = other + shortest_stretch;
+        if (first >= interval_.high || (first > interval_.low && along_.slope(first) > steep_slope)) return;
+        const Real s = last_place(steep_slope);
         if (s - other > shortest_stretch) add(3, s);
     }
     void add(Index number, Real s) { push(number, s, along_.at(s)); }
@@ -162,19 +194,19 @@ Real scan(const Along& along, bool convex, auto&& visit) {
     return nearest;
 }
 
-bool is_convex(const ColliderGeometry& geometry, Index part) {
+}  // namespace
+
+bool is_convex_part(const ColliderGeometry& geometry, Index part) {
     return geometry.shape != ColliderShape::bucket || part == 0;
 }
 
-}  // namespace
-
 Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
-    return scan(Along(geometry, part, a, b), is_convex(geometry, part), [](Real, Real) {});
+    return scan(Along(geometry, part, a, b), is_convex_part(geometry, part), [](Real, Real) {});
 }
 
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
     const Along along(geometry, part, a, b);
-    const bool convex = is_convex(geometry, part);
+    const bool convex = is_convex_part(geometry, part);
     EdgeContact contact;
     Index next = 0;
     contact.nearest = scan(along, convex, [&](Real low, Real high) {

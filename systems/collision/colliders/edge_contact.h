@@ -8,6 +8,9 @@
 
 namespace skerry {
 
+/// Whether the signed distance to a part is a convex function: of all but the wall of a bucket.
+bool is_convex_part(const ColliderGeometry& geometry, Index part);
+
 /// No point of the edge from a to b (frame of the collider) is nearer to a part of the collider than this, m.
 Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 

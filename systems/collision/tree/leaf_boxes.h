@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "systems/collision/tree/box.h"
+#include "systems/geometry/lane_mask.h"
 
 namespace skerry {
 
@@ -42,12 +43,7 @@ inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
 
 /// A bit for each lane that is below the limit.
 inline unsigned lanes_below(const Real8& value, Real limit) {
-    Lanes<Real, leaf_lanes> lane;
-    store(value, lane);
-    unsigned bits = 0;
-#pragma omp simd reduction(| : bits)
-    for (unsigned l = 0; l < leaf_lanes; ++l) bits |= static_cast<unsigned>(lane.lane[l] < limit) << l;
-    return bits;
+    return bits_of(value < Real8{} + limit);
 }
 
 /// Calls visit(lane) for each bit, in rising order.
