@@ -27,6 +27,11 @@ constexpr Real shortest_stretch = 0.1;
 // places.
 constexpr int wall_intervals = 16;
 
+/// What is on both sides of a place.
+struct Bracket {
+    Real low, high;
+};
+
 /// The distance to the part at the places of an edge.
 class Along {
 public:
@@ -51,6 +56,30 @@ public:
         return found;
     }
 
+    /// Where the edge passes the planes of a box's sides: between two such places the same of them are nearest.
+    void for_each_kink(auto&& visit) const {
+        if (geometry_.shape != ColliderShape::box) return;
+        for (int i = 0; i < 3; ++i)
+            for (const Real side : {-geometry_.size[i], geometry_.size[i]}) visit((side - a_[i]) / edge_[i]);
+    }
+
+    /// Where the slope is this by closed form: of a ball, and of a box as long as the same of its sides are nearest as
+    /// at `near`. To what they share, seen from outside, the distance along the edge is f = sqrt(q^2 (s - s0)^2 +
+    /// f0^2), and its slope q^2 (s - s0) / (length f). Not a number where it is never reached, or not known.
+    Real place_of(Real slope, Real near) const {
+        const bool is_box = geometry_.shape == ColliderShape::box;
+        if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
+        Vec3 from = a_, along = edge_;  // as seen from what is nearest
+        for (int i = 0; i < 3 && is_box; ++i) {
+            const Real at = a_[i] + near * edge_[i];
+            const bool beyond = std::abs(at) > geometry_.size[i];
+            from[i] = beyond ? from[i] - std::copysign(geometry_.size[i], at) : 0;
+            along[i] = beyond ? along[i] : 0;
+        }
+        const Real q2 = along.squaredNorm(), s0 = -from.dot(along) / q2, reached = slope * length_;
+        return s0 + reached * (from + s0 * along).norm() / std::sqrt(q2 * (q2 - reached * reached));
+    }
+
 private:
     const ColliderGeometry& geometry_;
     const Index part_;
@@ -58,38 +87,58 @@ private:
     const Real length_;
 };
 
-/// What is on both sides of a place.
-struct Bracket {
-    Real low, high;
-};
+/// Where along an edge a slope is passed: first looks where a closed form expects it, then along the chord, by the
+/// Illinois rule. A kink, or a stretch of one value, is found by the halving of every fourth round.
+class PlaceOfSlope {
+public:
+    /// `below` and `above`: the slopes at both ends; `itself_is_below`: which side of the place the slope itself is on.
+    PlaceOfSlope(const Along& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
+        : along_(along),
+          on_(on),
+          below_(below - slope),
+          above_(above - slope),
+          slope_(slope),
+          itself_is_below_(itself_is_below) {}
 
-/// Where a rising function passes zero; `below` and `above`: its values at both ends. Along the chord, by the Illinois
-/// rule: where the slope is smooth that takes a few looks in place of 33 by halves. A kink, or a stretch of one value,
-/// is found by the halving of every fourth round.
-Bracket close_in(Bracket on, Real below, Real above, bool zero_is_below, auto&& value_at) {
-    constexpr int rounds_by_chord = 3;
-    constexpr Real least_step = 0.5 * place_tolerance;  // what is found from one side is passed by this
-    int same_side = 0;                                  // above zero: the last looks were below, so many
-    for (int round = 0; on.high - on.low > place_tolerance; ++round) {
-        Real s = 0.5 * (on.low + on.high);
-        if (round % (rounds_by_chord + 1) != rounds_by_chord)
-            s = std::clamp(on.low - below / (above - below) * (on.high - on.low), on.low + least_step,
-                           on.high - least_step);
-        const Real value = value_at(s);
-        if (value < 0 || (zero_is_below && !(value > 0))) {
-            on.low = s;
-            below = value;
-            same_side = std::max(same_side, 0) + 1;
-            if (same_side > 1) above *= 0.5;
-        } else {
-            on.high = s;
-            above = value;
-            same_side = std::min(same_side, 0) - 1;
-            if (same_side < -1) below *= 0.5;
+    Bracket find() {
+        constexpr int rounds_by_chord = 3;
+        along_.for_each_kink([&](Real s) { look(s); });
+        const Real expected = along_.place_of(slope_, 0.5 * (on_.low + on_.high));
+        look(expected - least_step);
+        look(expected + least_step);
+        for (int round = 0; on_.high - on_.low > place_tolerance; ++round) {
+            if (round % (rounds_by_chord + 1) == rounds_by_chord)
+                look(0.5 * (on_.low + on_.high));
+            else
+                look(std::clamp(on_.low - below_ / (above_ - below_) * (on_.high - on_.low), on_.low + least_step,
+                                on_.high - least_step));
         }
+        return on_;
     }
-    return on;
-}
+
+private:
+    static constexpr Real least_step = 0.45 * place_tolerance;  // what is found from one side is passed by this
+
+    /// Nothing where `s` is not between both sides.
+    void look(Real s) {
+        if (!(s > on_.low && s < on_.high)) return;
+        const Real value = along_.slope(s) - slope_;
+        const bool is_below = value < 0 || (itself_is_below_ && !(value > 0));
+        (is_below ? on_.low : on_.high) = s;
+        (is_below ? below_ : above_) = value;
+        same_side_ = is_below == was_below_ ? same_side_ + 1 : 1;
+        was_below_ = is_below;
+        if (same_side_ > 1) (is_below ? above_ : below_) *= 0.5;
+    }
+
+    const Along& along_;
+    Bracket on_;
+    Real below_, above_;
+    const Real slope_;
+    const bool itself_is_below_;
+    bool was_below_ = false;
+    int same_side_ = 0;
+};
 
 /// The points of one interval in which the slope rises.
 class Stretch {
@@ -123,14 +172,10 @@ private:
     /// Where the distance no longer falls by more than `slope`, and where it begins to rise by more; on the flatter
     /// side of a kink, whose normal holds along the stretch.
     Real first_place(Real slope) const {
-        return close_in(interval_, slope_low_ + slope, slope_high_ + slope, false,
-                        [&](Real s) { return along_.slope(s) + slope; })
-            .high;
+        return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
     Real last_place(Real slope) const {
-        return close_in(interval_, slope_low_ - slope, slope_high_ - slope, true,
-                        [&](Real s) { return along_.slope(s) - slope; })
-            .low;
+        return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, slope, true).find().low;
     }
 
     void add_minimum() {

@@ -82,6 +82,10 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
                     const bool least_there = point.number % 4 < 2;
                     if (point.on.distance > -0.005 && least_there)
                         CHECK(std::abs(point.on.normal.dot(b - a)) <= 2e-3 * length);
+                    // the others are where the edge begins to rise by 0.05; seen from outside a convex shape has no
+                    // kinks
+                    if (!least_there && !is_wall && point.on.distance > 0)
+                        CHECK(std::abs(point.on.normal.dot(b - a)) / length == Approx(0.05).margin(1e-5));
                     least = std::min(least, point.on.distance);
                     ++between;
                 }
