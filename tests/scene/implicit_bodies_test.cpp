@@ -202,6 +202,34 @@ TEST_CASE("an implicit body vibrates as a rod does, damped as theta says", "[sce
     CHECK(report.energy.kinetic + report.energy.elastic + report.energy.dissipated == Approx(start).epsilon(1e-9));
 }
 
+TEST_CASE("a stack of implicit or rigid blocks is solved by Newton steps, and comes to rest", "[scene][implicit]") {
+    const auto dynamics = GENERATE(BodyDynamics::implicit_elastic, BodyDynamics::rigid);
+    CAPTURE(name_of(dynamics));
+    const auto unconverged = [&](SolverMethod method, Real& speed) {
+        Settings settings;
+        settings.step_size = 0.01;
+        settings.tolerance = 1e-6;
+        settings.method = method;
+        World world(settings);
+        const auto stiff = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .friction = 0.5});
+        world.add_collider(Plane{});
+        const Mesh block = mesh::box({0.2, 0.2, 0.1}, {2, 2, 1});
+        for (int k = 0; k < 6; ++k)
+            world.add_body(block, {.material = stiff, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = dynamics});
+        const StepReport report = world.advance(1);
+        REQUIRE(report.ok());
+        speed = 0;
+        for (const BodyHandle body : world.bodies())
+            for (const Vec3& v : world.velocities(body)) speed = std::max(speed, v.norm());
+        return report.unconverged;
+    };
+    Real speed = 0, swept_speed = 0;
+    const Index with = unconverged(SolverMethod::automatic, speed),
+                without = unconverged(SolverMethod::ags, swept_speed);
+    CHECK(4 * with < without);
+    CHECK(speed < 2e-6);
+}
+
 TEST_CASE("theta is refused where it has no meaning", "[scene][implicit]") {
     Settings settings;
     settings.theta = 0.4;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "components/types.h"
 #include "systems/solver/local/columns3.h"
@@ -33,6 +34,7 @@ struct RigidTerm {
 struct RigidPart {
     std::array<RigidTerm, 2> term;
     Index term_count = 0;
+    std::span<const RigidTerm> terms() const { return {term.data(), static_cast<std::size_t>(term_count)}; }
     Columns3 mobility;  // 1/kg, W_ii
     Columns3 frame;     // normal and two tangents
     LocalBlock block;   // of W_ii, in the frame

@@ -19,17 +19,44 @@ inline Real newton_step_cost(Index contacts) {
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators that keep room for Newton steps and know the cost of a sweep. Others get sweeps alone: in a step of the
-/// engine the warm start and the next step do what is left, at less cost than a factorisation.
+/// Operators that keep room for Newton steps and know what they cost. Others get sweeps alone: in a step of the engine
+/// the warm start and the next step do what is left, at less cost than a factorisation.
 template <class Op>
-concept TakesNewtonSteps = requires(Op op, const Op constant) {
+concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
     { constant.couplings() } -> std::convertible_to<Index>;  // blocks of W off the diagonal
 };
+/// Those that have steps of their own, and have to look at the whole region to know what they cost, ns.
+template <class Op>
+concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
+    { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;
+    { op.newton_step_cost() } -> std::same_as<Real>;
+    { op.sweep_cost() } -> std::same_as<Real>;
+};
+template <class Op>
+concept TakesNewtonSteps = KeepsNewtonMemory<Op> || HasNewtonSteps<Op>;
 
 template <ContactOperator Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     return solve_ags(op, limits);
+}
+
+/// Sweeps that cost as much as two Newton steps (docs/decisions/0004).
+template <TakesNewtonSteps Op>
+Real newton_trial(Op& op) {
+    constexpr Index trial_steps = 2;
+    if constexpr (HasNewtonSteps<Op>)
+        return trial_steps * op.newton_step_cost() / op.sweep_cost();
+    else
+        return trial_steps * newton_step_cost(op.size()) / sweep_cost(op.size(), op.couplings());
+}
+
+template <TakesNewtonSteps Op>
+SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
+    if constexpr (HasNewtonSteps<Op>)
+        return op.take_newton_steps(error, tolerance, limit);
+    else
+        return NewtonSteps<Op>(op, op.newton_memory()).run(error, tolerance, limit);
 }
 
 /// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again
@@ -41,10 +68,10 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);
     AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);
-    constexpr Index trial_steps = 2;    // docs/decisions/0004
-    constexpr Index least_sweeps = 16;  // before them: most regions are solved by then
-    const Real trial = trial_steps * newton_step_cost(op.size()) / sweep_cost(op.size(), op.couplings());  // sweeps
-    Real pause = std::max<Real>(trial, least_sweeps);
+    constexpr Real least_sweeps = 16;  // before them: most regions are solved by then
+    constexpr bool looks_later = HasNewtonSteps<Op>;
+    Real trial = looks_later ? 0 : newton_trial(op);
+    Real pause = std::max(trial, least_sweeps);
     Real error_before = 1;
     Index iteration_before = 0, newton_steps = 0;
     while (true) {
@@ -54,6 +81,17 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
         if (result.converged || !std::isfinite(result.error))
             return {result.iterations + newton_steps, result.error, result.converged};
         if (result.iterations + newton_steps >= limits.max_iterations) break;
+        if (looks_later && trial == 0) {
+            trial = newton_trial(op);
+            // half of the sweeps are for the steps to begin with, unless these are out of all proportion
+            constexpr Real out_of_proportion = 10;
+            const Real all = limits.max_iterations;
+            pause = trial > out_of_proportion * all ? all : std::min(std::max(trial, least_sweeps), all / 2);
+            if (pause > result.iterations) {
+                pause -= result.iterations;
+                continue;
+            }
+        }
         const Real pace =
             std::log(error_before / result.error) / static_cast<Real>(result.iterations - iteration_before);
         error_before = result.error;
@@ -61,11 +99,11 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
         if (pace * trial > std::log(result.error / limits.tolerance)) continue;
         constexpr Index most_steps = 20;  // those that finish take up to 14 (docs/decisions/0004)
         const SolveResult newton =
-            NewtonSteps<Op>(op, op.newton_memory())
-                .run(result.error, limits.tolerance,
-                     std::min(most_steps, limits.max_iterations - result.iterations - newton_steps));
+            take_newton_steps(op, result.error, limits.tolerance,
+                              std::min(most_steps, limits.max_iterations - result.iterations - newton_steps));
         newton_steps += newton.iterations;
         if (newton.converged) return {result.iterations + newton_steps, newton.error, true};
+        test.offer(newton.error);
         sweeps.start_anew();
         error_before = newton.error;
         pause *= 2;

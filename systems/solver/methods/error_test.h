@@ -16,12 +16,6 @@ struct SolveLimits {
     Real relaxation = 1;
 };
 
-struct SolveResult {
-    Index iterations = 0;
-    Real error = 0;
-    bool converged = false;
-};
-
 /// The next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ..., then every 8th part more. A measure
 /// costs half a sweep; a solution is noticed at most an eighth of its iterations, and five, late.
 inline Index next_check(Index iteration) {
@@ -101,6 +95,8 @@ public:
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }
 
+    /// The present impulse, that another method found.
+    void offer(Real error) { best_.offer(error); }
     /// Of the last measure.
     SolveResult result() const { return {iteration_, error_, error_ <= limits_.tolerance}; }
     /// When the iterations are used up: leaves the best impulse seen, or the last one where the count is fixed.

@@ -15,6 +15,13 @@ namespace skerry {
 /// Vectors by contact that a method may ask for.
 inline constexpr std::size_t workspace_limit = 6;
 
+/// What a method came to.
+struct SolveResult {
+    Index iterations = 0;
+    Real error = 0;
+    bool converged = false;
+};
+
 /// What a sweep did. T: Real, or Real8 for eight regions side by side.
 template <class T>
 struct SweepChangeOf {

@@ -111,4 +111,15 @@ void FreedomOperator::assemble(Eigen::MatrixXd& matrix) const {
                 walk_.coupling(contact(i), contact(j)) + rigid_coupling(part(i), part(j));
 }
 
+Real FreedomOperator::sweep_cost() const {
+    constexpr Real contact_cost = 100, node_cost = 3;  // measured on a 3 GHz core
+    Real cost = 0;
+    for (Index i = 0; i < size(); ++i) {
+        cost += contact_cost;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(contact(i).node_count); ++a)
+            cost += node_cost * static_cast<Real>(walk_.moved_by(contact(i).node[a]));
+    }
+    return cost;
+}
+
 }  // namespace skerry

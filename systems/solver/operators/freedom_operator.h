@@ -4,12 +4,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "components/options.h"
+#include "systems/solver/equations/newton_pool.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/contact_operator.h"
-#include "systems/solver/operators/newton_memory.h"
 #include "systems/solver/operators/through_groups.h"
 
 namespace skerry {
@@ -30,9 +31,10 @@ class FreedomOperator {
 public:
     using Number = Real;
 
-    /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse.
-    FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughGroups& walk)
-        : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
+    /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse. `pool`: for Newton steps.
+    FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughGroups& walk,
+                    NewtonPool& pool)
+        : memory_(memory), friction_(friction), scale_(scale), walk_(walk), pool_(&pool) {}
 
     Index size() const { return static_cast<Index>(memory_.contact.size()); }
     std::span<Vec4> impulse() { return memory_.impulse; }
@@ -65,6 +67,12 @@ public:
     Friction law() const { return friction_; }
     void assemble(Eigen::MatrixXd& matrix) const;
 
+    /// Newton steps (docs/methods/region_solver.md 5.9) from an impulse of this error: at most `limit`, the best
+    /// impulse stays. They take three vectors of the workspace, and memory when it is asked for first.
+    SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
+    Real newton_step_cost() { return newton_memory().cost(); }  // ns, of the order of
+    Real sweep_cost() const;                                    // ns, of the order of
+
     /// The split impulse of a contact (push_contact.h): along its normal.
     Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
@@ -82,6 +90,23 @@ public:
 private:
     const LumpedContact& contact(Index i) const { return memory_.contact[static_cast<std::size_t>(i)]; }
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
+    // of Newton steps
+    BodyEquations& newton_memory();
+    void assemble(BodyEquations& equations) const;
+    /// What impulses do to the unknowns, from the velocities of the region.
+    void gather(BodyEquations& equations, Column<Real>& velocity) const;
+    Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix);
+    std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
+    void list_unknowns(BodyEquations& equations) const;
+    void list_parts(BodyEquations& equations) const;
+    void list_pushes(BodyEquations& equations) const;
+    void couple_parts(BodyEquations& equations) const;
+    void assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const;
+    Index name_of_node(Index node) const;
+    bool touches_clusters() const;
+    bool is_rigid(const BodyEquations::Unknown& unknown) const;
+    bool deforms(const BodyEquations::Unknown& unknown) const;
+
     Vec4 velocity(Index i) const { return contact(i).offset + velocity_at(i, memory_.velocity.data()); }
     /// The impulse that the law answers with where the other impulses stay: exact for Coulomb's cone.
     Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
@@ -93,6 +118,8 @@ private:
     Friction friction_;
     Real scale_;
     ThroughGroups walk_;
+    NewtonPool* pool_;
+    NewtonPool::Lease newton_;
 };
 
 }  // namespace skerry

@@ -18,6 +18,7 @@ public:
     /// `node`: of the region, rows of NodeTable.
     ThroughClusters(const NodeClusters& clusters, std::span<const Index> node) : clusters_(&clusters), node_(node) {}
 
+    bool in_cluster(Index n) const { return clusters_->cluster(node_[static_cast<std::size_t>(n)]) != no_index; }
     void apply(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
             apply_to_node(contact, a, impulse, velocity);

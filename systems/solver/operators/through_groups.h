@@ -6,6 +6,7 @@
 #include <span>
 
 #include "systems/solver/inputs/region_inputs.h"
+#include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/through_clusters.h"
 
 namespace skerry {
@@ -15,7 +16,7 @@ namespace skerry {
 class ThroughGroups {
 public:
     /// `node`: of the region, rows of NodeTable.
-    ThroughGroups(const NodeClusters& clusters, const ImplicitInputs& implicit, const RigidNodes& rigid,
+    ThroughGroups(const NodeClusters& clusters, const ImplicitInputs& implicit, const RigidInputs& rigid,
                   std::span<const Index> node)
         : clusters_(clusters, node), implicit_(&implicit), rigid_(&rigid), node_(node) {}
 
@@ -41,13 +42,44 @@ public:
     Mat3 coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b, true); }
     Mat3 undeformed_coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b, false); }
 
+    const RigidInputs& rigid() const { return *rigid_; }
+    bool in_cluster(Index n) const { return clusters_.in_cluster(n); }
+    /// Row of BodyTable of a node of the region.
+    Index owner(Index n) const {
+        return rigid_->nodes.node_body[static_cast<std::size_t>(node_[static_cast<std::size_t>(n)])];
+    }
+    bool moves_with_rigid(Index n) const { return rigid_->nodes.row(node_[static_cast<std::size_t>(n)]) != no_index; }
+    Index rigid_row(Index n) const { return rigid_->nodes.row(node_[static_cast<std::size_t>(n)]); }
+    /// m, of a node of a rigid body, from its centre.
+    Vec3 arm(Index n) const {
+        return rigid_->position[static_cast<std::size_t>(node_[static_cast<std::size_t>(n)])] -
+               rigid_->center[body_of(n)];
+    }
+    /// Whether a body, by row of RigidBodyTable, has nodes that contacts see deform.
+    bool deforms(Index body) const {
+        return implicit_->any() && !implicit_->coupling->nodes[static_cast<std::size_t>(body)].empty();
+    }
+    /// 1/kg, what an impulse on node `m` of an implicit body gives its node `n` in all.
+    Mat3 response(Index n, Index m) const {
+        const std::size_t r = body_of(m);
+        const Mat3 turned = rigid_->inverse_inertia[r] * cross_matrix(arm(m));
+        const std::span<const PaddedMat3> row = implicit_->coupling->row(r, deforming_place(m));
+        return row[static_cast<std::size_t>(deforming_place(n))].topRows<3>() + Mat3::Identity() / rigid_->mass[r] -
+               cross_matrix(arm(n)) * turned;
+    }
+    /// Nodes that an impulse on one moves.
+    std::size_t moved_by(Index n) const {
+        const Index place = deforming_place(n);
+        return place == no_index ? 1 : implicit_->coupling->row(body_of(n), place).size();
+    }
+
 private:
     std::size_t body_of(Index n) const {
-        return static_cast<std::size_t>(rigid_->row(node_[static_cast<std::size_t>(n)]));
+        return static_cast<std::size_t>(rigid_->nodes.row(node_[static_cast<std::size_t>(n)]));
     }
     /// Of a node of the region among the touched ones of an implicit body, or no_index.
     Index deforming_place(Index n) const {
-        const Index row = implicit_->row(node_[static_cast<std::size_t>(n)], *rigid_);
+        const Index row = implicit_->row(node_[static_cast<std::size_t>(n)], rigid_->nodes);
         return row == no_index ? no_index : implicit_->coupling->place[static_cast<std::size_t>(row)];
     }
     Mat3 coupling_of(const LumpedContact& a, const LumpedContact& b, bool deformed) const {
@@ -71,7 +103,7 @@ private:
 
     ThroughClusters clusters_;
     const ImplicitInputs* implicit_;
-    const RigidNodes* rigid_;
+    const RigidInputs* rigid_;
     std::span<const Index> node_;
 };
 

@@ -14,6 +14,7 @@
 #include "systems/solver/inputs/solver_settings.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/lumped_operator.h"
+#include "systems/solver/equations/newton_pool.h"
 
 namespace skerry {
 
@@ -54,6 +55,11 @@ inline std::size_t workspace_slots(SolverMethod method) {
     }
 }
 
+/// The same of regions that touch rigid bodies, whose default takes Newton steps.
+inline std::size_t freedom_workspace_slots(SolverMethod method) {
+    return workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method);
+}
+
 struct RegionMemory {
     // by contact
     Column<LumpedContact> contact;
@@ -82,14 +88,16 @@ struct RegionMemory {
     // by task
     Column<RegionTask> task;
     LargeRegions large;
+    NewtonPool newton;                 // of regions that touch rigid bodies
     std::atomic<bool> pushed = false;  // some region wrote push_out in this step
 
     /// Of the columns by contact and by node.
     void make_room_for(std::size_t contacts, std::size_t region_nodes, std::size_t nodes,
                        const SolverSettings& settings);
-    void make_room_for_rigid(std::size_t contacts, std::size_t region_nodes) {
+    void make_room_for_rigid(std::size_t contacts, std::size_t region_nodes, SolverMethod method) {
         make_room(rigid_part, contacts);
         make_room(free_velocity, region_nodes);
+        for (std::size_t slot = 0; slot < freedom_workspace_slots(method); ++slot) make_room(workspace[slot], contacts);
     }
 };
 

@@ -24,7 +24,9 @@ struct FreedomRegion {
     Real scale;  // sqrt(J), of e_nat
     Index base;
 
-    FreedomOperator operator_for(Friction friction) const { return {memory, friction, scale, walk}; }
+    FreedomOperator operator_for(const RegionStage& stage) const {
+        return {memory, stage.settings.friction, scale, walk, stage.memory.newton};
+    }
 };
 
 /// Fills one region.
@@ -42,7 +44,7 @@ public:
                   .node = {},
                   .memory = {},
                   .walk = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
-                                        stage.inputs.implicit, stage.inputs.rigid.nodes, node_),
+                                        stage.inputs.implicit, stage.inputs.rigid, node_),
                   .sums = {},
                   .scale = 0,
                   .base = base},
@@ -166,7 +168,7 @@ private:
                           .free_velocity = data_.free_velocity.span().subspan(first_node_, count_),
                           .scratch = data_.scratch.span().subspan(first_node_, count_),
                           .workspace = {}};
-        for (std::size_t slot = 0; slot < workspace_slots(stage_.settings.method); ++slot)
+        for (std::size_t slot = 0; slot < freedom_workspace_slots(stage_.settings.method); ++slot)
             region_.memory.workspace[slot] = data_.workspace[slot].span().subspan(first_, contacts);
         std::ranges::copy(region_.memory.velocity, data_.free_velocity.span().subspan(first_node_, count_).begin());
     }
@@ -340,7 +342,7 @@ void push_out(const RegionStage& stage, const FreedomRegion& region, const Freed
 
 RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row, Index number, Index base) {
     const FreedomRegion region = Loading(stage, row, number, base).load();
-    FreedomOperator op = region.operator_for(stage.settings.friction);
+    FreedomOperator op = region.operator_for(stage);
     RegionOutcome outcome;
     if (!start(stage, region, op, outcome))
         outcome = outcome_of(run_method(stage.settings.method, op, limits_of(stage.settings)));

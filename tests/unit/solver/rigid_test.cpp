@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 
 #include "tests/support/contact_scene.h"
@@ -115,6 +116,33 @@ TEST_CASE("contacts on rigid bodies obey Coulomb's law by every method", "[solve
         // energy is lost
         CHECK(solved.regions.dissipated[0] > 0);
     }
+}
+
+TEST_CASE("Newton steps solve towers of rigid bodies and nodes that sweeps do not", "[solver][rigid]") {
+    ContactScene scene;
+    Index below = no_index;
+    for (int k = 0; k < 12; ++k) {
+        const Index cube = add_cube(scene, {0.01 * k, 0, 0.5 + k}, 1, {0.02, 0.001 * k, -0.1});
+        for (Index n = 0; n < 4; ++n) {
+            if (below == no_index)
+                scene.touch_floor(cube + n, 0.4);
+            else
+                scene.touch_node(cube + n, below + n, {0, 0, 1}, 0.4);
+        }
+        below = cube;
+    }
+    const Index point = scene.add_node(0.2, {0, 0, -0.3});
+    scene.rigid.node_body.resize(scene.inverse_mass.size(), 0);
+    scene.rigid.position.resize(scene.inverse_mass.size(), Vec3(0.5, 0.5, 12));
+    scene.touch_node(point, below + 3, {0.1, 0, 1}, 0.4);
+
+    const SolvedScene swept = scene.solve({.method = SolverMethod::ags, .tolerance = 1e-8, .max_iterations = 300});
+    REQUIRE(swept.regions.size() == 1);
+    CHECK(swept.regions.status[0] == RegionStatus::iteration_limit);
+    const SolvedScene solved = scene.solve({.tolerance = 1e-8, .max_iterations = 300});
+    CHECK(solved.regions.status[0] == RegionStatus::converged);
+    CHECK(solved.regions.error[0] <= 1e-8);
+    check_coulomb(scene, solved, 1e-5);
 }
 
 TEST_CASE("a heavy rigid body and a light node join no regions beyond themselves", "[solver][rigid]") {

@@ -1,0 +1,77 @@
+#include "systems/solver/equations/body_equations.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "systems/solver/local/rigid_part.h"
+
+namespace skerry {
+namespace {
+
+/// J of a push: the velocity of the contact from the numbers of the part. Three columns of it where nothing turns.
+Eigen::Matrix<Real, 3, 6> jacobian_of(const BodyPush& push) {
+    Eigen::Matrix<Real, 3, 6> jacobian;
+    jacobian.leftCols<3>() = push.weight * Mat3::Identity();
+    jacobian.rightCols<3>() = -cross_matrix(push.arm);
+    return jacobian;
+}
+Index numbers_of(const BodyPush& push) {
+    return push.turns ? 6 : 3;
+}
+
+}  // namespace
+
+BodyEquations::Square BodyEquations::square(Index numbers) {
+    const auto count = static_cast<std::size_t>(numbers);
+    if (square_.size() < 2 * count * count) square_.resize(2 * count * count);
+    if (pivot_.size() < count) pivot_.resize(count);
+    return {{square_.data(), numbers, numbers, numbers},
+            {square_.data() + count * count, numbers, numbers, numbers},
+            pivot_.data()};
+}
+
+void BodyEquations::keep_inertia() {
+    inertia_.resize(factor_.numbers().size());
+    std::ranges::copy(factor_.numbers(), inertia_.begin());
+    for (Column<Real>* column : {&present, &answered, &change, &step, &before}) column->resize(factor_.right().size());
+}
+
+void BodyEquations::start_from_inertia() {
+    std::ranges::copy(inertia_, factor_.numbers().begin());
+}
+
+void BodyEquations::add(Index contact, const Mat3& block) {
+    const Pushes& of = pushes_[static_cast<std::size_t>(contact)];
+    for (const BodyPush& row : of.all())
+        for (const BodyPush& column : of.all()) {
+            const DenseBlock to = factor_.block(row.part, column.part);
+            if (!row.turns && !column.turns) {  // as most
+                const Real weight = row.weight * column.weight;
+                for (Index k = 0; k < 3; ++k)
+                    for (Index l = 0; l < 3; ++l) to.column(column.place + k)[row.place + l] += weight * block(l, k);
+                continue;
+            }
+            const Eigen::Matrix<Real, 6, 6> share = jacobian_of(row).transpose() * block * jacobian_of(column);
+            for (Index k = 0; k < numbers_of(column); ++k)
+                for (Index l = 0; l < numbers_of(row); ++l) to.column(column.place + k)[row.place + l] += share(l, k);
+        }
+}
+
+Vec3 BodyEquations::velocity(Index contact, std::span<const Real> v) const {
+    Vec3 sum = Vec3::Zero();
+    for (const BodyPush& push : pushes_[static_cast<std::size_t>(contact)].all()) {
+        const Real* const at = v.data() + factor_.first(push.part) + static_cast<std::size_t>(push.place);
+        sum += push.weight * Vec3(at[0], at[1], at[2]);
+        if (push.turns) sum += Vec3(at[3], at[4], at[5]).cross(push.arm);
+    }
+    return sum;
+}
+
+Real BodyEquations::set_right(std::span<const Real> x) {
+    factor_.multiply(inertia_, x);
+    Real sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * factor_.right()[k];
+    return sum;
+}
+
+}  // namespace skerry

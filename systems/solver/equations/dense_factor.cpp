@@ -1,0 +1,142 @@
+#include "systems/solver/equations/dense_factor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "components/lanes.h"
+
+namespace skerry {
+namespace {
+
+constexpr Index panel = 8;  // columns that are eliminated one by one before the rest is brought up to date
+
+Real8 load(const Real* from, Real8) {
+    return *reinterpret_cast<const Real8InMemory*>(from);
+}
+void subtract(const Real8& what, Real* from) {
+    const Real8 left = *reinterpret_cast<const Real8InMemory*>(from) - what;
+    *reinterpret_cast<Real8InMemory*>(from) = left;
+}
+Real load(const Real* from, Real) {
+    return *from;
+}
+void subtract(Real what, Real* from) {
+    *from -= what;
+}
+
+/// A column of registers of c -= a b, sums in registers. Part: Real8 or Real.
+template <class Part>
+void subtract_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c, Index row) {
+    const Real* const start = a.data + row;
+    Index at = 0;
+    for (; at + 4 <= c.columns; at += 4) {
+        const Real *b0 = b.column(at), *b1 = b.column(at + 1), *b2 = b.column(at + 2), *b3 = b.column(at + 3);
+        Part first{}, second{}, third{}, fourth{};
+        const Real* from = start;
+        for (Index k = 0; k < b.rows; ++k, from += a.stride) {
+            const Part column = load(from, Part{});
+            first += column * b0[k];
+            second += column * b1[k];
+            third += column * b2[k];
+            fourth += column * b3[k];
+        }
+        subtract(first, c.column(at) + row);
+        subtract(second, c.column(at + 1) + row);
+        subtract(third, c.column(at + 2) + row);
+        subtract(fourth, c.column(at + 3) + row);
+    }
+    for (; at < c.columns; ++at) {
+        Part sum{};
+        const Real *factor = b.column(at), *from = start;
+        for (Index k = 0; k < b.rows; ++k, from += a.stride) sum += load(from, Part{}) * factor[k];
+        subtract(sum, c.column(at) + row);
+    }
+}
+
+void exchange_rows(const DenseBlock& of, Index from, Index to) {
+    if (from == to) return;
+    for (Index k = 0; k < of.columns; ++k) std::swap(of.column(k)[from], of.column(k)[to]);
+}
+
+/// y -= factor x
+void subtract_scaled(Real factor, const Real* x, Real* y, Index count) {
+    Index k = 0;
+    for (; k + 8 <= count; k += 8) subtract(factor * load(x + k, Real8{}), y + k);
+    for (; k < count; ++k) y[k] -= factor * x[k];
+}
+
+/// The columns [begin, end) of a; rows are exchanged in all of it.
+bool factor_panel(const DenseBlock& a, Index begin, Index end, Index* pivot) {
+    for (Index k = begin; k < end; ++k) {
+        Real* const column = a.column(k);
+        const auto largest =
+            std::max_element(column + k, column + a.rows, [](Real x, Real y) { return std::abs(x) < std::abs(y); });
+        pivot[k] = static_cast<Index>(largest - column);
+        if (!(std::abs(*largest) > 0) || !std::isfinite(*largest)) return false;
+        exchange_rows(a, k, pivot[k]);
+        const Real inverse = 1 / column[k];
+        for (Index i = k + 1; i < a.rows; ++i) column[i] *= inverse;
+        for (Index j = k + 1; j < end; ++j)
+            subtract_scaled(a.column(j)[k], column + k + 1, a.column(j) + k + 1, a.rows - k - 1);
+    }
+    return true;
+}
+
+/// b = L^-1 b of the unit lower triangle of the factors' rows and columns [begin, end).
+void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b) {
+    for (Index c = 0; c < b.columns; ++c) {
+        Real* const x = b.column(c);
+        for (Index k = begin; k < end; ++k) subtract_scaled(x[k], factors.column(k) + k + 1, x + k + 1, end - k - 1);
+    }
+}
+void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b) {
+    for (Index c = 0; c < b.columns; ++c) {
+        Real* const x = b.column(c);
+        for (Index k = end - 1; k >= begin; --k) {
+            x[k] /= factors.column(k)[k];
+            subtract_scaled(x[k], factors.column(k) + begin, x + begin, k - begin);
+        }
+    }
+}
+
+}  // namespace
+
+void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
+    Index row = 0;
+    for (; row + 8 <= c.rows; row += 8) subtract_rows<Real8>(a, b, c, row);
+    for (; row < c.rows; ++row) subtract_rows<Real>(a, b, c, row);
+}
+
+bool factor_dense(const DenseBlock& a, Index* pivot) {
+    const Index size = a.rows;
+    for (Index begin = 0; begin < size; begin += panel) {
+        const Index end = std::min(begin + panel, size), rest = size - end;
+        if (!factor_panel(a, begin, end, pivot)) return false;
+        if (rest == 0) break;
+        solve_lower(a, begin, end, a.part(0, end, size, rest));
+        subtract_product(a.part(end, begin, rest, end - begin), a.part(begin, end, end - begin, rest),
+                         a.part(end, end, rest, rest));
+    }
+    return true;
+}
+
+void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
+    const Index size = factors.rows;
+    for (Index k = 0; k < size; ++k) exchange_rows(b, k, pivot[k]);
+    for (Index begin = 0; begin < size; begin += panel) {
+        const Index end = std::min(begin + panel, size);
+        solve_lower(factors, begin, end, b);
+        subtract_product(factors.part(end, begin, size - end, end - begin), b.part(begin, 0, end - begin, b.columns),
+                         b.part(end, 0, size - end, b.columns));
+    }
+    for (Index end = size; end > 0;) {
+        const Index begin = (end - 1) / panel * panel;
+        solve_upper(factors, begin, end, b);
+        subtract_product(factors.part(0, begin, begin, end - begin), b.part(begin, 0, end - begin, b.columns),
+                         b.part(0, 0, begin, b.columns));
+        end = begin;
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,338 @@
+// Newton steps of regions that touch rigid bodies: what moves with a contact, and the inertia K of it.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "systems/solver/operators/freedom_operator.h"
+
+namespace skerry {
+namespace {
+
+using Unknown = BodyEquations::Unknown;
+
+/// Calls `of(first, last)` for all unknowns of each body.
+void for_each_body(const Column<Unknown>& unknown, auto&& of) {
+    for (std::size_t begin = 0, end = 0; begin < unknown.size(); begin = end) {
+        while (end < unknown.size() && unknown[end].body == unknown[begin].body) ++end;
+        of(begin, end);
+    }
+}
+
+void add_identity(const DenseBlock& block, Index at, Real number) {
+    for (Index k = 0; k < 3; ++k) block.column(at + k)[at + k] += number;
+}
+
+}  // namespace
+
+/// The rows of velocities that contacts move: bodies by name, those that do not deform first.
+void FreedomOperator::list_unknowns(BodyEquations& equations) const {
+    Column<Unknown>& unknown = equations.unknown();
+    Column<Index>& of_row = equations.unknown_of_row();
+    unknown.clear();
+    of_row.assign(memory_.velocity.size(), no_index);
+    const auto list = [&](const Unknown& one) {
+        if (std::exchange(of_row[static_cast<std::size_t>(one.row)], 0) == no_index) unknown.push_back(one);
+    };
+    for (Index i = 0; i < size(); ++i) {
+        std::array<Index, 2> name{no_index, no_index};  // of the contact's bodies
+        const auto add = [&](Index body) {
+            if (name[0] != body && name[1] != body) name[name[0] == no_index ? 0 : 1] = body;
+        };
+        const auto partner = [&](Index body) { return name[0] == body ? name[1] : name[0]; };
+        for (const RigidTerm& term : part(i).terms())
+            if (!walk_.deforms(term.row)) add(term.slot);
+        const LumpedContact& of = contact(i);
+        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) add(name_of_node(of.node[a]));
+        for (const RigidTerm& term : part(i).terms())
+            if (!walk_.deforms(term.row))
+                list({.body = term.slot, .partner = no_index, .row = term.slot, .rigid = term.row});
+        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) {
+            const Index body = name_of_node(of.node[a]);
+            Unknown node{.body = body, .partner = partner(body), .row = of.node[a]};
+            node.mass = of.weight[a] / of.step[a];
+            for (const RigidTerm& term : part(i).terms())
+                if (term.row == walk_.rigid_row(of.node[a])) node.slot = term.slot;
+            list(node);
+        }
+    }
+    std::ranges::sort(unknown, {}, [](const Unknown& of) { return std::array{of.body, of.partner, of.row}; });
+    for (std::size_t k = 0; k < unknown.size(); ++k)
+        of_row[static_cast<std::size_t>(unknown[k].row)] = static_cast<Index>(k);
+}
+
+Index FreedomOperator::name_of_node(Index node) const {
+    return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
+}
+
+/// A part is a rigid body, or those nodes of one that deforms that touch the same other body: they are coupled to no
+/// other nodes but those of their own body and of that.
+void FreedomOperator::list_parts(BodyEquations& equations) const {
+    Column<Unknown>& unknown = equations.unknown();
+    BlockFactor& factor = equations.factor();
+    factor.start();
+    for (std::size_t begin = 0, end = 0; begin < unknown.size(); begin = end) {
+        const bool turns = is_rigid(unknown[begin]);
+        while (end < unknown.size() && unknown[end].body == unknown[begin].body &&
+               unknown[end].partner == unknown[begin].partner) {
+            unknown[end].part = factor.part_count();
+            unknown[end].place = 3 * static_cast<Index>(end - begin);
+            ++end;
+        }
+        factor.add_part(turns ? 6 : 3 * static_cast<Index>(end - begin));
+    }
+}
+
+void FreedomOperator::list_pushes(BodyEquations& equations) const {
+    Column<BodyEquations::Pushes>& pushes = equations.pushes();
+    pushes.resize(static_cast<std::size_t>(size()));
+    const auto unknown_of = [&](Index row) -> const Unknown& {
+        return equations.unknown()[static_cast<std::size_t>(equations.unknown_of_row()[static_cast<std::size_t>(row)])];
+    };
+    for (Index i = 0; i < size(); ++i) {
+        BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
+        of.count = 0;
+        for (const RigidTerm& term : part(i).terms()) {
+            if (walk_.deforms(term.row)) continue;  // its nodes move as a whole, too
+            of.add(
+                {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
+        }
+        for (std::size_t a = 0; a < static_cast<std::size_t>(contact(i).node_count); ++a) {
+            const Unknown& node = unknown_of(contact(i).node[a]);
+            of.add({.part = node.part, .place = node.place, .weight = contact(i).weight[a]});
+        }
+    }
+}
+
+/// By contacts, and by what bodies that deform are made of.
+void FreedomOperator::couple_parts(BodyEquations& equations) const {
+    BlockFactor& factor = equations.factor();
+    factor.close_parts();
+    for (const BodyEquations::Pushes& of : equations.pushes())
+        for (const BodyPush& a : of.all())
+            for (const BodyPush& b : of.all()) factor.couple(a.part, b.part);
+    for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
+        if (!deforms(equations.unknown()[begin])) return;
+        for (Index g = equations.unknown()[begin].part; g <= equations.unknown()[end - 1].part; ++g)
+            for (Index h = g; h <= equations.unknown()[end - 1].part; ++h) factor.couple(g, h);
+    });
+}
+
+bool FreedomOperator::touches_clusters() const {
+    for (const LumpedContact& of : memory_.contact)
+        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a)
+            if (walk_.in_cluster(of.node[a])) return true;
+    return false;
+}
+bool FreedomOperator::is_rigid(const Unknown& unknown) const {
+    return unknown.rigid != no_index;
+}
+bool FreedomOperator::deforms(const Unknown& unknown) const {
+    return !is_rigid(unknown) && walk_.moves_with_rigid(unknown.row);
+}
+
+BodyEquations& FreedomOperator::newton_memory() {
+    if (newton_) return *newton_;
+    newton_ = pool_->lease();
+    BodyEquations& equations = *newton_;
+    equations.set_cost(std::numeric_limits<Real>::infinity());
+    if (touches_clusters()) return equations;  // K is known of nodes and of whole bodies only
+    list_unknowns(equations);
+    list_parts(equations);
+    list_pushes(equations);
+    constexpr Index most_parts = 4000;  // whose pairs are kept
+    if (equations.factor().part_count() > most_parts) return equations;
+    couple_parts(equations);
+    if (!equations.factor().analyse()) return equations;
+    Real work = equations.factor().work();
+    for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
+        const Real numbers = 3 * static_cast<Real>(end - begin);
+        // twice as much: once for all steps, which are two where they are as dear as is expected
+        if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 2 / 3;
+    });
+    constexpr Real operation_cost = 0.25, contact_cost = 2000;  // ns, measured on a 3 GHz core
+    equations.set_cost(operation_cost * work + contact_cost * static_cast<Real>(size()));
+    return equations;
+}
+
+void FreedomOperator::assemble(BodyEquations& equations) const {
+    BlockFactor& factor = equations.factor();
+    const Column<Unknown>& unknown = equations.unknown();
+    std::ranges::fill(factor.numbers(), Real(0));
+    for_each_body(unknown, [&](std::size_t begin, std::size_t end) {
+        if (deforms(unknown[begin])) {
+            assemble_deforming(equations, begin, end);
+            return;
+        }
+        for (std::size_t k = begin; k < end; ++k) {
+            const DenseBlock block = factor.block(unknown[k].part, unknown[k].part);
+            if (!is_rigid(unknown[k])) {
+                add_identity(block, unknown[k].place, unknown[k].mass);
+                continue;
+            }
+            const auto body = static_cast<std::size_t>(unknown[k].rigid);
+            add_identity(block, 0, walk_.rigid().mass[body]);
+            const Mat3 inertia = walk_.rigid().inverse_inertia[body].inverse();
+            for (Index c = 0; c < 3; ++c)
+                for (Index r = 0; r < 3; ++r) block.column(3 + c)[3 + r] = inertia(r, c);
+        }
+    });
+    equations.keep_inertia();
+}
+
+/// K of the touched nodes of a body: the inverse of what impulses on them do, as a whole and by what it deforms.
+void FreedomOperator::assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const {
+    const Column<Unknown>& unknown = equations.unknown();
+    const auto count = static_cast<Index>(end - begin), numbers = 3 * count;
+    const BodyEquations::Square square = equations.square(numbers);
+    std::ranges::fill_n(square.inverse.data, static_cast<std::ptrdiff_t>(numbers) * numbers, Real(0));
+    for (Index l = 0; l < count; ++l)
+        for (Index k = 0; k < count; ++k) {
+            const Mat3 response = walk_.response(unknown[begin + static_cast<std::size_t>(k)].row,
+                                                 unknown[begin + static_cast<std::size_t>(l)].row);
+            for (Index c = 0; c < 3; ++c)
+                for (Index r = 0; r < 3; ++r) square.matrix.column(3 * l + c)[3 * k + r] = response(r, c);
+        }
+    for (Index k = 0; k < numbers; ++k) square.inverse.column(k)[k] = 1;
+    if (factor_dense(square.matrix, square.pivot)) solve_dense(square.matrix, square.pivot, square.inverse);
+    for (Index l = 0; l < count; ++l)
+        for (Index k = 0; k < count; ++k) {
+            const Unknown &row = unknown[begin + static_cast<std::size_t>(k)],
+                          &column = unknown[begin + static_cast<std::size_t>(l)];
+            const DenseBlock block = equations.factor().block(row.part, column.part);
+            for (Index c = 0; c < 3; ++c)
+                for (Index r = 0; r < 3; ++r)
+                    block.column(column.place + c)[row.place + r] = square.inverse.column(3 * l + c)[3 * k + r];
+        }
+}
+
+void FreedomOperator::gather(BodyEquations& equations, Column<Real>& velocity) const {
+    for (const Unknown& of : equations.unknown()) {
+        Real* const to = velocity.data() + equations.factor().first(of.part) + static_cast<std::size_t>(of.place);
+        const auto put = [&](Real* at, const Vec4& v) { std::copy_n(v.data(), 3, at); };
+        const Vec4* const row = memory_.velocity.data() + of.row;
+        if (is_rigid(of)) {
+            put(to, row[0]);
+            put(to + 3, row[1]);
+        } else if (of.slot == no_index) {
+            put(to, *row);
+        } else {
+            const Vec4* const whole = memory_.velocity.data() + of.slot;
+            put(to, *row + whole[0] + cross(whole[1], padded(walk_.arm(of.row))));
+        }
+    }
+}
+
+namespace {
+
+/// The impulse of Coulomb's law at z, the one that would stop the contact, and its derivative.
+struct Answer {
+    Vec3 impulse;
+    Mat3 derivative;
+    bool open = false;
+};
+Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
+    const Real along = normal.dot(z);
+    if (!(along > 0)) return {Vec3::Zero(), Mat3::Zero(), true};
+    const Vec3 tangential = z - along * normal;
+    const Real length = tangential.norm();
+    if (length <= mu.stick * along) return {z, Mat3::Identity()};
+    const Vec3 h = tangential / length;
+    const Mat3 pressing = normal * normal.transpose();
+    const Mat3 turning = (mu.slide * along / length) * (Mat3::Identity() - pressing - h * h.transpose());
+    return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose()};
+}
+
+// Of D, what contacts give way by within a round. A tenth of it takes twice the rounds fewer and finds no way to their
+// ends; ten times as much takes more rounds.
+constexpr Real softness = 1e-2;
+
+}  // namespace
+
+/// Impulses answer to the present motion, P( start - u / (softness D) ), and the velocities of the region and
+/// `answered` are those that they make. Returns ( answered - present ) K ( answered - present ), J, and leaves that
+/// right-hand side, with the matrix where it is asked for.
+Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix) {
+    if (with_matrix) equations.start_from_inertia();
+    for (Index i = 0; i < size(); ++i) {
+        if (!(mobility(i) > 0)) continue;
+        const auto at = static_cast<std::size_t>(i);
+        const Real soft = softness * contact(i).diagonal;
+        const Vec3 u = contact(i).offset.head<3>() + equations.velocity(i, equations.present.span());
+        const Answer answer = answer_coulomb_at(start[at].head<3>() - u / soft, contact(i).normal.head<3>(), limits(i));
+        memory_.impulse[at] = padded(answer.impulse);
+        if (with_matrix && !answer.open) equations.add(i, answer.derivative / soft);
+    }
+    refresh();
+    gather(equations, equations.answered);
+    for (std::size_t k = 0; k < equations.change.size(); ++k)
+        equations.change[k] = equations.answered[k] - equations.present[k];
+    return equations.set_right(equations.change.span());
+}
+
+/// One Newton step from the present motion, as long as it lowers what answer_motion returns: the first of lengths 1,
+/// 1/2, ... that lowers it to 0.9 of it, else the best. Returns that, or nothing where the factor broke down.
+std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
+    constexpr int halvings = 6;
+    constexpr Real enough = 0.9;
+    if (!equations.factor().solve()) return std::nullopt;
+    std::ranges::copy(equations.present, equations.before.begin());
+    std::ranges::copy(equations.factor().right(), equations.step.begin());
+    const auto go = [&](Real length) {
+        for (std::size_t k = 0; k < equations.present.size(); ++k)
+            equations.present[k] = equations.before[k] + length * equations.step[k];
+    };
+    Real least = std::numeric_limits<Real>::infinity(), best_length = 1;
+    for (int k = 0; k < halvings; ++k) {
+        const Real length = std::ldexp(Real(1), -k);
+        go(length);
+        const Real next = answer_motion(equations, start, k == 0);
+        if (k == 0 && next < enough * lack) return next;  // as most
+        if (next < least) {
+            least = next;
+            best_length = length;
+        }
+        if (next < enough * lack) break;
+    }
+    go(best_length);
+    return answer_motion(equations, start, true);
+}
+
+SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
+    constexpr Real enough = 0.1;  // of the error at the start of a round, for it to be at its end
+    BodyEquations& equations = newton_memory();
+    assemble(equations);
+    const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
+    std::ranges::copy(memory_.impulse, start.begin());
+    std::ranges::copy(memory_.impulse, best.begin());
+    gather(equations, equations.present);
+    SolveResult result{0, error, error <= tolerance};
+    std::optional<Real> lack = answer_motion(equations, start, true);
+    Real error_at_start = error;
+    while (!result.converged && result.iterations < limit) {
+        ++result.iterations;
+        lack = step_motion(equations, start, *lack);
+        if (!lack) break;
+        const Real now = this->error();
+        if (now < result.error) {
+            result.error = now;
+            result.converged = now <= tolerance;
+            std::ranges::copy(memory_.impulse, best.begin());
+        }
+        if (std::sqrt(*lack) > enough * scale_ * error_at_start || !(now < error_at_start)) continue;
+        // the next round: from these impulses, and the motion that they make
+        error_at_start = now;
+        std::ranges::copy(memory_.impulse, start.begin());
+        std::ranges::copy(equations.answered, equations.present.begin());
+        lack = answer_motion(equations, start, true);
+    }
+    std::ranges::copy(best, memory_.impulse.begin());
+    refresh();
+    return result;
+}
+
+}  // namespace skerry
