@@ -94,7 +94,10 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
     }
     const std::size_t region_nodes = find_region_blocks(contacts, regions, data);
     data.make_room_for(regions.contacts.item.size(), region_nodes, contacts.inverse_mass.size(), settings);
-    if (contacts.rigid.any()) data.make_room_for_rigid(regions.contacts.item.size(), region_nodes, settings.method);
+    if (contacts.rigid.any()) {
+        data.make_room_for_rigid(regions.contacts.item.size(), region_nodes, settings.method);
+        data.newton.make_room(static_cast<std::size_t>(executor.worker_count()));
+    }
     schedule_regions(settings, executor.worker_count(), data, regions);
     solve_tasks(executor, {contacts, settings, h, out, data}, regions);
     regions.pushed = data.pushed.load(std::memory_order_relaxed);

@@ -1,56 +1,56 @@
 // Memory for Newton steps of regions that are solved at the same time.
 #pragma once
 
+#include <atomic>
 #include <memory>
-#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "systems/solver/equations/body_equations.h"
 
 namespace skerry {
 
-/// As many as were ever in use at once, which is as many as there are workers.
+/// As many as there are workers. Which one a region gets changes nothing of what it comes to.
 class NewtonPool {
+    struct Slot {
+        std::atomic<bool> taken = false;
+        BodyEquations equations;
+    };
+
 public:
     /// Gives its equations back.
     class Lease {
     public:
         Lease() = default;
-        Lease(NewtonPool& pool, std::unique_ptr<BodyEquations> equations)
-            : pool_(&pool), equations_(std::move(equations)) {}
-        Lease(Lease&&) noexcept = default;
-        Lease& operator=(Lease&&) noexcept = default;
-        ~Lease() {
-            if (equations_) pool_->give_back(std::move(equations_));
+        explicit Lease(Slot& slot) : slot_(&slot) {}
+        Lease(Lease&& other) noexcept : slot_(std::exchange(other.slot_, nullptr)) {}
+        Lease& operator=(Lease&& other) noexcept {
+            std::swap(slot_, other.slot_);
+            return *this;
         }
-        explicit operator bool() const { return equations_ != nullptr; }
-        BodyEquations& operator*() const { return *equations_; }
+        ~Lease() {
+            if (slot_ != nullptr) slot_->taken.store(false, std::memory_order_release);
+        }
+        explicit operator bool() const { return slot_ != nullptr; }
+        BodyEquations& operator*() const { return slot_->equations; }
 
     private:
-        NewtonPool* pool_ = nullptr;
-        std::unique_ptr<BodyEquations> equations_;
+        Slot* slot_ = nullptr;
     };
 
+    /// For this many workers. Not while equations are lent.
+    void make_room(std::size_t workers) {
+        while (slots_.size() < workers) slots_.push_back(std::make_unique<Slot>());
+    }
+    /// A worker solves one region at a time: there is always one.
     Lease lease() {
-        const std::scoped_lock lock(mutex_);
-        if (idle_.empty()) {
-            idle_.reserve(++count_);  // so that giving back allocates nothing
-            return {*this, std::make_unique<BodyEquations>()};
-        }
-        Lease last(*this, std::move(idle_.back()));
-        idle_.pop_back();
-        return last;
+        while (true)
+            for (const std::unique_ptr<Slot>& slot : slots_)
+                if (!slot->taken.exchange(true, std::memory_order_acquire)) return Lease(*slot);
     }
 
 private:
-    void give_back(std::unique_ptr<BodyEquations> equations) {
-        const std::scoped_lock lock(mutex_);
-        idle_.push_back(std::move(equations));
-    }
-
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<BodyEquations>> idle_;
-    std::size_t count_ = 0;
+    std::vector<std::unique_ptr<Slot>> slots_;
 };
 
 }  // namespace skerry

@@ -1,0 +1,214 @@
+// profile_stiff: what stiff bodies cost, and how well they stand still, as explicit, implicit and rigid bodies: a block
+// on an incline, a stack of blocks, a heavy ball on a soft block, and a pile of cubes, with stiffness times 1, 100 and
+// 10,000. profiling/plot_stiff.py draws the table.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "profiling/measure.h"
+#include "skerry/world.h"
+
+using namespace skerry;
+using namespace skerry::profiling;
+
+namespace {
+
+constexpr Real g = 9.81;
+
+struct Case {
+    std::string scene;
+    Real modulus;  // Pa
+    BodyDynamics dynamics;
+    Real step;       // s, at most
+    Real tolerance;  // of regions
+    Real seconds;
+};
+
+/// What is measured of a scene; what has no meaning in it is not a number.
+struct Outcome {
+    double cpu = 0;                                                // s, of a simulated second
+    Real speed = 0;                                                // m/s, root mean square of all nodes at the end
+    Real creep = std::nan(""), acceleration_error = std::nan("");  // m/s, and a share
+    Real depth = 0;                                                // m, largest overlap
+    Index unconverged = 0;                                         // regions
+    std::uint64_t steps = 0;
+    std::string failed;
+};
+
+Settings settings_of(const Case& one, const Vec3& gravity) {
+    Settings settings;
+    settings.backend = Backend::serial;
+    settings.threads = 1;
+    settings.gravity = gravity;
+    settings.step_size = one.step;
+    settings.tolerance = one.tolerance;
+    return settings;
+}
+MaterialSettings stiff(const Case& one, Real friction) {
+    return {.young_modulus = one.modulus, .poisson_ratio = 0.3, .friction = friction};
+}
+
+void add_stack(World& world, const Case& one) {
+    const auto material = world.add_material(stiff(one, 0.5));
+    world.add_collider(Plane{});
+    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
+    for (int k = 0; k < 8; ++k)
+        world.add_body(block, {.material = material, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = one.dynamics});
+}
+
+/// The ball is what `dynamics` says, the block is soft and explicit.
+void add_ball_on_block(World& world, const Case& one) {
+    MaterialSettings heavy = stiff(one, 0.5);
+    heavy.density = 8000;
+    const auto steel = world.add_material(heavy);
+    const auto soft = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .friction = 0.5});
+    world.add_collider(Plane{});
+    world.add_body(mesh::box({1, 1, 0.3}, {10, 10, 3}), {.material = soft, .position = {0, 0, 0.151}});
+    world.add_body(mesh::ball(0.1, 4), {.material = steel, .position = {0, 0, 0.701}, .dynamics = one.dynamics});
+}
+
+/// Turned by up to 8 degrees each, into a box.
+void add_pile(World& world, const Case& one) {
+    const auto material = world.add_material(stiff(one, 0.5));
+    world.add_collider(Plane{});
+    for (const Vec3& inward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+        world.add_collider(Plane{.normal = inward, .point = -0.22 * inward});
+    const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    std::mt19937 random(1);
+    std::uniform_real_distribution<Real> number(-1, 1);
+    for (int z = 0; z < 3; ++z)
+        for (int y = -1; y <= 1; ++y)
+            for (int x = -1; x <= 1; ++x) {
+                const Real a = number(random), b = number(random), c = number(random);
+                const Real angle = 8 * std::numbers::pi / 180 * number(random);
+                world.add_body(cube, {.material = material,
+                                      .position = {0.13 * x, 0.13 * y, 0.08 + 0.13 * z},
+                                      .rotation = angle * Vec3(a, b, c).normalized(),
+                                      .dynamics = one.dynamics});
+            }
+}
+
+Real rms_speed(const World& world) {
+    Real sum = 0;
+    std::size_t count = 0;
+    for (const BodyHandle body : world.bodies())
+        for (const Vec3& v : world.velocities(body)) {
+            sum += v.squaredNorm();
+            ++count;
+        }
+    return std::sqrt(sum / static_cast<Real>(count));
+}
+
+/// Takes `seconds`, adding to the outcome.
+bool advance(World& world, Real seconds, double& cpu, Outcome& outcome) {
+    const double start = cpu_seconds();
+    const StepReport report = world.advance(seconds);
+    cpu += cpu_seconds() - start;
+    outcome.depth = std::max(outcome.depth, report.max_penetration);
+    outcome.unconverged += report.unconverged;
+    outcome.steps += static_cast<std::uint64_t>(report.steps);
+    if (!report.ok()) outcome.failed = report.message();
+    return report.ok();
+}
+
+/// A block half a degree below the friction angle creeps by nothing, two above it slides by the law.
+Outcome run_incline(const Case& one) {
+    constexpr Real mu = 0.3;
+    const auto on_slope = [&](Real degrees, double& cpu, Outcome& outcome) {
+        const Real a = std::atan(mu) + degrees * std::numbers::pi / 180;
+        World world(settings_of(one, g * Vec3(std::sin(a), 0, -std::cos(a))));
+        const auto material = world.add_material(stiff(one, mu));
+        world.add_collider(Plane{});
+        const auto body = world.add_body(
+            mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}),
+            {.material = material, .position = {0, 0, 0.051}, .contact_distance = 1e-3, .dynamics = one.dynamics});
+        if (!advance(world, one.seconds, cpu, outcome)) return;
+        const Vec3 at = world.center_of_mass(body);
+        const Real before = world.report().momentum.x() / world.mass(body);
+        if (!advance(world, one.seconds, cpu, outcome)) return;
+        if (degrees < 0) {
+            outcome.creep = (world.center_of_mass(body) - at).norm() / one.seconds;
+            outcome.speed = rms_speed(world);
+        } else {
+            const Real law = g * (std::sin(a) - mu * std::cos(a));
+            const Real found = (world.report().momentum.x() / world.mass(body) - before) / one.seconds;
+            outcome.acceleration_error = found / law - 1;
+        }
+    };
+    Outcome outcome;
+    double cpu = 0;
+    on_slope(-0.5, cpu, outcome);
+    on_slope(2, cpu, outcome);
+    outcome.cpu = cpu / (4 * one.seconds);
+    return outcome;
+}
+
+Outcome run(const Case& one) {
+    if (one.scene == "incline") return run_incline(one);
+    World world(settings_of(one, {0, 0, -g}));
+    if (one.scene == "stack") add_stack(world, one);
+    if (one.scene == "ball on block") add_ball_on_block(world, one);
+    if (one.scene == "pile") add_pile(world, one);
+    Outcome outcome;
+    double cpu = 0;
+    advance(world, one.seconds, cpu, outcome);
+    outcome.cpu = cpu / one.seconds;
+    outcome.speed = rms_speed(world);
+    return outcome;
+}
+
+void write(const Case& one, const Outcome& outcome, std::ofstream& table) {
+    table << one.scene << ',' << one.modulus << ',' << name_of(one.dynamics) << ',' << one.step << ',' << one.tolerance
+          << ',' << outcome.steps << ',' << outcome.cpu << ',' << outcome.speed << ',' << outcome.creep << ','
+          << outcome.acceleration_error << ',' << outcome.depth << ',' << outcome.unconverged << '\n'
+          << std::flush;
+    std::printf("| %s | %.0e | %s | %g | %.0e | %.3f | %.1e | %.1e | %.2g | %.1e | %d |%s\n", one.scene.c_str(),
+                one.modulus, std::string(name_of(one.dynamics)).c_str(), 1000 * one.step, one.tolerance, outcome.cpu,
+                outcome.speed, outcome.creep, 100 * outcome.acceleration_error, 1000 * outcome.depth,
+                outcome.unconverged, outcome.failed.c_str());
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"What stiff bodies cost as explicit, implicit and rigid ones. Writes stiff.csv, prints a table."};
+    std::string out = "out/profiling/stiff";
+    bool quick = false;
+    app.add_option("--out", out, "Folder for the table")->capture_default_str();
+    app.add_flag("--quick", quick, "Half a second of each, explicit bodies at the lowest stiffness only");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        std::filesystem::create_directories(out);
+        std::ofstream table(std::filesystem::path(out) / "stiff.csv");
+        table << "scene,modulus,dynamics,step,tolerance,steps,cpu_seconds,speed,creep,acceleration_error,depth,"
+                 "unconverged\n";
+        std::printf(
+            "| scene | E (Pa) | bodies | step (ms) | tolerance | CPU s a simulated s | speed at the end (m/s) | "
+            "creep (m/s) | acceleration error (%%) | depth (mm) | not converged |\n"
+            "|---|---|---|---|---|---|---|---|---|---|---|\n");
+        for (const std::string scene : {"incline", "stack", "ball on block", "pile"})
+            for (const Real modulus : {1e6, 1e8, 1e10})
+                for (const BodyDynamics dynamics :
+                     {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid})
+                    for (const Real tolerance : {1e-3, 1e-6}) {
+                        // stiffness means nothing to rigid bodies
+                        if (dynamics == BodyDynamics::rigid && modulus != 1e8) continue;
+                        if (dynamics == BodyDynamics::explicit_elastic && (modulus > (quick ? 1e6 : 1e8))) continue;
+                        const Case one{scene, modulus, dynamics, 0.01, tolerance, quick ? 0.5 : 1};
+                        write(one, run(one), table);
+                    }
+        std::printf("%s\n", out.c_str());
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
