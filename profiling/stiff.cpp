@@ -29,6 +29,7 @@ struct Case {
     Real step;       // s, at most
     Real tolerance;  // of regions
     Real seconds;
+    SolverMethod method;
 };
 
 /// What is measured of a scene; what has no meaning in it is not a number.
@@ -49,6 +50,7 @@ Settings settings_of(const Case& one, const Vec3& gravity) {
     settings.gravity = gravity;
     settings.step_size = one.step;
     settings.tolerance = one.tolerance;
+    settings.method = one.method;
     return settings;
 }
 MaterialSettings stiff(const Case& one, Real friction) {
@@ -181,9 +183,12 @@ void write(const Case& one, const Outcome& outcome, std::ofstream& table) {
 int main(int argc, char** argv) {
     CLI::App app{"What stiff bodies cost as explicit, implicit and rigid ones. Writes stiff.csv, prints a table."};
     std::string out = "out/profiling/stiff";
-    bool quick = false;
+    std::string only;
+    bool quick = false, sweeps = false;
     app.add_option("--out", out, "Folder for the table")->capture_default_str();
     app.add_flag("--quick", quick, "Half a second of each, explicit bodies at the lowest stiffness only");
+    app.add_option("--scene", only, "incline, stack, ball on block or pile; else all of them");
+    app.add_flag("--sweeps_alone", sweeps, "Regions are solved without Newton steps");
     CLI11_PARSE(app, argc, argv);
     try {
         std::filesystem::create_directories(out);
@@ -199,10 +204,17 @@ int main(int argc, char** argv) {
                 for (const BodyDynamics dynamics :
                      {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid})
                     for (const Real tolerance : {1e-3, 1e-6}) {
+                        if (!only.empty() && only != scene) continue;
                         // stiffness means nothing to rigid bodies
                         if (dynamics == BodyDynamics::rigid && modulus != 1e8) continue;
                         if (dynamics == BodyDynamics::explicit_elastic && (modulus > (quick ? 1e6 : 1e8))) continue;
-                        const Case one{scene, modulus, dynamics, 0.01, tolerance, quick ? 0.5 : 1};
+                        const Case one{scene,
+                                       modulus,
+                                       dynamics,
+                                       0.01,
+                                       tolerance,
+                                       quick ? 0.5 : 1,
+                                       sweeps ? SolverMethod::ags : SolverMethod::automatic};
                         write(one, run(one), table);
                     }
         std::printf("%s\n", out.c_str());
