@@ -25,6 +25,10 @@ struct RigidBodyTable {
     Column<Mat3> rotation;          // principal frame to world
     Column<Vec3> momentum;          // kg m/s
     Column<Vec3> angular_momentum;  // kg m^2/s, about the centre
+    // The attachment that holds it as a whole, and where the frame of the mesh is in that of the attachment:
+    Column<Index> holder;        // row of AttachmentTable, or no_index
+    Column<Vec3> held_position;  // m
+    Column<Mat3> held_rotation;
     // Of this step, by kick_rigid_bodies:
     Column<Mat3> inverse_inertia;    // 1/(kg m^2), world
     Column<Vec3> kick, moment_kick;  // N s, N m s about the centre: of gravity and loads
@@ -37,7 +41,7 @@ struct RigidBodyTable {
 
     std::size_t size() const { return mass.size(); }
 
-    /// The only list of columns.
+    /// The only list of columns. Derived: by find_holders.
     void for_each_column(auto&& visit) {
         visit("body", body, ColumnRole::link);
         visit("mass", mass, ColumnRole::state);
@@ -48,6 +52,9 @@ struct RigidBodyTable {
         visit("rotation", rotation, ColumnRole::state);
         visit("momentum", momentum, ColumnRole::state);
         visit("angular_momentum", angular_momentum, ColumnRole::state);
+        visit("holder", holder, ColumnRole::derived);
+        visit("held_position", held_position, ColumnRole::derived);
+        visit("held_rotation", held_rotation, ColumnRole::derived);
         visit("inverse_inertia", inverse_inertia, ColumnRole::scratch);
         visit("kick", kick, ColumnRole::scratch);
         visit("moment_kick", moment_kick, ColumnRole::scratch);

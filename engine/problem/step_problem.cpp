@@ -51,7 +51,9 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     std::map<Index, std::set<Index>> touched;
     for (const Stencil& stencil : contacts.stencil)
         for (std::size_t a = 0; a < 4; ++a)
-            if (const Index row = rigid.nodes.row(stencil.node[a]); stencil.weight[a] != 0 && row != no_index)
+            if (const Index row = rigid.nodes.row(stencil.node[a]);
+                stencil.weight[a] != 0 && row != no_index &&
+                contacts.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // else it is held
                 touched[row].insert(stencil.node[a]);
     std::vector<RigidPoints> bodies;
     for (const auto& [row, nodes] : touched) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <numeric>
 #include <ostream>
 #include <random>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
 #include "engine/world/edit/material_row.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "systems/geometry/rotation.h"
@@ -74,6 +76,7 @@ void WorldState::settle() {
     }
     erase_gone_rows();
     model.extend_derived();
+    find_holders(model);
     cache.extend(model);
     query_trees.forget();
     record.balance.close();
@@ -212,19 +215,19 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 }
 
 AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion, const Vec3& pivot) {
-    const Index row = state_->model.row(body, "attach");
-    if (state_->model.has_frame(static_cast<std::size_t>(row)))
+    Model& model = state_->model;
+    const Index row = model.row(body, "attach");
+    const auto b = static_cast<std::size_t>(row);
+    if (model.dynamics_of(b) == BodyDynamics::implicit_elastic)
         Complaint{.file = {},
                   .object = "attach",
                   .field = "body",
-                  .found = std::string("the ") +
-                           std::string(name_of(state_->model.dynamics_of(static_cast<std::size_t>(row)))) + " body '" +
-                           state_->model.body_records[static_cast<std::size_t>(row)].name + "'",
-                  .expected = "one that is neither rigid nor implicit",
+                  .found = "the implicit body '" + model.body_records[b].name + "'",
+                  .expected = "one that is not implicit",
                   .hint = "what stands still or follows a script is a collider: one can have the same mesh"}
             .raise();
     validate(motion, pivot);
-    const Index count = state_->model.bodies.nodes[static_cast<std::size_t>(row)].size();
+    const Index count = model.bodies.nodes[b].size();
     for (Index node : nodes)
         if (node < 0 || node >= count)
             Complaint{.file = {},
@@ -234,12 +237,26 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
+    const bool rigid = model.is_rigid(b);
+    if (rigid && !hold_whole(model, b, nodes))
+        Complaint{.file = {},
+                  .object = "attach",
+                  .field = "nodes",
+                  .found = std::to_string(nodes.size()) + " of the rigid body '" + model.body_records[b].name + "'",
+                  .expected = "three or more that are not on one line: they hold it as a whole",
+                  .hint = {}}
+            .raise();
     state_->require_between_steps("attach");
-    const AttachmentHandle handle =
-        state_->model.attachment_map.insert(static_cast<Index>(state_->model.attachments.slot.size()));
-    append_attachment(state_->model, handle.slot, row, nodes, {pivot, Mat3::Identity()}, motion, state_->clock.time);
-    state_->model.wake(static_cast<std::size_t>(row));
-    state_->cache.forget_body(state_->model, static_cast<std::size_t>(row));  // its nodes have stopped
+    std::vector<Index> held(nodes.begin(), nodes.end());
+    if (rigid) {
+        held.resize(static_cast<std::size_t>(count));
+        std::iota(held.begin(), held.end(), 0);
+        stop_rigid_body(model, b);
+    }
+    const AttachmentHandle handle = model.attachment_map.insert(static_cast<Index>(model.attachments.slot.size()));
+    append_attachment(model, handle.slot, row, held, {pivot, Mat3::Identity()}, motion, state_->clock.time);
+    model.wake(b);
+    state_->cache.forget_body(model, b);  // its nodes have stopped
     state_->edits.rows = state_->edits.elements = true;
     return handle;
 }

@@ -63,7 +63,7 @@ public:
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion from now
     /// on. Constant velocities turn them about `pivot`; keys are poses at absolute times, and the nodes are attached to
-    /// the pose that the keys have now.
+    /// the pose that the keys have now. Of a rigid body three or more that are not on one line hold all of it.
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero());
     void remove(BodyHandle body);

@@ -114,6 +114,8 @@ void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
     if (std::ranges::equal(position, rows_of(model.nodes.position, model.bodies.nodes[row]))) return;
     if (model.is_rigid(row)) {
         place_rigid(*state_, row, position);
+        hold_here(model, row, time());
+        find_holders(model);
         return;
     }
     require_upright(model, row, position, title_of_body(model, row), "position");

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/world/control/control.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/validate.h"
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/geometry/rotation.h"
@@ -250,6 +251,10 @@ void World::set_pose(AttachmentHandle attachment, const Pose& pose) {
     require_upright(model, body, position, object(), "pose");
     skerry::set_pose(scripted, pose, time());
     place_nodes(*state_, body, position);
+    if (model.is_rigid(body)) {
+        const RigidFit fit = fit_rigid_body(model, body, position);
+        set_rigid_pose(model, body, fit.center, fit.rotation);
+    }
 }
 
 MotionKey World::pose(AttachmentHandle attachment) const {

@@ -108,6 +108,7 @@ void append_rigid_body(Model& model, Index row, const NewBody& body) {
         if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Mat3>) column[r].setZero();
     });
     table.body[r] = row;
+    table.holder[r] = no_index;
     const MassProperties found = mass_properties(body, densities(model, body));
     write_masses(found, r, table);
     table.center[r] = body.position + body.rotation * found.center;
@@ -128,27 +129,26 @@ void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
 
 namespace {
 
-/// Of a mesh frame in which nodes have their rest positions, by masses.
+/// Of a mesh frame in which nodes have their rest positions.
 struct NearestFrame {
     Vec3 center, rest_center;  // m
     Mat3 rotation;
 };
 
-NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
-    const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+/// `weight(n)`: of a node of the body.
+NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const Vec3> position, auto&& weight) {
     NearestFrame frame{Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
     Real mass = 0;
     for (std::size_t n = 0; n < position.size(); ++n) {
-        mass += model.nodes.mass[first + n];
-        frame.center += model.nodes.mass[first + n] * position[n];
-        frame.rest_center += model.nodes.mass[first + n] * model.nodes.rest_position[first + n];
+        mass += weight(n);
+        frame.center += weight(n) * position[n];
+        frame.rest_center += weight(n) * rest_position[n];
     }
     frame.center /= mass;
     frame.rest_center /= mass;
     Mat3 overlap = Mat3::Zero();
     for (std::size_t n = 0; n < position.size(); ++n)
-        overlap += model.nodes.mass[first + n] * (position[n] - frame.center) *
-                   (model.nodes.rest_position[first + n] - frame.rest_center).transpose();
+        overlap += weight(n) * (position[n] - frame.center) * (rest_position[n] - frame.rest_center).transpose();
     const Eigen::JacobiSVD<Mat3> turn(overlap, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Mat3 u = turn.matrixU();
     if ((u * turn.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
@@ -156,7 +156,49 @@ NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const
     return frame;
 }
 
+/// By masses.
+NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
+    const std::span<const Real> mass = rows_of(model.nodes.mass, model.bodies.nodes[body]);
+    return nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]), position,
+                         [&](std::size_t n) { return mass[n]; });
+}
+
 }  // namespace
+
+bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes) {
+    if (nodes.empty()) return false;
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[body]);
+    const auto place = [&](Index node) -> const Vec3& { return rest[static_cast<std::size_t>(node)]; };
+    const Vec3 first = place(nodes.front());
+    Vec3 along = Vec3::Zero();
+    for (const Index node : nodes)
+        if ((place(node) - first).squaredNorm() > along.squaredNorm()) along = place(node) - first;
+    constexpr Real thin = 1e-6;  // of the length: a line
+    for (const Index node : nodes)
+        if (along.cross(place(node) - first).norm() > thin * along.squaredNorm()) return true;
+    return false;
+}
+
+void find_holders(Model& model) {
+    RigidBodyTable& table = model.rigid_bodies;
+    if (table.size() == 0) return;
+    const AttachmentTable& attachments = model.attachments;
+    std::ranges::fill(table.holder, no_index);
+    for (std::size_t a = 0; a < attachments.slot.size(); ++a) {
+        const auto body = static_cast<std::size_t>(attachments.body[a]);
+        if (model.is_rigid(body) && attachments.nodes[a].size() == model.bodies.nodes[body].size())
+            table.holder[rigid_row(model, body)] = static_cast<Index>(a);
+    }
+    for (std::size_t r = 0; r < table.size(); ++r) {
+        if (table.holder[r] == no_index) continue;
+        const auto body = static_cast<std::size_t>(table.body[r]), a = static_cast<std::size_t>(table.holder[r]);
+        const NearestFrame frame =
+            nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]),
+                          rows_of(attachments.anchor, attachments.nodes[a]), [](std::size_t) { return Real(1); });
+        table.held_rotation[r] = frame.rotation;
+        table.held_position[r] = frame.center - frame.rotation * frame.rest_center;
+    }
+}
 
 RigidPose pose_of_body(const Model& model, std::size_t body) {
     if (model.has_frame(body)) {
@@ -197,6 +239,12 @@ void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Ma
         if (deformation.any()) shape += deformation.displacement[static_cast<std::size_t>(n - nodes.begin)];
         model.nodes.position[n] = center + from_mesh * (shape - table.rest_center[r]);
     }
+    give_nodes_velocity(model, body);
+}
+
+void stop_rigid_body(Model& model, std::size_t body) {
+    const std::size_t r = rigid_row(model, body);
+    model.rigid_bodies.momentum[r] = model.rigid_bodies.angular_momentum[r] = Vec3::Zero();
     give_nodes_velocity(model, body);
 }
 

@@ -26,6 +26,13 @@ RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Ve
 /// Where the frame of its mesh is, of a body that deforms the nearest.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
+/// Whether nodes (local numbers) hold a rigid body as a whole: three of them that are not on one line.
+bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
+/// Which attachments hold whole bodies, and where: what is derived of the rows of attachments.
+void find_holders(Model& model);
+
+/// Takes its momenta.
+void stop_rigid_body(Model& model, std::size_t body);
 /// The pose of a body, and its nodes where that has them. Angular momentum and velocity stay as they are.
 void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
 /// The pose of a body that moves implicitly nearest to these positions, and what is beside it as its deformation.

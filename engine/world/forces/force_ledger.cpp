@@ -186,6 +186,7 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
     // From the last attachment back, as in measure_reactions.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
+        if (model.has_frame(static_cast<std::size_t>(model.attachments.body[a]))) continue;  // has momenta of its own
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);
             const Vec3 impulse = model.nodes.mass[n] * (model.nodes.velocity[n] - scratch.forces.held_velocity[n]);

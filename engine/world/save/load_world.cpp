@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "engine/hdf5/hdf5_file.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/save/checks.h"
 #include "engine/world/save/file_head.h"
 #include "engine/world/save/list_state.h"
@@ -136,6 +137,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.elements.viscous_strain_next = model.elements.viscous_strain;
     model.rebuild_outlines();
     model.derive_all();
+    find_holders(model);
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);

@@ -126,6 +126,10 @@ struct Model {
     }
     /// Whether it has a row of rigid_bodies: momentum is there, not with its nodes, and it has no elements.
     bool has_frame(std::size_t body) const { return bodies.rigid[body].size() > 0; }
+    /// Whether an attachment holds a rigid body as a whole.
+    bool is_held(std::size_t body) const {
+        return has_frame(body) && rigid_bodies.holder[static_cast<std::size_t>(bodies.rigid[body].begin)] != no_index;
+    }
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
     }

@@ -31,7 +31,9 @@ Present measure(const Model& model, Real lag) {
     }
     Real implicit = 0;  // J
     for (const Index body : model.rigid_bodies.body) {
-        const RigidSums sums = rigid_sums(model, static_cast<std::size_t>(body));
+        const auto b = static_cast<std::size_t>(body);
+        if (model.is_held(b)) continue;
+        const RigidSums sums = rigid_sums(model, b);
         now.kinetic += sums.kinetic;
         implicit += sums.elastic;
         now.momentum += sums.momentum;
@@ -54,7 +56,7 @@ Present measure(const Model& model, Real lag) {
 
 bool damps_held_body(const Model& model) {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        if (model.bodies.pinned_count[b] > 0 && model.bodies.material[b] != no_index &&
+        if (model.bodies.pinned_count[b] > 0 && !model.has_frame(b) && model.bodies.material[b] != no_index &&
             model.materials.damping[static_cast<std::size_t>(model.bodies.material[b])] > 0)
             return true;
     return false;

@@ -70,7 +70,8 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep),
-            inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h), outputs<RigidKicks>(m.rigid_bodies, n));
+            inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h),
+            outputs<RigidKicks>(m.rigid_bodies, n));
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
             inputs<ImplicitLoads>(n, m.loaded), value(p.h), value(p.theta), make(m.stiff_bodies),
             outputs<ImplicitKicks>(m.implicit_nodes, n));
@@ -131,7 +132,7 @@ void list_forces(WorldState& w, TaskGraph& g) {
             make(f.pairs), make(f.held_impulse), if_wanted);
     g.stage("dynamics/measure_reactions", measure_reactions,
             inputs<ReactionInputs>(m.attachments, m.nodes, m.bodies, m.materials, m.elements, m.element_nodes,
-                                   f.held_impulse, f.held_velocity),
+                                   m.rigid_bodies, f.held_impulse, f.held_velocity),
             value(p.h), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 
@@ -143,7 +144,8 @@ void list_turns(WorldState& w, TaskGraph& g) {
                         value(w.scratch.parameters.h), value(w.scratch.parameters.theta),
                         outputs<ImplicitStrains>(m.implicit_nodes), make(w.scratch.strain_parts));
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
-            inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep), inputs<RigidImpulses>(m.rigid_bodies),
+            inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep),
+            inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidImpulses>(m.rigid_bodies),
             inputs<ElasticMotion>(m.implicit_nodes), read(m.nodes.position), value(w.scratch.parameters.h),
             outputs<RigidTurns>(m.rigid_bodies, m.nodes));
 }

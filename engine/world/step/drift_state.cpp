@@ -52,8 +52,9 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
     drift_displacements(i, seconds);
-    turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidImpulses::bind({}, r),
-                      ElasticMotion::bind({}, i), n.position, seconds, {r.center_next, r.rotation_next, n.velocity});
+    turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidHolds::bind({}, r, a),
+                      RigidImpulses::bind({}, r), ElasticMotion::bind({}, i), n.position, seconds,
+                      {r.center_next, r.rotation_next, n.velocity});
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
                       Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
     move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidImpulses::bind({}, r),

@@ -10,9 +10,29 @@ namespace skerry {
 
 namespace {
 
-bool counts(const ReactionInputs& inputs, Index body) {
+bool is_awake(const ReactionInputs& inputs, Index body) {
     const auto b = static_cast<std::size_t>(body);
     return inputs.kind[b] == BodyKind::deformable && !inputs.asleep[b];
+}
+
+/// Whether its nodes are held one by one.
+bool counts(const ReactionInputs& inputs, Index body) {
+    return is_awake(inputs, body) && inputs.body_rigid[static_cast<std::size_t>(body)].size() == 0;
+}
+
+/// What takes a rigid body along, against its weight, loads and contacts.
+void add_rigid_body(const ReactionInputs& inputs, Real h, const Vec3& moment_point, std::size_t a,
+                    ImpulseAndMoment& reaction) {
+    const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
+    if (rows.size() == 0 || inputs.holder[static_cast<std::size_t>(rows.begin)] != static_cast<Index>(a)) return;
+    const auto r = static_cast<std::size_t>(rows.begin);
+    reaction += {inputs.kick[r], inputs.moment_kick[r] + (inputs.center[r] - moment_point).cross(inputs.kick[r])};
+    for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
+         i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
+        const auto n = static_cast<std::size_t>(inputs.held[i]);
+        const Vec3 others = -(h * inputs.force[n] + inputs.held_impulse[n]);
+        reaction += {others, (inputs.position[n] - moment_point).cross(others)};
+    }
 }
 
 /// Part of its velocity that damping takes from a node of a body that is held.
@@ -78,6 +98,8 @@ void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), h, node_impulse);
         last = body;
     }
+    for (std::size_t a = 0; a < count; ++a)
+        if (is_awake(inputs, inputs.attached_body[a])) add_rigid_body(inputs, h, moment_point, a, reactions[a]);
     // From the last attachment back: the first that takes the impulse of a node has it.
     for (std::size_t a = count; a-- > 0;) {
         if (!counts(inputs, inputs.attached_body[a])) continue;

@@ -10,6 +10,7 @@
 #include "components/element_table.h"
 #include "components/material_table.h"
 #include "components/node_table.h"
+#include "components/rigid_body_table.h"
 #include "jobs/access.h"
 
 namespace skerry {
@@ -48,11 +49,15 @@ struct ReactionInputs {
     std::span<const Index> first, count;
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> gradient;
+    // by row of RigidBodyTable
+    std::span<const Range> body_rigid;  // BodyTable
+    std::span<const Index> holder;
+    std::span<const Vec3> center, kick, moment_kick;
 
     static ReactionInputs bind(const Binder& binder, const AttachmentTable& attachment, const NodeTable& node,
                                const BodyTable& body, const MaterialTable& material, const ElementBlockTable& element,
-                               const ElementNodeTable& nodes, const Column<Vec3>& held_impulse,
-                               const Column<Vec3>& velocity_before) {
+                               const ElementNodeTable& nodes, const RigidBodyTable& rigid,
+                               const Column<Vec3>& held_impulse, const Column<Vec3>& velocity_before) {
         return {.attached = binder.read(attachment.nodes),
                 .attached_body = binder.read(attachment.body),
                 .held = binder.read(attachment.node),
@@ -75,14 +80,20 @@ struct ReactionInputs {
                 .first = binder.read(element.first),
                 .count = binder.read(element.count),
                 .element_node = binder.read(nodes.node),
-                .gradient = binder.read(nodes.gradient)};
+                .gradient = binder.read(nodes.gradient),
+                .body_rigid = binder.read(body.rigid),
+                .holder = binder.read(rigid.holder),
+                .center = binder.read(rigid.center),
+                .kick = binder.read(rigid.kick),
+                .moment_kick = binder.read(rigid.moment_kick)};
     }
 };
 
 /// One row an attachment: what takes its nodes to the velocities of this step against the forces of elements, weight
 /// and loads, the impulses of contacts and the inertia of implicit elements. Moments about `moment_point`. A node that
 /// several attachments hold counts for the last one, whose motion it follows. Of bodies at rest, and of colliders,
-/// nothing. `node_impulse` is memory, by node. Sequential.
+/// nothing. A rigid body is held as a whole, by the last attachment that does. `node_impulse` is memory, by node.
+/// Sequential.
 void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 

@@ -27,8 +27,12 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
 
 void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
     const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
-    taken.energy += (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
-    taken.momentum += state.momentum[r];
+    const Index first_node = bodies.nodes[bodies.rigid_body[r]].begin;
+    if (bodies.inverse_mass[first_node] > 0) {  // else it is held, and what it has is not its own
+        taken.energy +=
+            (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
+        taken.momentum += state.momentum[r];
+    }
     state.momentum[r] = state.angular_momentum[r] = Vec3::Zero();
 }
 

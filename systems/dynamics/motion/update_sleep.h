@@ -97,6 +97,7 @@ struct RestInputs {
     // BodyTable, RigidBodyTable
     std::span<const Range> body_rigid = {};     // empty: none is
     std::span<const Range> body_implicit = {};  // of ImplicitNodeTable
+    std::span<const Index> rigid_body = {};
     std::span<const Real> rigid_mass = {};
     std::span<const Vec3> rigid_moments = {};
     std::span<const Mat3> rigid_rotation = {};
@@ -114,6 +115,7 @@ struct RestInputs {
                 .inverse_mass = binder.read(node.inverse_mass),
                 .body_rigid = binder.read(body.rigid),
                 .body_implicit = binder.read(body.implicit),
+                .rigid_body = binder.read(rigid.body),
                 .rigid_mass = binder.read(rigid.mass),
                 .rigid_moments = binder.read(rigid.moments),
                 .rigid_rotation = binder.read(rigid.rotation)};

@@ -71,14 +71,21 @@ Vec3 angular_momentum_after(const RigidBodies& bodies, const RigidImpulses& impu
 
 }  // namespace
 
-bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidForces& forces, Real h,
-                       const RigidKicks& out) {
+bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
+                       const RigidForces& forces, Real h, const RigidKicks& out) {
     if (bodies.size() == 0) return false;
     for_each_body(executor, bodies, [&](std::size_t r) {
         out.contact_impulse[r] = out.contact_moment[r] = out.push_velocity[r] = out.push_spin[r] = Vec3::Zero();
         out.inverse_inertia[r] = inverse_inertia_of(bodies.rotation[r], bodies.moments[r]);
         out.kick[r] = out.moment_kick[r] = Vec3::Zero();
         if (bodies.asleep(r)) return;
+        if (holds.hold(r)) {
+            const HeldPose end(holds, r, h, bodies.rest_center[r], bodies.axes[r]);
+            const Mat3 inertia = end.rotation * bodies.moments[r].asDiagonal() * end.rotation.transpose();
+            out.kick[r] = bodies.mass[r] / h * (end.center - bodies.center[r]) - bodies.momentum[r];
+            out.moment_kick[r] = inertia * holds.motion_of(r).angular_velocity - bodies.angular_momentum[r];
+            return;
+        }
         Vec3 force = bodies.mass[r] * forces.gravity, moment = Vec3::Zero();
         if (!forces.load.empty())
             for_each_node(bodies.nodes(r), [&](std::size_t n) {
@@ -94,17 +101,25 @@ bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
     return true;
 }
 
-bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
-                       const ElasticMotion& elastic, std::span<const Vec3> position, Real h, const RigidTurns& out) {
+bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
+                       const RigidImpulses& impulses, const ElasticMotion& elastic, std::span<const Vec3> position,
+                       Real h, const RigidTurns& out) {
     if (bodies.size() == 0) return false;
     for_each_body(executor, bodies, [&](std::size_t r) {
         out.center_next[r] = bodies.center[r];
         out.rotation_next[r] = bodies.rotation[r];
         if (bodies.asleep(r) && !is_moved(impulses, r)) return;
-        out.center_next[r] += h * (momentum_after(bodies, impulses, r) / bodies.mass[r] + impulses.push_velocity[r]);
-        const Mat3 turned =
-            turned_freely(bodies.rotation[r], bodies.moments[r], angular_momentum_after(bodies, impulses, r), h);
-        out.rotation_next[r] = without_strain(rotation_matrix(h * impulses.push_spin[r]) * turned);
+        if (holds.hold(r)) {
+            const HeldPose end(holds, r, h, bodies.rest_center[r], bodies.axes[r]);
+            out.center_next[r] = end.center;
+            out.rotation_next[r] = without_strain(end.rotation);
+        } else {
+            out.center_next[r] +=
+                h * (momentum_after(bodies, impulses, r) / bodies.mass[r] + impulses.push_velocity[r]);
+            const Mat3 turned =
+                turned_freely(bodies.rotation[r], bodies.moments[r], angular_momentum_after(bodies, impulses, r), h);
+            out.rotation_next[r] = without_strain(rotation_matrix(h * impulses.push_spin[r]) * turned);
+        }
         const RigidPlace place(bodies, r, out.center_next[r], out.rotation_next[r]);
         const ShapeNext shape(bodies, elastic, r);
         for_each_node(bodies.nodes(r),

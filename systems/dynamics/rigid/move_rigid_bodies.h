@@ -11,6 +11,7 @@
 #include "components/rigid_body_table.h"
 #include "jobs/access.h"
 #include "jobs/executor.h"
+#include "systems/dynamics/rigid/held_bodies.h"
 
 namespace skerry {
 
@@ -95,9 +96,10 @@ struct RigidKicks {
 };
 
 /// The impulse and moment of gravity and loads, and the velocities with them, as contacts see them. Those at rest get
-/// none. Parallel over bodies. Returns false where there is none (skipped).
-bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidForces& forces, Real h,
-                       const RigidKicks& out);
+/// none, those that are held what takes them along: their nodes have their velocities already. Parallel over bodies.
+/// Returns false where there is none (skipped).
+bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
+                       const RigidForces& forces, Real h, const RigidKicks& out);
 
 /// What acted on rigid bodies in this step.
 struct RigidImpulses {
@@ -126,8 +128,9 @@ struct RigidTurns {
 };
 
 /// Where the bodies are at the end of the step. Parallel over bodies. Returns false where there is none (skipped).
-bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
-                       const ElasticMotion& elastic, std::span<const Vec3> position, Real h, const RigidTurns& out);
+bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
+                       const RigidImpulses& impulses, const ElasticMotion& elastic, std::span<const Vec3> position,
+                       Real h, const RigidTurns& out);
 
 struct RigidMoves {
     std::span<Vec3> center, momentum, angular_momentum;

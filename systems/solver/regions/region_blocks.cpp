@@ -45,7 +45,8 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
                 if (inputs.clustered())
                     note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster,
                          memory.region_clusters);
-                note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
+                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // else its body is held
+                    note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
             }
         }
         memory.region_clusters.offset.push_back(static_cast<Index>(memory.region_clusters.item.size()));

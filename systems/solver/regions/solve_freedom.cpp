@@ -240,7 +240,8 @@ void write_solution(const RegionStage& stage, const FreedomRegion& region, Regio
         const Stencil& stencil = stage.inputs.stencil[row];
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
-            const Index body = stencil.weight[a] == 0 ? no_index : rigid.nodes.row(node);
+            const bool moves = stencil.weight[a] != 0 && stage.inputs.inverse_mass[static_cast<std::size_t>(node)] > 0;
+            const Index body = moves ? rigid.nodes.row(node) : no_index;
             if (body == no_index) continue;
             const auto slot = static_cast<std::size_t>(
                 2 * (std::find(region.rigid.begin(), region.rigid.end(), body) - region.rigid.begin()));
