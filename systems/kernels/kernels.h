@@ -9,6 +9,7 @@
 #include "systems/collision/find_crossings.h"
 #include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/checks/find_inversions.h"
+#include "systems/dynamics/clusters/kick_clusters.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
@@ -29,6 +30,7 @@ struct Kernels {
     decltype(&skerry::find_contacts) find_contacts;
     decltype(&skerry::find_crossings) find_crossings;
     decltype(&skerry::check_state) check_state;
+    decltype(&skerry::strain_rate) strain_rate;
     decltype(&skerry::find_inversions) find_inversions;
     decltype(&skerry::compute_element_forces) compute_element_forces;
     decltype(&skerry::elastic_energy) elastic_energy;
@@ -42,6 +44,7 @@ struct Kernels {
     decltype(&skerry::damp_velocity) damp_velocity;
     decltype(&skerry::measure_displacement) measure_displacement;
     decltype(&skerry::predict_velocity) predict_velocity;
+    decltype(&skerry::kick_clusters) kick_clusters;
     StableStep (*stable_step)(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                               std::span<const Real> mass, std::span<Real> stiffness_sum);
     decltype(&skerry::element_steps) element_steps;

@@ -1,6 +1,7 @@
 // What keeps steps from being longer (docs/step_length.md).
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <functional>
 
 #include "tests/support/worlds.h"
@@ -56,6 +57,27 @@ TEST_CASE("steps that the settings keep short are counted under them", "[scene]"
     REQUIRE(report.step_limits.size() == 1);
     CHECK(report.step_limits[0].limit == StepLimit::setting);
     CHECK(report.step_limits[0].body_name.empty());
+}
+
+TEST_CASE("what deforms evenly is as fast as steps may be, and no try is in vain", "[scene]") {
+    World world(Settings{.gravity = Vec3::Zero()});
+    const auto body = world.add_body(mesh::ball(0.1, 4), {.material = world.add_material({.young_modulus = 1e4})});
+    const Settings settings;
+    const Real rate =
+        4 * settings.max_strain_step / world.stable_step() / std::sqrt(3.0);  // of |F'| a quarter is allowed
+    std::vector<Vec3> velocity;
+    for (const Vec3& x : world.positions(body)) velocity.push_back(rate * x);
+    world.set_velocities(body, velocity);
+    REQUIRE(world.advance(world.stable_step()).ok());
+    const WorldReport report = world.report();
+    check_sums(report);
+    CHECK(report.shortened == 0);
+    CHECK(report.steps >= 5);
+    CHECK(report.steps <= 8);
+    const StepLimitReport* speed = find(report, StepLimit::speed);
+    REQUIRE(speed != nullptr);
+    CHECK(speed->steps == report.steps);
+    CHECK(speed->body == body);
 }
 
 TEST_CASE("a body that is thrown hard counts for what it makes of the steps", "[scene]") {

@@ -23,8 +23,9 @@ namespace skerry {
 
 /// What a step is asked to be. Written before its stages start; none of them writes it.
 struct StepParameters {
-    Real h = 0;    // s
-    Real lag = 0;  // s, by which velocities are behind positions at the kick
+    Real h = 0;        // s
+    Real longest = 0;  // s, that the next step may be at most, as far as is known
+    Real lag = 0;      // s, by which velocities are behind positions at the kick
     ActiveLevels active;
     Vec3 gravity = Vec3::Zero();  // m/s^2
     Integrator integrator = Integrator::leapfrog;
@@ -99,15 +100,17 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
-    Column<Real> stiffness_sum;       // of stable_step, by node
-    Column<Vec3> cluster_kick;        // of kick_clusters
-    ImplicitCoupling coupling;        // of couple_implicit_bodies
-    Column<Real> strain_parts;        // of strain_implicit_bodies
-    Column<std::uint8_t> pressed;     // by body at rest, in this step
-    WarmStartTable warm_start_next;   // of store_warm_start
-    Column<ExternalWork> work_parts;  // of measure_work
-    InversionMemory inversions;       // of find_inversions
-    Column<WatchPart> watch_parts;    // of watch_stable_steps
+    Column<Real> stiffness_sum;        // of stable_step, by node
+    Column<std::uint8_t> beside_fast;  // of check_state, by node
+    Column<Vec3> cluster_kick;         // of kick_clusters
+    Column<Real> cluster_work;         // of kick_clusters
+    ImplicitCoupling coupling;         // of couple_implicit_bodies
+    Column<Real> strain_parts;         // of strain_implicit_bodies
+    Column<std::uint8_t> pressed;      // by body at rest, in this step
+    WarmStartTable warm_start_next;    // of store_warm_start
+    Column<ExternalWork> work_parts;   // of measure_work
+    InversionMemory inversions;        // of find_inversions
+    Column<WatchPart> watch_parts;     // of watch_stable_steps
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
     bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }

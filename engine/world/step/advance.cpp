@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
 
@@ -30,6 +31,20 @@ bool keep_watch(WorldState& world) {
     world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
     return !watch.second;
+}
+
+/// What the motion at the start of a call says of its first step.
+Tries first_tries(WorldState& world) {
+    const Model& model = world.model;
+    const Real longest = trusted_step(model), max_strain_step = model.settings.max_strain_step;
+    if (!std::isfinite(longest)) return {};
+    constexpr bool pushed = false;
+    CheckInputs state = CheckInputs::bind(Binder(), model.node_blocks, model.bodies, model.nodes, model.tetrahedra,
+                                          model.elements, model.element_nodes, pushed);
+    state.velocity_next = model.nodes.velocity;
+    const StrainRate fastest =
+        kernels().strain_rate(*world.executor, state, max_strain_step / longest, world.scratch.beside_fast);
+    return {.slow_enough = slow_enough(fastest, max_strain_step, longest), .fastest = fastest.body};
 }
 
 StepStatus status_of(StepFault fault) {
@@ -179,7 +194,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     StepReport report;
     const Real end = clock.time + dt;
     Real left = dt;
-    Tries tries;
+    Tries tries = first_tries(world);
     world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
@@ -209,12 +224,12 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         }
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
-        if (!(std::min(trusted, tries.longest) > std::numeric_limits<Real>::epsilon() * end)) {
+        if (!(std::min(trusted, tries.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {
             world.scratch.findings.verdict = {StepFault::too_stiff, stiffest, no_index, trusted};
             blame(world, report);
             break;
         }
-        const StepPlan plan = plan_step(model, clock.cycle, left, tries.longest);
+        const StepPlan plan = plan_step(model, clock.cycle, left, tries.at_most());
         keep_shapes(model, steps_per_round(world));
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);

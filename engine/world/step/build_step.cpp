@@ -10,7 +10,6 @@
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
-#include "systems/dynamics/clusters/kick_clusters.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/damp_velocity.h"
@@ -65,8 +64,9 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
             inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
             write(n.force), write(n.velocity_next));
-    g.stage("dynamics/kick_clusters", kick_clusters, inputs<ClusterKickInputs>(m.clusters, n, b, m.any_asleep),
-            read(n.velocity), make(w.scratch.cluster_kick), write(n.velocity_next));
+    g.stage("dynamics/kick_clusters", kernels().kick_clusters,
+            inputs<ClusterKickInputs>(m.clusters, n, b, m.any_asleep), read(n.velocity), make(w.scratch.cluster_kick),
+            make(w.scratch.cluster_work), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep),
@@ -161,7 +161,8 @@ void list_checks(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/check_state", found.verdict, kernels().check_state,
                         inputs<CheckInputs>(k, b, n, m.tetrahedra, m.elements, m.element_nodes, pushed), value(p.h),
-                        value(p.max_strain_step), outputs<SpeedOutputs>(k, b));
+                        value(p.longest), value(p.max_strain_step), outputs<SpeedOutputs>(k, b),
+                        make(w.scratch.beside_fast));
     const auto if_possible =
         only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; }, read(found.verdict));
     g.stage_with_result("dynamics/find_inversions", found.inversions, kernels().find_inversions,

@@ -132,8 +132,8 @@ Plan plan_for(Model& model, Real step, std::span<Real> stiffness_sum) {
     return plan;
 }
 
-/// Of the steps 2, 4, ... times as long as the shortest stable one, and of one sqrt(2) times as long as the best of
-/// them, the one worth having clusters for.
+/// Of the steps 2, 4, ... times as long as the shortest stable one, and of some between the best of them and the next,
+/// the one worth having clusters for.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     Real shortest = std::numeric_limits<Real>::infinity();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
@@ -152,9 +152,11 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     for (Real step = 2 * shortest; step <= most_lengthening * shortest; step *= 2) {
         if (!look_at(std::min(step, longest)) || !(step < longest)) break;
     }
-    if (!(best.step > 0)) return best;  // one sqrt(2) times as long could not save least_gain
-    const Real between = best.step * std::sqrt(Real(2));
-    if (between < longest && between < most_lengthening * shortest) look_at(between);
+    if (!(best.step > 0)) return best;  // one less than twice as long could hardly save least_gain
+    for (Real ratio = std::sqrt(Real(2)); ratio > 1.15; ratio = std::sqrt(ratio)) {
+        const Real between = best.step * ratio;
+        if (between < longest && between < most_lengthening * shortest) look_at(between);
+    }
     return best;
 }
 

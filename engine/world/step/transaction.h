@@ -1,6 +1,7 @@
 // All or nothing: how a step is tried, what becomes of a try, and how what it overwrote is put back.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -9,6 +10,7 @@
 #include "components/types.h"
 #include "engine/world/state/clock.h"
 #include "engine/world/state/model.h"
+#include "systems/dynamics/checks/check_state.h"
 
 namespace skerry {
 
@@ -27,21 +29,29 @@ enum class StepOutcome {
     committed,
     again_with_longer_lists,  // the same try: what was near enough to cross was not known
     again_with_crossings,     // what crossed is a contact of the next try, which is as long
-    again_shorter,            // the next try is half as long
+    again_shorter,            // the next try is half as long, or as long as speed allows
     again_letting_through,    // the next try takes what crosses, and reports it
     refused,                  // world.scratch.findings say who is to blame
 };
 
 /// What is left of the tries of the present step, and of those before it, for the next one.
 struct Tries {
-    Real longest = std::numeric_limits<Real>::infinity();  // s; grows again step by step
-    int with_longer_lists = 0;                             // of this step, that could not be judged
-    int with_crossings = 0;                                // tries of this step at its present length
-    bool letting_through = false;                          // the next is the last
-    // why `longest` is what it is: of the last try that was given up for a shorter one
-    StepLimit limit = StepLimit::speed;
+    Real longest = std::numeric_limits<Real>::infinity();      // s; grows again step by step
+    Real slow_enough = std::numeric_limits<Real>::infinity();  // s; of what deforms as it did in the last try
+    Index fastest = no_index;                                  // row of BodyTable: whose elements do
+    int with_longer_lists = 0;                                 // of this step, that could not be judged
+    int with_crossings = 0;                                    // tries of this step at its present length
+    bool letting_through = false;                              // the next is the last
+    // why `longest` is what it is: of the last try that was given up for a shorter one, but not for speed
+    StepLimit limit = StepLimit::inversion;
     Index body = no_index;  // row of BodyTable
+
+    Real at_most() const { return std::min(longest, slow_enough); }
 };
+
+/// s, how long steps may be while elements deform so fast, but for the shortest length that is tried. `stable`: s, what
+/// else bounds steps.
+Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
 /// Takes the step that is planned as far as the tries allow, and says what became of it.
 StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);

@@ -44,6 +44,26 @@ Index first_not_finite(const CheckInputs& state, Range blocks) {
     return no_index;
 }
 
+Real highest_lane(const Real8& of) {
+    Real highest = of[0];
+    for (std::size_t l = 1; l < element_lanes; ++l) highest = std::max(highest, of[l]);
+    return highest;
+}
+
+/// The highest value of `count` rows, none below 0. The same in whatever order the rows are looked at.
+template <class Value>
+Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job, Value&& value) {
+    std::atomic<Real> highest{0};
+    parallel_for(executor, count, rows_per_job, [&](std::size_t begin, std::size_t end) {
+        Real here = 0;
+        for (std::size_t row = begin; row < end; ++row) here = std::max(here, value(row));
+        Real known = highest.load();
+        while (here > known && !highest.compare_exchange_weak(known, here)) {
+        }
+    });
+    return highest.load();
+}
+
 /// Whether any row of `count` has a value above a limit. The answer does not depend on the order in which the blocks
 /// run.
 template <class Exceeds>
@@ -57,7 +77,7 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 }
 
 struct Fastest {
-    Real rate_squared = 0;  // 1/s^2: |F'|^2
+    Real rate_squared = 0;  // 1/s^2: |F'|^2 over the square of the leeway
     Index node = no_index;
     Index element = no_index;  // row: lane of a block
 
@@ -70,6 +90,14 @@ struct Fastest {
 LaneMat3<Real8> parting_of(const CheckInputs& state, std::size_t block) {
     const LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
     return state.push_out.empty() ? parting : parting + edges(state.tetrahedron_node[block], state.push_out);
+}
+
+/// Of three vectors, the square of the longest.
+Real8 widest_parting(const LaneMat3<Real8>& parting) {
+    const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
+                third = dot(parting.c2, parting.c2);
+    const Real8 of_two = first < second ? second : first;
+    return of_two < third ? third : of_two;
 }
 
 Real8 leeway_of(const CheckInputs& state, std::size_t block) {
@@ -91,20 +119,34 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
     return det > 0.0 ? scaled / (allowed * allowed) : Real8{};
 }
 
-/// Whether any element of a block deforms faster than `rate` (1/s): all side by side, and nothing is said of which. In
-/// most corners do not even part by that times the altitude.
-bool any_deforms_faster(const CheckInputs& state, std::size_t block, Real rate) {
+/// Squares of how fast the tetrahedra of a block deform, 1/s^2: as |F'|, but not faster than their corners part, over
+/// the altitude. 0 in all lanes where none is faster than `rate` (1/s): in most corners do not even part by that.
+Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate) {
     const LaneMat3<Real8> parting = parting_of(state, block);
-    const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
-                third = dot(parting.c2, parting.c2);
-    const Real8 limit = rate * load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
-                limit_squared = limit * limit;
-    if (all((first <= limit_squared) & (second <= limit_squared) & (third <= limit_squared))) return false;
-    return !all(rate_squared_of(state, block, parting) <= rate * rate);
+    const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
+                reach_squared = reach * reach, widest = widest_parting(parting);
+    if (all(widest <= rate * rate * reach_squared)) return Real8{};
+    const Real8 by_corners = reach > 0.0 ? widest / reach_squared : Real8{},
+                by_gradient = rate_squared_of(state, block, parting);
+    return by_corners < by_gradient ? by_corners : by_gradient;
 }
 
-/// The element of a block that deforms fastest, and its corner that parts fastest from corner 0.
-Fastest fastest_element(const CheckInputs& state, std::size_t block) {
+/// The greatest of these in a block, where it is above the square of `rate`; else 0. Marks the nodes of all that are.
+Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, std::span<std::uint8_t> beside_fast) {
+    const Real8 squared = deforming_squared(state, block, rate);
+    if (all(squared <= rate * rate)) return 0;
+    for (std::size_t l = 0; l < element_lanes; ++l) {
+        if (!(squared[l] > rate * rate)) continue;
+        for (std::size_t a = 0; a < 4; ++a) {
+            std::uint8_t& mark = beside_fast[static_cast<std::size_t>(state.tetrahedron_node[block][a][l])];
+            std::atomic_ref<std::uint8_t>(mark).store(1, std::memory_order_relaxed);
+        }
+    }
+    return highest_lane(squared);
+}
+
+/// The tetrahedron of a block that deforms fastest, and its corner that parts fastest from corner 0.
+Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     const Real8 rate_squared = rate_squared_of(state, block, parting_of(state, block));
     Fastest fastest;
     for (std::size_t l = 0; l < element_lanes; ++l) {
@@ -122,15 +164,21 @@ Fastest fastest_element(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
-/// Whether F of any element of a block changes faster than `rate` (1/s), implicit ones by their leeway.
-bool any_element_deforms_faster(const CheckInputs& state, std::size_t block, Real rate) {
+/// The greatest |F'|^2 over the square of the leeway (1/s^2) of the elements of a block, if any has a marked node;
+/// else 0.
+Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
     const auto first = static_cast<std::size_t>(state.element_first[block]);
-    const BlockNodes nodes{&state.element_node[first], &state.element_gradient[first], state.element_count[block]};
+    const Index count = state.element_count[block];
+    unsigned marked = 0;  // more than half of what it takes to look at a block are the gradients
+    for (Index k = 0; k < count; ++k)
+        for (const Index n : state.element_node[first + static_cast<std::size_t>(k)].lane)
+            marked |= beside_fast[static_cast<std::size_t>(n)];
+    if (marked == 0) return 0;
+    const BlockNodes nodes{&state.element_node[first], &state.element_gradient[first], count};
     LaneMat3<Real8> change = deformation_gradient(nodes, state.velocity_next);
     if (!state.push_out.empty()) change = change + deformation_gradient(nodes, state.push_out);
     const Real8 leeway = load(state.element_implicit_modulus[block]) > 0.0 ? Real8{} + implicit_leeway : Real8{} + 1.0;
-    const Real8 limit = rate * leeway;
-    return !all(inner_product(change, change) <= limit * limit);
+    return highest_lane(inner_product(change, change) / (leeway * leeway));
 }
 
 /// Relative to the mean velocity of the body: a coarser measure, for a body whose elements are not given.
@@ -147,51 +195,63 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     return fastest;
 }
 
-/// The element of a body that deforms fastest, when faster than `rate` (1/s), and a node of it; else none. Tests from
-/// cheap to dear, each asked only where the one before fails; corners that part by less than the altitude in all three
-/// directions pass though F may change by up to three times the limit.
-Fastest too_fast_node(Executor& executor, const CheckInputs& state, std::size_t body, Real max_speed, Real rate) {
+/// Whether any node of a body moves away from the first one by so much in a second that a tetrahedron of the least
+/// altitude may deform faster than `rate` (1/s).
+bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
-    if (!(4 * max_speed * max_speed > limit_squared)) return {};  // two nodes part at most at twice the highest speed
     const Range blocks = state.body_node_blocks[body];
     const Vec3 first =
         motion(state, static_cast<std::size_t>(state.block_begin[static_cast<std::size_t>(blocks.begin)]));
-    const bool parting =
-        any_exceeds(executor, static_cast<std::size_t>(blocks.size()), node_blocks_per_job, [&](std::size_t row) {
-            const std::size_t b = static_cast<std::size_t>(blocks.begin) + row;
-            for (std::size_t n = static_cast<std::size_t>(state.block_begin[b]);
-                 n < static_cast<std::size_t>(state.block_end[b]); ++n)
-                if (4 * (motion(state, n) - first).squaredNorm() > limit_squared) return true;
-            return false;
-        });
-    if (!parting) return {};
+    return any_exceeds(executor, static_cast<std::size_t>(blocks.size()), node_blocks_per_job, [&](std::size_t row) {
+        const std::size_t b = static_cast<std::size_t>(blocks.begin) + row;
+        for (std::size_t n = static_cast<std::size_t>(state.block_begin[b]);
+             n < static_cast<std::size_t>(state.block_end[b]); ++n)
+            if (4 * (motion(state, n) - first).squaredNorm() > limit_squared) return true;
+        return false;
+    });
+}
+
+/// How fast the elements of a body deform, 1/s, where any does faster than `rate`; else 0. Tests from cheap to dear,
+/// each asked only where the one before fails. F' of an element is a mean of those of its tetrahedra.
+Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate,
+                      std::span<std::uint8_t> beside_fast) {
+    if (!parts_faster(executor, state, body, rate)) return 0;
+    const auto where_faster = [&](Real squared) { return squared > rate * rate ? std::sqrt(squared) : 0; };
+    const Range blocks = state.body_node_blocks[body];
+    if (state.body_blocks.empty())
+        return where_faster(fastest_from_mean(state, blocks, state.body_min_altitude[body]).rate_squared);
+    if (!state.body_element_blocks.empty())
+        std::fill(beside_fast.begin() + state.block_begin[static_cast<std::size_t>(blocks.begin)],
+                  beside_fast.begin() + state.block_end[static_cast<std::size_t>(blocks.end - 1)], std::uint8_t{0});
+    const auto of = [&](Range rows, auto&& look_at) {
+        const auto begin = static_cast<std::size_t>(rows.begin);
+        return highest_of(executor, static_cast<std::size_t>(rows.size()), element_blocks_per_job,
+                          [&](std::size_t row) { return look_at(begin + row); });
+    };
+    const Real of_tetrahedra = of(state.body_blocks[body], [&](std::size_t block) {
+        return look_at_tetrahedra(state, block, rate, beside_fast);
+    });
+    if (state.body_element_blocks.empty() || of_tetrahedra == 0) return where_faster(of_tetrahedra);
+    const Real of_elements = of(state.body_element_blocks[body],
+                                [&](std::size_t block) { return look_at_elements(state, block, beside_fast); });
+    return where_faster(std::min(of_tetrahedra, of_elements));
+}
+
+/// Who is to blame for a body that deforms too fast: the first of those that deform fastest.
+Fastest fastest_of(const CheckInputs& state, std::size_t body) {
+    if (state.body_blocks.empty())
+        return fastest_from_mean(state, state.body_node_blocks[body], state.body_min_altitude[body]);
     Fastest fastest;
-    if (state.body_blocks.empty()) {
-        fastest = fastest_from_mean(state, blocks, altitude);
-    } else {
-        const Range elements = state.body_blocks[body];
-        const std::size_t begin = static_cast<std::size_t>(elements.begin),
-                          count = static_cast<std::size_t>(elements.size());
-        if (!any_exceeds(executor, count, element_blocks_per_job,
-                         [&](std::size_t row) { return any_deforms_faster(state, begin + row, rate); }))
-            return {};
-        if (!state.body_element_blocks.empty()) {
-            const Range of_body = state.body_element_blocks[body];
-            const auto first_block = static_cast<std::size_t>(of_body.begin);
-            if (!any_exceeds(
-                    executor, static_cast<std::size_t>(of_body.size()), element_blocks_per_job,
-                    [&](std::size_t row) { return any_element_deforms_faster(state, first_block + row, rate); }))
-                return {};
-        }
-        for (std::size_t row = 0; row < count; ++row) fastest.look_at(fastest_element(state, begin + row));
-    }
-    return fastest.rate_squared > rate * rate ? fastest : Fastest{};
+    const Range tetrahedra = state.body_blocks[body];
+    for (Index block = tetrahedra.begin; block < tetrahedra.end; ++block)
+        fastest.look_at(fastest_tetrahedron(state, static_cast<std::size_t>(block)));
+    return fastest;
 }
 
 }  // namespace
 
-StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
-                        const SpeedOutputs& speed) {
+StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
+                        const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast) {
     const std::size_t body_count = state.body_node_blocks.size();
     SKERRY_CHECK(speed.block_squared.size() == state.block_begin.size() && speed.body.size() == body_count);
     SKERRY_CHECK(speed.block_frame_squared.size() == state.block_begin.size() && speed.body_frame.size() == body_count);
@@ -213,23 +273,44 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         return finite ? std::sqrt(highest) : std::numeric_limits<Real>::quiet_NaN();
     };
     StepVerdict verdict;
+    beside_fast.resize(state.velocity_next.size());
+    const Real looked_for = max_strain_step / std::max(h, longest);
     for (std::size_t body = 0; body < body_count; ++body) {
         const Range blocks = state.body_node_blocks[body];
         const auto first = static_cast<std::size_t>(blocks.begin), count = static_cast<std::size_t>(blocks.size());
         speed.body[body] = greatest(speed.block_squared.subspan(first, count));
         speed.body_frame[body] = greatest(speed.block_frame_squared.subspan(first, count));
-        if (verdict.fault != StepFault::none) continue;  // the first fault counts, but every speed is written
-        const Real altitude = state.body_min_altitude[body];
+        if (verdict.fault == StepFault::not_finite) continue;  // but every speed is written
         if (std::isnan(speed.body[body])) {
-            verdict = {StepFault::not_finite, static_cast<Index>(body), first_not_finite(state, blocks), 0};
-        } else if (altitude > 0 && blocks.size() > 0) {
-            const Fastest fastest = too_fast_node(executor, state, body, speed.body_frame[body], max_strain_step / h);
-            if (fastest.node != no_index)
-                verdict = {StepFault::too_fast, static_cast<Index>(body), fastest.node,
-                           std::sqrt(fastest.rate_squared) * h, fastest.element};
+            if (verdict.fault == StepFault::none)
+                verdict = {StepFault::not_finite, static_cast<Index>(body), first_not_finite(state, blocks), 0};
+            continue;
         }
+        if (!(state.body_min_altitude[body] > 0) || blocks.size() == 0) continue;
+        // two nodes part at most at twice the highest speed
+        if (!(2 * speed.body_frame[body] > looked_for * state.body_min_altitude[body])) continue;
+        const Real rate = deformation_rate(executor, state, body, looked_for, beside_fast);
+        if (rate > verdict.fastest.rate) verdict.fastest = {rate, static_cast<Index>(body)};
+        if (!(rate > max_strain_step / h) || verdict.fault != StepFault::none) continue;  // the first fault counts
+        const Fastest fastest = fastest_of(state, body);
+        verdict.fault = StepFault::too_fast;
+        verdict.body = static_cast<Index>(body);
+        verdict.node = fastest.node;
+        verdict.value = std::sqrt(fastest.rate_squared) * h;
+        verdict.tetrahedron = fastest.element;
     }
     return verdict;
+}
+
+StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast) {
+    beside_fast.resize(state.velocity_next.size());
+    StrainRate fastest;
+    for (std::size_t body = 0; body < state.body_node_blocks.size(); ++body) {
+        if (!(state.body_min_altitude[body] > 0) || state.body_node_blocks[body].size() == 0) continue;
+        const Real of_body = deformation_rate(executor, state, body, rate, beside_fast);
+        if (of_body > fastest.rate) fastest = {of_body, static_cast<Index>(body)};
+    }
+    return fastest;
 }
 
 StepVerdict check_distance(std::span<const Vec3> position, std::span<const Range> body_nodes,

@@ -1,6 +1,7 @@
 // Looks at the step before it is committed (docs/methods/time_stepping.md 4).
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "components/body_table.h"
@@ -14,6 +15,13 @@ namespace skerry {
 
 enum class StepFault { none, not_finite, too_fast, too_far, too_stiff };
 
+/// How fast elements deform: |F'|, or, where that is less, how fast two corners of a tetrahedron part over its
+/// altitude; over the leeway that they have.
+struct StrainRate {
+    Real rate = 0;          // 1/s, of the fastest; 0: all are slower than was asked for
+    Index body = no_index;  // row of BodyTable: whose it is
+};
+
 /// Why a step must not be committed.
 struct StepVerdict {
     StepFault fault = StepFault::none;
@@ -22,6 +30,7 @@ struct StepVerdict {
     Real value = 0;                // not_finite: -; too_fast: norm of what F changes by in this step there;
                                    // too_far: distance between neighbouring numbers there, over the mean edge
     Index tetrahedron = no_index;  // place: lane of a block, when one tetrahedron is to blame
+    StrainRate fastest = {};       // whatever the fault, but for not_finite
 };
 
 struct CheckInputs {
@@ -90,13 +99,19 @@ inline constexpr Real implicit_leeway = 5;
 
 /// Writes speeds and returns the first fault in body order: a velocity that is
 /// not finite, or an element whose F would change by more than `max_strain_step` (Frobenius norm) in this step. That F
-/// is a mean over tetrahedra, so elements are looked at where F of a tetrahedron would change by as much (by its leeway
-/// more), and these where two corners move apart by more than this fraction of the smallest altitude. What is blamed is
-/// the tetrahedron that deforms fastest. Common motion and slow turns of a large body do no harm and are not counted.
-/// Without `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the smallest
-/// altitude of the body, which refuses a quick turn of a large body, too. Parallel over node blocks.
-StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real max_strain_step,
-                        const SpeedOutputs& speed);
+/// is a mean over tetrahedra, so elements are looked at beside tetrahedra whose F would change by as much (by their
+/// leeway more), and these where two corners move apart by more than this fraction of the smallest altitude. What is
+/// blamed is the tetrahedron that deforms fastest. Common motion and slow turns of a large body do no harm and are not
+/// counted. Without `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the
+/// smallest altitude of the body, which refuses a quick turn of a large body, too. How fast the fastest body deforms is
+/// said where it would be too fast for a step of `longest` (s). `beside_fast` is scratch, by node. Parallel over node
+/// blocks.
+StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
+                        const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
+
+/// The same rate between two steps, by velocity_next and push_out: of the body that deforms fastest, where faster than
+/// `rate` (1/s).
+StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast);
 
 /// Coordinates of a body that are further apart than this fraction of its mean edge are no ground for a step: motion
 /// below a millionth of the speed of sound would be lost to rounding.

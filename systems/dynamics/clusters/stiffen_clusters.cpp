@@ -1,8 +1,11 @@
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
+#include <vector>
 
+#include "components/lanes.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/stability/stiffness_share.h"
@@ -25,18 +28,28 @@ Real8 quick_stiffness(const ElementInputs& elements, std::size_t block, const La
     return stiffness;
 }
 
-/// inverse = (A + weight G G^T)^-1 by what Woodbury's identity takes away, G = the gradients of the element by node.
+/// to += x factor_x + y factor_y + z factor_z, by component of the factor. Lane by lane the same for each.
+void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& factor, std::span<Real> to) {
+    const Real *const x = from[0].data(), *const y = from[1].data(), *const z = from[2].data();
+    std::size_t i = 0;
+    for (; i + element_lanes <= to.size(); i += element_lanes) {
+        const auto at = [i](const Real* of) { return *reinterpret_cast<const Real8InMemory*>(of + i); };
+        *reinterpret_cast<Real8InMemory*>(&to[i]) =
+            at(to.data()) + (factor.x() * at(x) + factor.y() * at(y) + factor.z() * at(z));
+    }
+    for (; i < to.size(); ++i) to[i] += factor.x() * x[i] + factor.y() * y[i] + factor.z() * z[i];
+}
+
+/// inverse = (A + weight G G^T)^-1 by what Woodbury's identity takes away, G = the gradients of the element by node:
+/// U (1/weight + G^T U)^-1 U^T with U = A^-1 G. With C C^T = 1/weight + G^T U that is W W^T, W = U C^-T, which is
+/// symmetric to the last bit however it is added up.
 void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     NodeClusters& clusters) {
     Index cluster = no_index;
     for (Index k = 0; k < of.count && cluster == no_index; ++k) cluster = clusters.cluster(of.node[k][l]);
     if (cluster == no_index) return;
     const auto c = static_cast<std::size_t>(cluster);
-    const std::size_t count = clusters.nodes[c].size(), first = clusters.first_entry[c];
-    const auto entry = [&](std::size_t i, std::size_t j) -> Real& { return clusters.inverse[first + i * count + j]; };
-    Eigen::Matrix<Real, Eigen::Dynamic, 3> moved =
-        Eigen::Matrix<Real, Eigen::Dynamic, 3>::Zero(static_cast<Eigen::Index>(count), 3);  // A^-1 G
-    Mat3 small = Mat3::Identity() / weight;
+    const std::size_t count = clusters.nodes[c].size();
     const auto for_each_node = [&](auto&& visit) {
         for (Index k = 0; k < of.count; ++k) {
             const auto n = static_cast<std::size_t>(of.node[k][l]);
@@ -44,17 +57,30 @@ void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<
             if (inverse_mass[n] > 0 && !g.isZero(0)) visit(static_cast<std::size_t>(clusters.place[n]), g);
         }
     };
+    std::array<std::vector<Real>, 3> moved;  // U, and then W, by component
+    for (std::vector<Real>& component : moved) component.assign(count, 0);
     for_each_node([&](std::size_t place, const Vec3& g) {
-        for (std::size_t i = 0; i < count; ++i)
-            moved.row(static_cast<Eigen::Index>(i)) += entry(place, i) * g.transpose();
-    });
-    for_each_node([&](std::size_t place, const Vec3& g) { small += g * moved.row(static_cast<Eigen::Index>(place)); });
-    const Eigen::Matrix<Real, Eigen::Dynamic, 3> scaled = moved * small.inverse();
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t j = 0; j <= i; ++j) {
-            entry(i, j) -= scaled.row(static_cast<Eigen::Index>(i)).dot(moved.row(static_cast<Eigen::Index>(j)));
-            entry(j, i) = entry(i, j);  // symmetric to the last bit
+        const std::span<const Real> row = clusters.row(cluster, static_cast<Index>(place));
+        for (Eigen::Index component = 0; component < 3; ++component) {
+            std::vector<Real>& to = moved[static_cast<std::size_t>(component)];
+            for (std::size_t i = 0; i < count; ++i) to[i] += row[i] * g[component];
         }
+    });
+    Mat3 small = Mat3::Identity() / weight;
+    for_each_node([&](std::size_t place, const Vec3& g) {
+        small += Vec3(moved[0][place], moved[1][place], moved[2][place]) * g.transpose();
+    });
+    const Mat3 C = small.llt().matrixL();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Real x = moved[0][i] / C(0, 0), y = (moved[1][i] - C(1, 0) * x) / C(1, 1),
+                   z = (moved[2][i] - C(2, 0) * x - C(2, 1) * y) / C(2, 2);
+        moved[0][i] = x;
+        moved[1][i] = y;
+        moved[2][i] = z;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        add_combination(moved, -Vec3(moved[0][i], moved[1][i], moved[2][i]),
+                        clusters.inverse.span().subspan(clusters.first_entry[c] + i * count, count));
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ struct State {
     std::vector<Real> block_speed = std::vector<Real>(4), body_speed = std::vector<Real>(2);
     std::vector<Real> block_frame_speed = block_speed, body_frame_speed = body_speed;
     std::vector<MovingFrame> frame = std::vector<MovingFrame>(2);
+    Column<std::uint8_t> beside_fast;
     bool with_elements = true;
 
     State() {
@@ -56,8 +57,8 @@ struct State {
             inputs.body_blocks = element_blocks;
         }
         inputs.body_frame = frame;
-        return check_state(*executor, inputs, 0.01, 0.2,
-                           {block_speed, block_frame_speed, body_speed, body_frame_speed});
+        return check_state(*executor, inputs, 0.01, 0.01, 0.2,
+                           {block_speed, block_frame_speed, body_speed, body_frame_speed}, beside_fast);
     }
 };
 
@@ -192,15 +193,17 @@ TEST_CASE("the verdict is the same on any number of workers", "[unit][determinis
 }
 
 TEST_CASE("a world without bodies and a body without nodes are sound", "[unit]") {
+    Column<std::uint8_t> beside_fast;
     const auto executor = make_executor(Backend::serial, 1);
-    CHECK(check_state(*executor, {}, 0.01, 0.2, {}).fault == StepFault::none);
+    CHECK(check_state(*executor, {}, 0.01, 0.01, 0.2, {}, beside_fast).fault == StepFault::none);
     const std::vector<Range> none{{0, 0}};
     const std::vector<Real> altitude{0.1};
     std::vector<Real> speed(1, 7), frame_speed(1, 7);
     CheckInputs inputs;
     inputs.body_node_blocks = none;
     inputs.body_min_altitude = altitude;
-    CHECK(check_state(*executor, inputs, 0.01, 0.2, {{}, {}, speed, frame_speed}).fault == StepFault::none);
+    CHECK(check_state(*executor, inputs, 0.01, 0.01, 0.2, {{}, {}, speed, frame_speed}, beside_fast).fault ==
+          StepFault::none);
     CHECK(speed[0] == 0);
     CHECK(frame_speed[0] == 0);
 }
@@ -215,6 +218,7 @@ struct TrembleState {
     std::vector<Real> altitude{0.01}, speed = std::vector<Real>(1), block_speed = std::vector<Real>(1);
     std::vector<Real> frame_speed = speed, block_frame_speed = block_speed;
     std::vector<Vec3> rest;
+    Column<std::uint8_t> beside_fast;
 
     explicit TrembleState(ElementKind kind)
         : body(test::jittered_box({4, 3, 3}, 0.1, 0.1, 1), material_constants(MaterialModel::linear, 1e5, 0.3, 1000),
@@ -235,7 +239,26 @@ struct TrembleState {
             if (body.volume(e) > 0) found = std::max(found, std::pair(rate_of(e), e));
         return found;
     }
-    StepVerdict check(Real rate) {
+    /// 1/s, of tetrahedra one by one: as |F'|, but not faster than two corners part, over the altitude.
+    Real fastest_tetrahedron() const {
+        Real highest = 0;
+        for (std::size_t t = 0; t < element_lanes * body.tetrahedra.node.size(); ++t) {
+            const TetrahedronNodes& nodes = body.tetrahedra.node[t / element_lanes];
+            const auto node = [&](std::size_t a) { return static_cast<std::size_t>(nodes[a][t % element_lanes]); };
+            Mat3 edge, parting;
+            for (std::size_t a = 1; a < 4; ++a) {
+                edge.col(static_cast<Index>(a) - 1) = rest[node(a)] - rest[node(0)];
+                parting.col(static_cast<Index>(a) - 1) = body.velocity[node(a)] - body.velocity[node(0)];
+            }
+            if (!(edge.determinant() > 0)) continue;  // a lane left over
+            const Real by_corners =
+                parting.colwise().norm().maxCoeff() / body.tetrahedra.altitude[t / element_lanes][t % element_lanes];
+            highest = std::max(highest, std::min(by_corners, (parting * edge.inverse()).norm()));
+        }
+        return highest;
+    }
+    /// In steps of 1 s, with steps of `longest` in view.
+    StepVerdict check(Real rate, Real longest = 1) {
         const auto executor = make_executor(Backend::serial, 1);
         CheckInputs inputs{begin, end, of_body, node_blocks, altitude, body.velocity, body.velocity, {}};
         inputs.rest_position = rest;
@@ -249,7 +272,8 @@ struct TrembleState {
         inputs.element_node = body.element_nodes.node;
         inputs.element_gradient = body.element_nodes.gradient;
         inputs.element_implicit_modulus = body.elements.implicit_modulus;
-        return check_state(*executor, inputs, 1, rate, {block_speed, block_frame_speed, speed, frame_speed});
+        return check_state(*executor, inputs, 1, longest, rate, {block_speed, block_frame_speed, speed, frame_speed},
+                           beside_fast);
     }
 };
 
@@ -283,4 +307,17 @@ TEST_CASE("an implicit element may deform five times as fast", "[unit]") {
     for (ElementLane& of : state.body.elements.implicit_modulus) of = {{1, 1, 1, 1, 1, 1, 1, 1}};
     CHECK(state.check(0.21 * rate).fault == StepFault::none);
     CHECK(state.check(0.19 * rate).fault == StepFault::too_fast);
+}
+
+TEST_CASE("how fast the fastest element deforms is said where it would be too fast for a longer step", "[unit]") {
+    for (const ElementKind kind : {ElementKind::linear, ElementKind::edge_smoothed}) {
+        TrembleState state(kind);
+        const Real rate = std::min(state.fastest_tetrahedron(), state.fastest().first);
+        const StepVerdict sound = state.check(1.5 * rate, 2);  // steps of 2 s would be too long
+        CHECK(sound.fault == StepFault::none);
+        CHECK(sound.fastest.body == 0);
+        CHECK(sound.fastest.rate == Approx(rate));
+        CHECK(state.check(2.5 * rate, 2).fastest.body == no_index);
+        CHECK(state.check(0.5 * rate, 1).fastest.rate == Approx(rate));
+    }
 }

@@ -188,6 +188,11 @@ TEST_CASE("an element that stiffens raises its part of the inverse, and what is 
     CHECK(worst_stiffening(box.body.inputs(), box.body.blocks, box.body.position, box.body.elements.implicit_modulus) <
           0.95);
     CHECK(booked == Approx(kinetic() - energy).epsilon(1e-9));
+    for (std::size_t c = 0; c < box.clusters.size(); ++c)
+        for (Index i = 0; i < static_cast<Index>(box.clusters.nodes[c].size()); ++i)
+            for (Index j = 0; j < i; ++j)  // what two contacts do to each other is the same
+                CHECK(box.clusters.row(static_cast<Index>(c), i)[static_cast<std::size_t>(j)] ==
+                      box.clusters.row(static_cast<Index>(c), j)[static_cast<std::size_t>(i)]);
     const Matrix product = box.inertia() * box.inverse_inertia();
     CHECK((product - Matrix::Identity(product.rows(), product.cols())).cwiseAbs().maxCoeff() < 1e-9);
 }
