@@ -72,6 +72,8 @@ struct ElementBlockTable {
     Column<Real> viscous_time;
     // within the body: impulses come every 2^level of the body's steps (step_levels.h)
     Column<std::uint8_t> level;
+    // 1: in every step of the present cycle, since contacts act on nodes of the block
+    Column<std::uint8_t> touched;
 
     /// The only list of columns: resize, erase, hash and save walk it.
     void for_each_column(auto&& visit) {
@@ -87,6 +89,7 @@ struct ElementBlockTable {
         visit("opens_patch", opens_patch, ColumnRole::state);
         visit("viscous_time", viscous_time, ColumnRole::state);
         visit("level", level, ColumnRole::state);
+        visit("touched", touched, ColumnRole::state);
         visit("viscous_strain", viscous_strain, ColumnRole::state);
         visit("relaxation_rate", relaxation_rate, ColumnRole::state);
         visit("own_frequency", own_frequency, ColumnRole::state);
@@ -111,6 +114,9 @@ struct ElementNodeTable {
     }
 };
 
+/// J per unit of the rate of F, column by column: what the viscosity of an element does in a step.
+using ElementViscousImpulse = std::array<ElementLane, 9>;
+
 /// x, y, z and a zero: one register.
 using PaddedVec3 = Lanes<Real, 4>;
 
@@ -118,13 +124,16 @@ using PaddedVec3 = Lanes<Real, 4>;
 /// are summed up within a patch, in cache, before nodes gather what few patches give them. Made from the blocks by
 /// build_patches, body after body: the lists grow and nothing points to them.
 struct ElementPatches {
-    Column<Range> blocks;         // of ElementBlockTable, by patch
-    Column<Range> slots;          // rows of the columns below, by patch
-    Column<Index> node;           // by slot: row of NodeTable
-    Column<std::uint8_t> level;   // by slot: that of the patch
-    Ragged<Index> slots_of_node;  // by node, ascending
-    Column<PaddedVec3> position;  // m, by slot; scratch
-    Column<PaddedVec3> force;     // N, by slot, what the patch does to the node; scratch
+    Column<Range> blocks;          // of ElementBlockTable, by patch
+    Column<Range> slots;           // rows of the columns below, by patch
+    Column<Index> node;            // by slot: row of NodeTable
+    Column<std::uint8_t> level;    // by slot: that of the patch, or touched_level
+    Column<std::uint8_t> touched;  // by patch: whether some block of it is
+    Ragged<Index> slots_of_node;   // by node, ascending
+    Column<PaddedVec3> position;   // m, by slot; scratch
+    Column<PaddedVec3> force;      // N, by slot, what the patch does to the node; scratch
+    // by block, of those that are viscous and due; none where nothing is viscous; scratch
+    Column<ElementViscousImpulse> viscous_impulse;
 };
 
 /// The rows of ElementNodeTable that a block of elements has. `node`: where its nodes are in the list of positions that

@@ -23,7 +23,10 @@ struct NodeTable {
     Column<Real> mass;                 // kg, lumped
     Column<Real> inverse_mass;         // 1/kg, 0: pinned or kinematic
     Column<Index> body;                // row of BodyTable
-    Column<LevelMask> levels;          // levels, within their body, of the elements around the node
+    // levels, within their body, of the elements around the node, and touched_level if one of them is touched
+    Column<LevelMask> levels;
+    // with multirate: cycles of steps for which a contact that acted on it still counts (plan_step.cpp)
+    Column<std::uint8_t> touched;
 
     /// The only list of columns: resize, erase, hash and save walk it. Derived: velocity_next (zero at rest), push_out
     /// and levels by Model::derive_all.
@@ -35,6 +38,7 @@ struct NodeTable {
         visit("still_position", still_position, ColumnRole::state);
         visit("mass", mass, ColumnRole::state);
         visit("inverse_mass", inverse_mass, ColumnRole::state);
+        visit("touched", touched, ColumnRole::state);
         visit("body", body, ColumnRole::link);
         visit("velocity_next", velocity_next, ColumnRole::derived);
         visit("push_out", push_out, ColumnRole::derived);

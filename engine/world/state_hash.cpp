@@ -167,7 +167,10 @@ void add_clock(Hash& hash, const Model& model, const Clock& clock) {
     add_row(hash, clock.cycle.levels);
     add_row(hash, clock.cycle.h);
     add_row(hash, clock.cycle.elements);
-    for (std::size_t b : in_slot_order(model.bodies.slot)) add_row(hash, model.bodies.level[b]);
+    for (std::size_t b : in_slot_order(model.bodies.slot)) {
+        add_row(hash, model.bodies.level[b]);
+        add_row(hash, model.bodies.level_cap[b]);
+    }
 }
 
 }  // namespace

@@ -106,6 +106,26 @@ std::array<Index, element_level_count> level_count_of(const ElementBlockTable& e
     return count;
 }
 
+std::array<Real, element_level_count> steepness_of(const ElementBlockTable& elements, const ElementNodeTable& nodes,
+                                                   Range blocks) {
+    std::array<Real, element_level_count> steepness{};
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            // F' = sum_k (v_k - v) (x) g_k for any v: the gradient of the first node is minus the sum of the others
+            Vec3 of_first = Vec3::Zero();
+            Real sum = 0;
+            for (Index k = 1; k < elements.count[b]; ++k) {
+                const ElementGradient& lanes = nodes.gradient[static_cast<std::size_t>(elements.first[b] + k)];
+                const Vec3 gradient(lanes[0][l], lanes[1][l], lanes[2][l]);
+                of_first -= gradient;
+                sum += gradient.norm();
+            }
+            Real& most = steepness[elements.level[b]];
+            most = std::max(most, sum + of_first.norm());
+        }
+    return steepness;
+}
+
 /// Takes rows `gone` out of every column of a table.
 void erase_rows(auto& table, Range gone) {
     table.for_each_column([gone](const char*, auto& column, ColumnRole) { column.erase({&gone, 1}); });
@@ -210,6 +230,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_looked_at);
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     bodies.level_count[b] = level_count_of(model.elements, blocks);
+    bodies.steepness[b] = steepness_of(model.elements, model.element_nodes, blocks);
+    bodies.level_cap[b] = step_level_count - 1;
+    bodies.longest_impulse[b] = std::numeric_limits<Real>::max();  // nothing is known yet
     model.body_records.push_back(
         {.name = {},
          .element = kind_of(implicit ? all_zones : zones),

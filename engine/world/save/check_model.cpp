@@ -97,6 +97,9 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     expect_partition(file, "/bodies/rigid", bodies.rigid, model.rigid_bodies.size());
     expect_partition(file, "/bodies/implicit", bodies.implicit, model.implicit_nodes.size());
     expect_between(file, "/bodies/level", bodies.level, 0, step_level_count - element_level_count);
+    expect_between(file, "/bodies/level_cap", bodies.level_cap, 0, step_level_count - 1);
+    expect_between(file, "/bodies/touched", bodies.touched, 0, 1);
+    expect_between(file, "/bodies/longest_impulse", bodies.longest_impulse, 0.0, unbounded);
     expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
     expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
     expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, unbounded);

@@ -6,6 +6,7 @@
 #include "systems/collision/tree/bvh.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/elements/build_elements.h"
+#include "systems/dynamics/elements/touched_elements.h"
 
 namespace skerry {
 
@@ -122,6 +123,8 @@ void Model::extend_derived() {
     }
     body_mass.resize(bodies.slot.size());
     for (std::size_t b = first_body; b < bodies.slot.size(); ++b) {
+        bodies.has_touched[b] =
+            mark_touched(elements, element_nodes, bodies.blocks[b], bodies.nodes[b], patches, nodes.levels);
         body_mass[b] = 0;
         for (const Real mass : rows_of(nodes.mass, bodies.nodes[b])) body_mass[b] += mass;
     }

@@ -27,7 +27,9 @@ struct StepParameters {
     Real longest = 0;  // s, that the next step may be at most, as far as is known
     Real lag = 0;      // s, by which velocities are behind positions at the kick
     ActiveLevels active;
-    Vec3 gravity = Vec3::Zero();  // m/s^2
+    bool limits_impulses = false;   // multirate: whether impulses may be so long is looked at
+    bool look_at_elements = false;  // for that, where speeds do not tell
+    Vec3 gravity = Vec3::Zero();    // m/s^2
     Integrator integrator = Integrator::leapfrog;
     ContactRegions contact_regions = ContactRegions::separate;
     CollisionSettings collision;
@@ -50,6 +52,7 @@ struct StepFindings {
     ExternalWork external;
     TakenByRest rest;
     Real relaxed = 0;   // J, taken out by what relaxes in the elements in this step
+    Real viscous = 0;   // J, by the viscosity of fine elements among coarse in this step
     Real damped = 0;    // J, taken out by damping in this step
     Real strained = 0;  // J, damped by the implicit steps of bodies in this step
 };
@@ -111,6 +114,9 @@ struct StepScratch {
     Column<ExternalWork> work_parts;   // of measure_work
     InversionMemory inversions;        // of find_inversions
     Column<WatchPart> watch_parts;     // of watch_stable_steps
+    Column<Real> longest_impulse;      // s, by body, of limit_impulses
+    Column<Real> impulse_parts;        // of the same
+    Column<Real> viscous_parts;        // of measure_viscosity
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
     bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }

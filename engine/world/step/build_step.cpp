@@ -8,6 +8,7 @@
 #include "systems/collision/find_crossings.h"
 #include "systems/contact/match_warm_start.h"
 #include "systems/contact/sum_contact_impulses.h"
+#include "systems/dynamics/checks/limit_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
@@ -168,6 +169,18 @@ void list_checks(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/find_inversions", found.inversions, kernels().find_inversions,
                         inputs<InversionInputs>(m.tetrahedra, b, n, pushed), value(p.h), make(w.scratch.inversions),
                         outputs<InversionBudgets>(m.tetrahedra, b), if_possible);
+    const auto if_limited =
+        only_if([](const StepVerdict& verdict, bool limits) { return limits && verdict.fault == StepFault::none; },
+                read(found.verdict), value(p.limits_impulses));
+    g.stage("dynamics/limit_impulses", kernels().limit_impulses,
+            inputs<ImpulseLimitInputs>(b, m.elements, m.element_nodes, n), value(p.h), value(p.max_strain_step),
+            value(p.look_at_elements), make(w.scratch.impulse_parts), write(w.scratch.longest_impulse), if_limited);
+    const auto if_viscous = only_if([](std::span<const ElementViscousImpulse> impulse) { return !impulse.empty(); },
+                                    read(m.patches.viscous_impulse));
+    g.stage_with_result("dynamics/measure_viscosity", found.viscous, kernels().measure_viscosity,
+                        inputs<ElementInputs>(m.elements, m.element_nodes, m.materials, b, p.active, m.any_asleep),
+                        read(m.patches.blocks), read(m.patches.viscous_impulse), read(n.velocity),
+                        read(n.velocity_next), make(w.scratch.viscous_parts), if_viscous);
     const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
                                 value(m.loaded), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,

@@ -47,8 +47,8 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
         counters.worst_region = size;
     }
     counters.inline_steps += scratch.ran_inline;
-    counters.dissipated +=
-        findings.measures.dissipated + findings.damped + findings.strained + findings.relaxed + findings.rest.energy;
+    counters.dissipated += findings.measures.dissipated + findings.damped + findings.strained + findings.relaxed +
+                           findings.viscous + findings.rest.energy;
     counters.max_penetration = std::max(counters.max_penetration, findings.measures.max_penetration);
     counters.max_gap_violation = std::max(counters.max_gap_violation, findings.measures.max_gap_violation);
 }

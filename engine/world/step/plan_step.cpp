@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "engine/world/step/step.h"
+#include "systems/dynamics/elements/touched_elements.h"
 
 namespace skerry {
 
@@ -15,6 +16,9 @@ namespace {
 
 /// 64 steps: what is coarser gains less than the nodes and contacts cost, which move in every step.
 constexpr int most_cycle_levels = 6;
+
+/// For which elements stay touched beside a contact that is no more: what bounces comes back
+constexpr std::uint8_t touched_cycles = 8;
 
 /// How many times the own step of a body is halved to the step of the world.
 int level_of_body(const Model& model, std::size_t b, Real h) {
@@ -25,22 +29,86 @@ int level_of_body(const Model& model, std::size_t b, Real h) {
     return ratio > 1 ? static_cast<int>(std::min<Real>(most, std::log2(ratio * (1 + rounding)))) : 0;
 }
 
+/// The highest level whose impulses are no longer than elements of the body stand, which deform as fast as they do. The
+/// rate may grow until the next look: half of what is allowed is taken.
+int cap_of_body(const Model& model, std::size_t b, Real h) {
+    const Real ratio = model.bodies.longest_impulse[b] / (2 * h);
+    if (!(ratio > 1)) return 0;
+    return static_cast<int>(std::min<Real>(step_level_count - 1, std::log2(ratio)));
+}
+
+int highest_level(const BodyTable& bodies, std::size_t b) {
+    int highest = 0;
+    for (int k = 0; k < element_level_count; ++k)
+        if (bodies.level_count[b][static_cast<std::size_t>(k)] > 0) highest = bodies.level[b] + k;
+    return std::min(highest, static_cast<int>(bodies.level_cap[b]));
+}
+
+/// In the next cycle elements beside contacts of this one are due in every step, and those beside contacts that have
+/// been no more for some cycles are not.
+void note_contacts(Model& model, std::size_t b) {
+    BodyTable& bodies = model.bodies;
+    const bool due_anyway = highest_level(bodies, b) == 0;
+    if (due_anyway ? !bodies.has_touched[b] : !bodies.touched[b] && !bodies.has_touched[b]) return;
+    const Range nodes = bodies.nodes[b], blocks = bodies.blocks[b];
+    if (due_anyway)
+        std::ranges::fill(rows_of(model.elements.touched, blocks), std::uint8_t{0});
+    else
+        find_touched_blocks(model.element_nodes, model.nodes.touched, blocks, model.elements);
+    bodies.has_touched[b] =
+        mark_touched(model.elements, model.element_nodes, blocks, nodes, model.patches, model.nodes.levels);
+    bodies.touched[b] = 0;
+    for (std::uint8_t& left : rows_of(model.nodes.touched, nodes)) {
+        left = static_cast<std::uint8_t>(left - (left > 0));
+        bodies.touched[b] |= left > 0;
+    }
+}
+
+/// Counts the elements of a body by the level that they have in this cycle. Returns the highest.
+int count_elements(const Model& model, std::size_t b, StepCycle& cycle) {
+    const BodyTable& bodies = model.bodies;
+    std::array<std::uint64_t, element_level_count> untouched{};
+    for (std::size_t k = 0; k < element_level_count; ++k)
+        untouched[k] = static_cast<std::uint64_t>(bodies.level_count[b][k]);
+    if (bodies.has_touched[b])
+        for (auto block = static_cast<std::size_t>(bodies.blocks[b].begin);
+             block < static_cast<std::size_t>(bodies.blocks[b].end); ++block) {
+            if (!model.elements.touched[block]) continue;
+            for (const Real volume : model.elements.volume[block].lane) {
+                cycle.elements[0] += volume > 0;
+                untouched[model.elements.level[block]] -= volume > 0;
+            }
+        }
+    int top = 0;
+    for (int k = 0; k < element_level_count; ++k) {
+        const std::uint64_t count = untouched[static_cast<std::size_t>(k)];
+        if (count == 0) continue;
+        const int level = std::min(bodies.level[b] + k, static_cast<int>(bodies.level_cap[b]));
+        cycle.elements[static_cast<std::size_t>(level)] += count;
+        top = std::max(top, level);
+    }
+    return top;
+}
+
+/// Whether the impulses of all levels cover the same time.
+bool in_step(const StepCycle& cycle, Real h) {
+    constexpr Real rounding = 1e-9;
+    return std::ranges::all_of(cycle.lead, [&](Real lead) { return std::abs(lead) <= rounding * h; });
+}
+
 /// Gives bodies their levels for a cycle of steps of length h, of which `steps` are left.
 void begin_cycle(Model& model, StepCycle& cycle, Real h, Real steps) {
     cycle.index = cycle.levels = 0;
     cycle.h = h;
-    if (!model.settings.multirate) return;
+    // After a cycle that was broken off step by step, until those that are behind have caught up and those that are
+    // ahead have waited: which elements are of a level, and which level a body has, may change only then.
+    if (!model.settings.multirate || !in_step(cycle, h)) return;
     cycle.elements.fill(0);
     int top = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        const int level = level_of_body(model, b, h);
-        model.bodies.level[b] = static_cast<std::uint8_t>(level);
-        for (int k = 0; k < element_level_count; ++k) {
-            const Index count = model.bodies.level_count[b][static_cast<std::size_t>(k)];
-            if (count == 0) continue;
-            cycle.elements[static_cast<std::size_t>(level + k)] += static_cast<std::uint64_t>(count);
-            top = std::max(top, level + k);
-        }
+        model.bodies.level[b] = static_cast<std::uint8_t>(level_of_body(model, b, h));
+        model.bodies.level_cap[b] = static_cast<std::uint8_t>(cap_of_body(model, b, h));
+        top = std::max(top, count_elements(model, b, cycle));
     }
     // A cycle ends no later than the time asked for.
     const int fitting = static_cast<int>(std::log2(steps));
@@ -72,8 +140,40 @@ void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameter
         duration = std::max(0.0, ((period - place) * h - cycle.lead[static_cast<std::size_t>(l)]) / h);
     }
     const LevelMask mask = parameters.active.mask();
-    for (std::size_t b = 0; b < bodies.slot.size(); ++b)
-        bodies.active[b] = static_cast<LevelMask>(mask >> bodies.level[b]);
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
+        unsigned active = bodies.has_touched[b] ? 1u << touched_level : 0;
+        for (int k = 0; k < element_level_count; ++k) {
+            const int level = std::min(bodies.level[b] + k, static_cast<int>(bodies.level_cap[b]));
+            active |= (mask >> level & 1u) << k;
+        }
+        bodies.active[b] = static_cast<LevelMask>(active);
+    }
+    // four times in a cycle
+    parameters.look_at_elements = cycle.index % std::max(1, (1 << cycle.levels) / 4) == 0;
+}
+
+void note_touched_nodes(const ContactTable& contacts, BodyTable& bodies, NodeTable& nodes) {
+    for (const Stencil& stencil : contacts.stencil)
+        for (std::size_t k = 0; k < stencil.node.size(); ++k) {
+            if (stencil.weight[k] == 0) continue;
+            const auto n = static_cast<std::size_t>(stencil.node[k]), b = static_cast<std::size_t>(nodes.body[n]);
+            if (bodies.blocks[b].size() == 0) continue;
+            nodes.touched[n] = touched_cycles;
+            bodies.touched[b] = 1;
+        }
+}
+
+bool impulses_too_long(const StepCycle& cycle, const BodyTable& bodies) {
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
+        const int highest = std::min(highest_level(bodies, b), cycle.levels);
+        if (highest > 0 && bodies.longest_impulse[b] < std::ldexp(cycle.h, highest)) return true;
+    }
+    return false;
+}
+
+void end_cycle(Model& model, const StepCycle& cycle) {
+    if (!in_step(cycle, cycle.h)) return;
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) note_contacts(model, b);
 }
 
 void count_impulses(const StepParameters& parameters, StepCycle& cycle, RunCounters& counters) {
@@ -84,6 +184,9 @@ void count_impulses(const StepParameters& parameters, StepCycle& cycle, RunCount
         if (duration > 0) counters.element_impulses += cycle.elements[l];
     }
     cycle.index = (cycle.index + 1) % (1 << cycle.levels);
+    // What makes one step too long makes the impulses of coarser elements too long.
+    constexpr Real rounding = 1e-6;
+    if (parameters.h < (1 - rounding) * cycle.h) cycle.index = 0;
 }
 
 }  // namespace skerry

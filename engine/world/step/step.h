@@ -67,7 +67,14 @@ struct StepPlan {
 StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit);
 /// Which levels are due in the step of length parameters.h, and which levels of each body that means.
 void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameters& parameters);
-/// After a committed step: what its impulses covered.
+/// After a step, with multirate: which nodes its contacts act on.
+void note_touched_nodes(const ContactTable& contacts, BodyTable& bodies, NodeTable& nodes);
+/// Whether some element deforms too fast for the impulses of its level in this cycle.
+bool impulses_too_long(const StepCycle& cycle, const BodyTable& bodies);
+/// After the last step of a cycle, where the impulses of all levels cover the same time: elements that are due in every
+/// step of the next one.
+void end_cycle(Model& model, const StepCycle& cycle);
+/// After a committed step: what its impulses covered. A step that was shortened ends the cycle.
 void count_impulses(const StepParameters& parameters, StepCycle& cycle, RunCounters& counters);
 
 // drift_state.cpp

@@ -62,6 +62,7 @@ bool run_stages(WorldState& world) {
     scratch.awake_mass = model.note_rest();
     scratch.pressed.clear();
     find_active_levels(world.clock.cycle, model.bodies, scratch.parameters);
+    if (scratch.parameters.limits_impulses) copy(model.bodies.longest_impulse, scratch.longest_impulse);
     world.transaction.begin_try(model);
     Trace* const trace = world.record.tracing ? &world.record.trace : nullptr;
     const bool small = model.elements.first.size() * element_lanes + scratch.contacts.size() < inline_work;
@@ -93,6 +94,12 @@ void commit(WorldState& world) {
     count_step(scratch, world.record.counters);
     add_step(scratch, world.record.balance);
     count_impulses(parameters, world.clock.cycle, world.record.counters);
+    if (parameters.limits_impulses) {
+        note_touched_nodes(scratch.contacts, world.model.bodies, world.model.nodes);
+        std::ranges::copy(scratch.longest_impulse, world.model.bodies.longest_impulse.begin());
+        if (impulses_too_long(world.clock.cycle, world.model.bodies)) world.clock.cycle.index = 0;
+        if (world.clock.cycle.index == 0) end_cycle(world.model, world.clock.cycle);
+    }
     world.clock.time += parameters.h;
 }
 

@@ -233,12 +233,16 @@ void build_patches(const ElementBlockTable& blocks, std::size_t node_count, Elem
         for (Index s = slots.begin; s < slots.end; ++s) slot_of(patches.node[static_cast<std::size_t>(s)]) = no_index;
         patches.level.resize(patches.node.size(), blocks.level[begin]);
         patches.blocks.push_back({static_cast<Index>(begin), static_cast<Index>(end)});
+        patches.touched.push_back(0);
         patches.slots.push_back(slots);
         begin = end;
     }
     patches.position.resize(patches.node.size());
     patches.force.resize(patches.node.size());
     sort_by_row(patches.node, node_count, patches.slots_of_node);
+    const std::span<const Real> viscous_time = blocks.viscous_time.span().subspan(first_block);
+    if (!patches.viscous_impulse.empty() || std::ranges::any_of(viscous_time, [](Real time) { return time > 0; }))
+        patches.viscous_impulse.resize(blocks.first.size());
 }
 
 void truncate_patches(Index block_count, Index node_count, ElementPatches& patches) {
@@ -247,6 +251,8 @@ void truncate_patches(Index block_count, Index node_count, ElementPatches& patch
                                                patches.blocks.begin());
     const std::size_t slots = kept > 0 ? static_cast<std::size_t>(patches.slots[kept - 1].end) : 0;
     patches.blocks.resize(kept);
+    patches.touched.resize(kept);
+    if (!patches.viscous_impulse.empty()) patches.viscous_impulse.resize(static_cast<std::size_t>(block_count));
     patches.slots.resize(kept);
     patches.node.resize(slots);
     patches.level.resize(slots);

@@ -105,16 +105,28 @@ struct Block {
         });
     }
 
+    void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t part, ElementViscousImpulse& impulse) const {
+        const KernelReal scale = (duration * h) * part_of<KernelReal>(elements.volume, part);
+        const KernelReal entry[9] = {stress.c0.x, stress.c0.y, stress.c0.z, stress.c1.x, stress.c1.y,
+                                     stress.c1.z, stress.c2.x, stress.c2.y, stress.c2.z};
+        for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
+    }
+
     [[gnu::always_inline]] void add_forces(std::span<const Vec3> velocity, std::span<const ElementRotation> rotation,
-                                           const ElementMemory& next, ElementLane& dissipated) const {
+                                           const ElementMemory& next, ElementLane& dissipated,
+                                           std::span<ElementViscousImpulse> viscous_impulse) const {
         Parts<LaneMat3<KernelReal>> F;
         for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
         Parts<LaneMat3<KernelReal>> P = elastic_stress(F, rotation, next);
         Parts<KernelReal> volume;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0)
-                P[part] = P[part] + viscous_stress(material, elements.viscous_time[block], F[part],
-                                                   deformation_gradient(elements.nodes_of(block), part, velocity));
+            if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
+                const LaneMat3<KernelReal> of_rate =
+                    viscous_stress(material, elements.viscous_time[block], F[part],
+                                   deformation_gradient(elements.nodes_of(block), part, velocity));
+                if (!viscous_impulse.empty()) keep_impulse(of_rate, part, viscous_impulse[block]);
+                P[part] = P[part] + of_rate;
+            }
             if (material.relaxes() && !next.viscous_strain.empty())
                 P[part] = P[part] + relax(F[part], part, next.viscous_strain[block], dissipated);
             volume[part] = duration * part_of<KernelReal>(elements.volume, part);
@@ -151,8 +163,8 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
         for (std::size_t p = first; p < last; ++p) {
             const auto begin = static_cast<std::size_t>(patches.blocks[p].begin),
                        end = static_cast<std::size_t>(patches.blocks[p].end);
-            const Real duration = elements.schedule.duration(begin);
-            if (duration == 0) {
+            const bool touched = !patches.touched.empty() && patches.touched[p];
+            if (!touched && elements.schedule.duration(begin) == 0) {
                 if (!next.relaxed.empty()) std::fill(next.relaxed.begin() + begin, next.relaxed.begin() + end, Real{0});
                 continue;
             }
@@ -162,9 +174,12 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
             for (std::size_t b = begin; b < end; ++b) {
                 BlockNodes nodes = elements.nodes_of(b);
                 nodes.node = patches.slot.data() + static_cast<std::size_t>(elements.first[b]);
-                const Block block{elements, b, nodes, x, force, elements.material_of(b), duration, h};
+                const Real duration = elements.schedule.duration(b);
                 ElementLane dissipated{};
-                block.add_forces(velocity, rotation, next, dissipated);
+                if (duration > 0) {
+                    const Block block{elements, b, nodes, x, force, elements.material_of(b), duration, h};
+                    block.add_forces(velocity, rotation, next, dissipated, patches.viscous_impulse);
+                }
                 if (!next.relaxed.empty()) next.relaxed[b] = sum_of(dissipated);
             }
         }

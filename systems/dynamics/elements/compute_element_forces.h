@@ -60,17 +60,22 @@ struct ElementInputs {
                              .body = binder.read(element.body),
                              .body_level = binder.read(body.level),
                              .active = binder.value(active),
-                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)}};
+                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
+                             .body_cap = binder.read(body.level_cap),
+                             .touched = binder.read(element.touched),
+                             .body_has_touched = binder.read(body.has_touched)}};
     }
 };
 
 /// The patches and where their sums go.
 struct PatchForces {
     std::span<const Range> blocks, slots;
-    std::span<const Index> node;     // by slot
-    std::span<const NodeLane> slot;  // by row of ElementNodeTable
-    std::span<PaddedVec3> position;  // m, by slot; scratch
-    std::span<PaddedVec3> force;     // N, by slot
+    std::span<const Index> node;                            // by slot
+    std::span<const NodeLane> slot;                         // by row of ElementNodeTable
+    std::span<PaddedVec3> position;                         // m, by slot; scratch
+    std::span<PaddedVec3> force;                            // N, by slot
+    std::span<const std::uint8_t> touched = {};             // by patch: some block of it is; empty: none
+    std::span<ElementViscousImpulse> viscous_impulse = {};  // by block; empty: nobody wants to know
 
     static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
         return {.blocks = binder.read(patches.blocks),
@@ -78,7 +83,9 @@ struct PatchForces {
                 .node = binder.read(patches.node),
                 .slot = binder.read(nodes.slot),
                 .position = binder.write(patches.position),
-                .force = binder.write(patches.force)};
+                .force = binder.write(patches.force),
+                .touched = binder.read(patches.touched),
+                .viscous_impulse = binder.write(patches.viscous_impulse)};
     }
 };
 
@@ -99,8 +106,8 @@ struct ElementMemory {
 /// F = sum_k (x_k - x_0) (x) g_k: f_k = -V P g_k, f_0 = -(f_1 + f_2 + ...). In the order of the blocks, and lane by
 /// lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
 /// `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Patches that are not active
-/// keep what they had; those that are active for several steps at once get so many times the force. Parallel over
-/// patches.
+/// keep what they had; those that are active for several steps at once get so many times the force. Where some blocks
+/// are touched the force is that of the blocks that are due. Parallel over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, const PatchForces& patches);

@@ -71,6 +71,40 @@ void drop_thin_levels(std::span<const ElementLane> volume, std::span<std::uint8_
     for (std::uint8_t& l : level) l = std::min(l, static_cast<std::uint8_t>(top));
 }
 
+/// Takes down elements at the border of another material whose elements are two levels finer or more, to the level of
+/// those. Their impulses would come at nodes that belong to the modes of all of the stiff side, and be in time with some.
+void refine_borders(const Search& search, std::span<std::uint8_t> level) {
+    const auto material_of = [&](std::size_t b) { return search.elements.material[b]; };
+    const auto for_each_node = [&](std::size_t b, std::size_t l, auto&& visit) {
+        const BlockNodes nodes = search.elements.nodes_of(b);
+        for (Index k = 0; k < nodes.count; ++k) visit(static_cast<std::size_t>(nodes.node[k][l]));
+    };
+    std::vector<Index> materials(search.elements.material.begin() + search.blocks.begin,
+                                 search.elements.material.begin() + search.blocks.end);
+    std::ranges::sort(materials);
+    materials.erase(std::unique(materials.begin(), materials.end()), materials.end());
+    if (materials.size() < 2) return;
+    constexpr std::uint8_t none = element_level_count;
+    const std::vector<std::uint8_t> found(level.begin(), level.end());
+    std::vector<std::uint8_t> finest(search.position.size());
+    for (const Index material : materials) {
+        std::ranges::fill(finest, none);
+        search.for_each_block([&](std::size_t b, std::size_t first) {
+            if (material_of(b) != material) return;
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                if (search.elements.volume[b][l] > 0)
+                    for_each_node(b, l, [&](std::size_t n) { finest[n] = std::min(finest[n], found[first + l]); });
+        });
+        search.for_each_block([&](std::size_t b, std::size_t first) {
+            if (material_of(b) == material) return;
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                for_each_node(b, l, [&](std::size_t n) {
+                    if (finest[n] + 2 <= found[first + l]) level[first + l] = std::min(level[first + l], finest[n]);
+                });
+        });
+    }
+}
+
 }  // namespace
 
 void find_element_levels(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
@@ -109,6 +143,7 @@ void find_element_levels(const ElementInputs& elements, Range blocks, std::span<
     drop_thin_levels(
         elements.volume.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size())),
         level);
+    refine_borders(search, level);
 }
 
 void find_viscous_times(std::span<const std::uint8_t> block_level, Real step, std::span<Real> viscous_time) {

@@ -1,0 +1,48 @@
+#include "systems/dynamics/checks/measure_viscosity.h"
+
+#include "jobs/reduce.h"
+#include "systems/dynamics/elements/element_block.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t viscous_patches_per_job = 16;
+
+Real work_on(const ElementViscousImpulse& impulse, const LaneMat3<Real8>& rate) {
+    const Real8 lanes = load(impulse[0]) * rate.c0.x + load(impulse[1]) * rate.c0.y + load(impulse[2]) * rate.c0.z +
+                        load(impulse[3]) * rate.c1.x + load(impulse[4]) * rate.c1.y + load(impulse[5]) * rate.c1.z +
+                        load(impulse[6]) * rate.c2.x + load(impulse[7]) * rate.c2.y + load(impulse[8]) * rate.c2.z;
+    Real sum = 0;
+    for (std::size_t l = 0; l < element_lanes; ++l) sum += lanes[l];
+    return sum;
+}
+
+}  // namespace
+
+Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::span<const Range> patches,
+                       std::span<const ElementViscousImpulse> impulse, std::span<const Vec3> velocity,
+                       std::span<const Vec3> velocity_next, Column<Real>& partial) {
+    const auto of_patch = [&](const Range& blocks) {
+        Real work = 0;
+        const auto first = static_cast<std::size_t>(blocks.begin), last = static_cast<std::size_t>(blocks.end);
+        if (!(elements.viscous_time[first] > 0)) return work;
+        for (std::size_t b = first; b < last; ++b) {
+            if (elements.schedule.duration(b) == 0) continue;
+            const BlockNodes nodes = elements.nodes_of(b);
+            work += (work_on(impulse[b], deformation_gradient(nodes, velocity)) +
+                     work_on(impulse[b], deformation_gradient(nodes, velocity_next))) /
+                    2;
+        }
+        return work;
+    };
+    const auto of_patches = [&](std::size_t begin, std::size_t end) {
+        Real work = 0;
+        for (std::size_t p = begin; p < end; ++p) work += of_patch(patches[p]);
+        return work;
+    };
+    return reduce(executor, patches.size(), viscous_patches_per_job, partial, Real{0}, of_patches,
+                  [](Real a, Real b) { return a + b; });
+}
+
+}  // namespace skerry
