@@ -1,5 +1,7 @@
 #include "engine/world/contact_view.h"
 
+#include "systems/contact/keep_resting_contacts.h"
+
 namespace skerry {
 
 namespace {
@@ -51,9 +53,20 @@ Contact contact_at(const Model& model, const ContactTable& table, std::size_t c)
 void view_contacts(WorldState& world) {
     RunRecord& record = world.record;
     if (record.contact_view_is_current) return;
-    const ContactTable& table = world.scratch.contacts;
-    record.contact_view.resize(table.size());
-    for (std::size_t c = 0; c < table.size(); ++c) record.contact_view[c] = contact_at(world.model, table, c);
+    const ContactTable& of_step = world.scratch.contacts;
+    const RestingContactTable& resting = world.cache.resting;
+    Column<Index>& rows = record.contact_rows;
+    merge_contacts(of_step, resting, rows);
+    record.contact_view.resize(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i] >= 0) {
+            record.contact_view[i] = contact_at(world.model, of_step, static_cast<std::size_t>(rows[i]));
+            continue;
+        }
+        const auto row = static_cast<std::size_t>(~rows[i]);
+        record.contact_view[i] = contact_at(world.model, resting.contact, row);
+        record.contact_view[i].impulse *= world.scratch.parameters.h / resting.step[row];
+    }
     record.contact_view_is_current = true;
 }
 

@@ -15,7 +15,8 @@ std::string name_of_column(void* world, const void* place) {
     };
     w.model.for_each_table(look_in);
     look_in("warm_start", w.cache.warm_start);
-    look_in("warm_start_next", w.scratch.warm_start_next);
+    look_in("resting", w.cache.resting);
+    look_in("resting_next", w.scratch.resting_memory.next);
     look_in("contacts", w.scratch.contacts);
     look_in("regions", w.scratch.regions);
     if (!found.empty()) return found;

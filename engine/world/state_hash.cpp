@@ -216,6 +216,8 @@ std::uint64_t state_hash(WorldState& world) {
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     WarmStartTable& warm_start = world.cache.warm_start;
     warm_start.for_each_column([&](const char*, const auto& column, ColumnRole) { add_rows(hash, column.span()); });
+    if (RestingContactTable& resting = world.cache.resting; !resting.empty())
+        add_state(hash, resting, {0, static_cast<Index>(resting.size())});
     add_pairs(hash, model, world.cache.pairs);
     return hash.value();
 }

@@ -88,7 +88,7 @@ void WorldState::erase_gone_rows() {
     edits.bodies_gone.clear();
     edits.colliders_gone.clear();
     if (!moves.any()) return;
-    erase_gone(moves, cache);
+    erase_gone(moves, model.nodes.body, cache);
     erase_gone(moves, model.nodes.body, scratch.contacts);
     scratch.regions = RegionTable{};
     record.contact_view_is_current = false;
@@ -130,6 +130,7 @@ World World::clone() const {
     to.scratch.findings = from.scratch.findings;
     to.scratch.contacts = from.scratch.contacts;
     to.record.counters = from.record.counters;
+    to.record.resting_steps = from.record.resting_steps;
     to.record.limits = from.record.limits;
     to.record.balance = from.record.balance;
     to.record.start_overlaps = from.record.start_overlaps;

@@ -75,8 +75,8 @@ MemoryFigures measure_memory(const Mesh& ball, int balls_per_edge) {
     figures.contacts = state.scratch.contacts.size();
     figures.balls = static_cast<std::size_t>(balls_per_edge) * balls_per_edge * balls_per_edge;
     figures.contact = (of_pile - large) / static_cast<double>(figures.contacts);
-    figures.contact_tables = row_bytes(state.scratch.contacts) + row_bytes(state.cache.warm_start) +
-                             row_bytes(state.scratch.warm_start_next);
+    figures.contact_tables =
+        row_bytes(state.scratch.contacts) + row_bytes(state.cache.warm_start) + row_bytes(state.cache.resting);
     return figures;
 }
 

@@ -21,81 +21,63 @@ Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     return cosine * impulse + axis.cross(impulse) + (axis.dot(impulse) / (1 + cosine)) * axis;
 }
 
-/// Merges this step's impulses with those of idle pairs, which stand for a step of length `h` from now on. Both are
-/// in key order, and no pair is in both.
-void keep_resting(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse,
-                  const IdlePairs& pairs, Real h, const WarmStartTable& last, WarmStartTable& next) {
-    next.key.clear();
-    next.normal.clear();
-    next.impulse.clear();
-    const Real scale = h / last.step[0];
-    std::size_t p = 0, i = 0;
-    const auto take_new = [&](std::size_t end) {
-        for (; i < end; ++i) {
-            next.key.push_back(key[i]);
-            next.normal.push_back(normal[i]);
-            next.impulse.push_back(impulse[i]);
-        }
-    };
-    for (std::size_t old = 0; old < last.key.size(); ++old) {
-        const std::uint64_t pair = last.key[old].pair;
-        while (p < pairs.key.size() && pairs.key[p] < pair) ++p;
-        if (p == pairs.key.size()) break;
-        if (pairs.key[p] != pair || !pairs.idle[p]) continue;
-        take_new(static_cast<std::size_t>(
-            std::lower_bound(key.begin() + static_cast<std::ptrdiff_t>(i), key.end(), ContactKey{pair, 0}) -
-            key.begin()));
-        next.key.push_back(last.key[old]);
-        next.normal.push_back(last.normal[old]);
-        next.impulse.push_back(scale * last.impulse[old]);
+/// Runs along the keys of a table, all of which ascend.
+class Place {
+public:
+    Place(std::span<const ContactKey> keys, const ContactKey& first)
+        : keys_(keys), row_(static_cast<std::size_t>(std::ranges::lower_bound(keys, first) - keys.begin())) {}
+
+    /// Whether there is such a row, and then it is row().
+    bool find(const ContactKey& key) {
+        while (row_ < keys_.size() && keys_[row_] < key) ++row_;
+        return row_ < keys_.size() && keys_[row_] == key;
     }
-    take_new(key.size());
-}
+    std::size_t row() const { return row_; }
+
+private:
+    std::span<const ContactKey> keys_;
+    std::size_t row_;
+};
 
 }  // namespace
 
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
-                      const WarmStartTable& last, Real h, std::span<Vec3> impulse) {
+                      const WarmStartTable& last, const RestingContactTable& resting, Real h, std::span<Vec3> impulse) {
     SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size());
-    if (key.empty() || last.key.empty()) {
+    if (key.empty() || (last.key.empty() && resting.empty())) {
         std::fill(impulse.begin(), impulse.end(), Vec3::Zero());
         return false;
     }
-    SKERRY_CHECK(last.step.size() == 1 && last.step[0] > 0);
-    const Real scale = h / last.step[0];
-    const std::span<const ContactKey> last_key = last.key;
+    SKERRY_CHECK(last.key.empty() || (last.step.size() == 1 && last.step[0] > 0));
+    const Real scale = last.key.empty() ? 0 : h / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
-        // every block finds its own place in last step's table, then both run along together
-        std::size_t old =
-            static_cast<std::size_t>(std::lower_bound(last_key.begin(), last_key.end(), key[begin]) - last_key.begin());
+        // every block finds its own place in both tables, then all run along together
+        Place of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
-            while (old < last_key.size() && last_key[old] < key[i]) ++old;
-            const bool known = old < last_key.size() && last_key[old] == key[i];
-            impulse[i] =
-                known ? Vec3(scale * turn(last.impulse[old], last.normal[old], normal[i])) : Vec3(Vec3::Zero());
+            impulse[i] = Vec3::Zero();
+            if (of_last.find(key[i])) {
+                const std::size_t old = of_last.row();
+                impulse[i] = scale * turn(last.impulse[old], last.normal[old], normal[i]);
+            } else if (of_resting.find(key[i])) {
+                const std::size_t old = of_resting.row();
+                impulse[i] =
+                    h / resting.step[old] * turn(resting.contact.impulse[old], resting.contact.normal[old], normal[i]);
+            }
         }
     });
     return true;
 }
 
 void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse,
-                      const IdlePairs& pairs, Real h, WarmStartTable& last, WarmStartTable& next) {
-    SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size() && pairs.idle.size() == pairs.key.size());
-    const bool any_rests = std::ranges::find(pairs.idle, 1) != pairs.idle.end();
-    if (any_rests && !last.key.empty()) {
-        keep_resting(key, normal, impulse, pairs, h, last, next);
-        std::swap(last.key, next.key);
-        std::swap(last.normal, next.normal);
-        std::swap(last.impulse, next.impulse);
-    } else {
-        last.key.resize(key.size());
-        last.normal.resize(key.size());
-        last.impulse.resize(key.size());
-        std::copy(key.begin(), key.end(), last.key.begin());
-        std::copy(normal.begin(), normal.end(), last.normal.begin());
-        std::copy(impulse.begin(), impulse.end(), last.impulse.begin());
-    }
-    last.step.assign(1, h);
+                      Real h, WarmStartTable& last) {
+    SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size());
+    last.key.resize(key.size());
+    last.normal.resize(key.size());
+    last.impulse.resize(key.size());
+    std::copy(key.begin(), key.end(), last.key.begin());
+    std::copy(normal.begin(), normal.end(), last.normal.begin());
+    std::copy(impulse.begin(), impulse.end(), last.impulse.begin());
+    last.step.assign(key.empty() ? 0 : 1, h);
 }
 
 }  // namespace skerry

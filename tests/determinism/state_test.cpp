@@ -54,6 +54,7 @@ TEST_CASE("the hash sees a bit in every column that is state", "[determinism]") 
     state.clock.cycle.index = 1;  // between cycles the levels of bodies mean nothing
     for (PairState& known : state.cache.pairs.state)
         known = PairState::overlapping;  // of what is apart nothing is kept
+    state.cache.resting.for_each_column([](const char*, auto& column, ColumnRole) { column.resize(1); });
     const std::uint64_t before = world.state_hash();
     int flipped = 0;
     const auto flip = [&](const char* name, auto& column, ColumnRole role) {
@@ -73,6 +74,7 @@ TEST_CASE("the hash sees a bit in every column that is state", "[determinism]") 
         columns.for_each_column(flip);
     });
     state.cache.warm_start.for_each_column(flip);
+    state.cache.resting.for_each_column(flip);
     state.cache.pairs.for_each_row_column(flip);
     CHECK(flipped > 50);
     state.model.watch.steps ^= 1;

@@ -81,6 +81,8 @@ private:
         if (random_.chance(0.2)) {
             s["sleep_speed"] = top_speed_ * random_.by_decade(1e-3, 1);
             s["sleep_time"] = duration_ * random_.one_of<Real>({0, random_.by_decade(1e-3, 1)});
+        } else {
+            draw_rest(s);
         }
         s["backend"] = any_name<Backend>();
         s["threads"] = random_.one_of<int>({1, 1, 1, 2, 3});
@@ -102,6 +104,14 @@ private:
                                 "frictionless_rows", "freeze_contacts", "small_regions_in_lanes"})
             if (random_.chance(0.3)) s[key] = random_.chance(0.5);
         return s;
+    }
+
+    /// By the engine's own limits, and soon enough to be seen; by numbers of its own, so that all else is drawn as
+    /// ever.
+    void draw_rest(Json& s) const {
+        RandomNumbers random(seed_ ^ 0x9e3779b97f4a7c15u);
+        s["sleep"] = random.chance(0.8);
+        if (random.chance(0.6)) s["sleep_time"] = duration_ * random.by_decade(1e-3, 1);
     }
 
     Json materials() {

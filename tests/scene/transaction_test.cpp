@@ -101,6 +101,7 @@ TEST_CASE("only what the transaction puts back is written before a step is known
         };
         state.model.for_each_table([&](const char* table, auto& columns) { columns.for_each_column(note(table)); });
         state.cache.warm_start.for_each_column(note("warm_start"));
+        state.cache.resting.for_each_column(note("resting"));
         state.cache.pairs.for_each_row_column(note("pairs"));
     }
     CHECK(behind_guard >= 4);

@@ -82,7 +82,8 @@ void move_lists(std::span<const Range> gone, std::size_t count, PairTable& pairs
 
 }  // namespace
 
-void erase_gone(const RowMoves& moves, ContactCache& cache) {
+void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactCache& cache) {
+    cache.resting.step.erase(erase_gone(moves, body_of_node, cache.resting.contact));
     PairTable& pairs = cache.pairs;
     SearchState& search = cache.search;
     const std::size_t count = pairs.size();
@@ -103,7 +104,7 @@ void erase_gone(const RowMoves& moves, ContactCache& cache) {
     search.memory.collider_extent.erase(moves.colliders_gone);
 }
 
-void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts) {
+std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts) {
     const auto now = [](std::span<const Index> row_now, Index row) {
         return row == no_index ? no_index : row_now[static_cast<std::size_t>(row)];
     };
@@ -127,6 +128,7 @@ void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, Cont
             contacts.collider[c] = now(moves.collider_now, contacts.collider[c]);
         });
     contacts.for_each_column([&](const char*, auto& column, ColumnRole) { column.erase(gone); });
+    return gone;
 }
 
 }  // namespace skerry

@@ -9,10 +9,11 @@
 namespace skerry {
 
 // erase_from_cache.cpp
-/// Pairs of what is gone go, others keep what is known of them. Impulses stay, since their keys name bodies by slot.
-void erase_gone(const RowMoves& moves, ContactCache& cache);
-/// Of the last step; `body_of_node` as it was then.
-void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts);
+/// Pairs of what is gone go, and their contacts at rest; others keep what is known of them. Impulses to start from
+/// stay, since their keys name bodies by slot. `body_of_node` as it was before.
+void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactCache& cache);
+/// Contacts of a step. Returns the rows that went.
+std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts);
 
 // erase_gone.cpp
 /// Patches of the bodies behind the first that is gone are left to Model::extend_derived.

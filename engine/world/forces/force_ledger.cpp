@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "engine/world/kernels.h"
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
 
@@ -32,6 +33,10 @@ PairKey key_of(const Model& model, const ContactPartners& partners) {
     return {false, first, model.colliders.slot[static_cast<std::size_t>(partners.collider)]};
 }
 
+bool rests(const Model& model, Index body) {
+    return model.bodies.asleep[static_cast<std::size_t>(body)] != 0;
+}
+
 bool is_zero(const ContactSums& sums) {
     return sums.pressing == 0 && sums.impulse == Vec3::Zero();
 }
@@ -46,14 +51,68 @@ void ForceLedger::Peak::end_step(Real h) {
     step_contacts = 0;
 }
 
-void ForceLedger::start(const Model& model, const Vec3& moment_point) {
+void ForceLedger::start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point) {
     *this = {};
     on_ = true;
     moment_point_ = moment_point;
     fit(model);
-    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        if (model.bodies.kind[b] == BodyKind::deformable)
-            bodies_[model.bodies.slot[b]].unknown = model.bodies.asleep[b] != 0;
+    take_over_rest(model, resting);
+}
+
+/// As in the last step before they came to rest, by the second.
+void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
+    Column<Vec3> force, held;
+    for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
+    ContactSumInputs inputs = ContactSumInputs::bind({}, resting.contact, model.bodies, model.nodes, model.attachments);
+    inputs.impulse = force;
+    Column<PairSums> pairs;
+    sum_contact_impulses(inputs, moment_point_, pairs, held);
+    for (const PairSums& of_rest : pairs) {
+        const ContactPartners& partners = of_rest.partners;
+        if (!rests(model, partners.first) || (partners.second != no_index && !rests(model, partners.second))) continue;
+        PairRow& row = pair(key_of(model, partners));
+        row.still = of_rest.sums;
+        row.still_seconds = 1;
+        row.still_contacts = of_rest.contacts;
+    }
+    take_over_reactions(model, held);
+}
+
+/// Forces and moments of elements on the nodes that an attachment holds are what a motion of these nodes alone changes
+/// the elastic energy by (virtual work). `contact_force`: N, by node.
+void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
+    const NodeTable& nodes = model.nodes;
+    Column<Vec3> motion;
+    motion.assign(nodes.position.size(), Vec3::Zero());
+    std::vector<std::uint8_t> taken(nodes.position.size(), 0);
+    // From the last attachment back, as in measure_reactions.
+    for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
+        const Index body = model.attachments.body[a];
+        if (model.attachments.slot[a] == no_slot || !rests(model, body)) continue;
+        std::vector<std::size_t> held;
+        for (const Index n : rows_of(model.attachments.node, model.attachments.nodes[a])) {
+            const auto row = static_cast<std::size_t>(n);
+            if (!taken[row]) held.push_back(row);
+            taken[row] = 1;
+        }
+        AttachmentRow& row = attachments_[model.attachments.slot[a]];
+        row.still_seconds = 1;
+        for (const std::size_t n : held) {
+            const Vec3 others = nodes.mass[n] * model.settings.gravity + nodes.load[n] + contact_force[n];
+            row.still += {-others, (moment_point_ - nodes.position[n]).cross(others)};
+        }
+        const auto power = [&](auto&& motion_of) {
+            for (const std::size_t n : held) motion[n] = motion_of(nodes.position[n]);
+            return kernels().elastic_power(model.all_elements(), model.bodies.blocks[static_cast<std::size_t>(body)],
+                                           nodes.position, motion);
+        };
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 unit = Vec3::Unit(axis);
+            row.still.impulse[axis] += power([&](const Vec3&) { return unit; });
+            row.still.moment[axis] += power([&](const Vec3& x) { return Vec3(unit.cross(x - moment_point_)); });
+        }
+        for (const std::size_t n : held) motion[n].setZero();
+    }
 }
 
 void ForceLedger::fit(const Model& model) {
@@ -73,10 +132,7 @@ void ForceLedger::begin_call(const Model& model, StepScratch& scratch) {
         row.peak.begin_call();
     }
     std::erase_if(pairs_, [](const PairRow& row) { return is_zero(row.still); });
-    for (BodyRow& row : bodies_) {
-        row.peak.begin_call();
-        row.unknown_seconds = 0;
-    }
+    for (Peak& peak : bodies_) peak.begin_call();
     for (Peak& peak : colliders_) peak.begin_call();
     for (AttachmentRow& row : attachments_) {
         row.sums = {};
@@ -94,11 +150,11 @@ ForceLedger::PairRow& ForceLedger::pair(const PairKey& key) {
 }
 
 void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index contacts) {
-    bodies_[key.first].peak.add(impulse, contacts);
+    bodies_[key.first].add(impulse, contacts);
     if (!key.bodies)
         colliders_[key.second].add(-impulse, contacts);
     else
-        bodies_[key.second].peak.add(-impulse, key.second == key.first ? 0 : contacts);
+        bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
 /// What a pair does at the end of a step: rest goes on as it was while the two were still, and how it was is noted.
@@ -139,7 +195,7 @@ void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> re
         row.peak.end_step(h);
         row.touched = false;
     }
-    for (BodyRow& row : bodies_) row.peak.end_step(h);
+    for (Peak& peak : bodies_) peak.end_step(h);
     for (Peak& peak : colliders_) peak.end_step(h);
 }
 
@@ -172,12 +228,6 @@ void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> res
     measured_seconds_ += h;
     add_pairs(model, rested, scratch);
     add_reactions(model, rested, scratch);
-    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        if (model.bodies.kind[b] != BodyKind::deformable) continue;
-        BodyRow& row = bodies_[model.bodies.slot[b]];
-        if (row.unknown && rested[b]) row.unknown_seconds += h;
-        row.unknown &= model.bodies.asleep[b] != 0;
-    }
     for (const Index n : model.attachments.node)
         scratch.forces.held_velocity[static_cast<std::size_t>(n)] = model.nodes.velocity[static_cast<std::size_t>(n)];
 }
@@ -214,8 +264,8 @@ void ForceLedger::forget_attachment(std::uint32_t slot) {
     if (slot < attachments_.size()) attachments_[slot] = {};
 }
 
-const ForceLedger::BodyRow& ForceLedger::body(std::uint32_t slot) const {
-    static const BodyRow none;
+const ForceLedger::Peak& ForceLedger::body(std::uint32_t slot) const {
+    static const Peak none;
     return slot < bodies_.size() ? bodies_[slot] : none;
 }
 

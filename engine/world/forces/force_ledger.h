@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "components/resting_contact_table.h"
 #include "components/types.h"
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
@@ -55,18 +56,14 @@ public:
         Real still_seconds = 0;
         Peak peak{};
     };
-    struct BodyRow {
-        Peak peak{};
-        bool unknown = false;  // at rest since before forces were measured
-        Real unknown_seconds = 0;
-    };
 
     bool on() const { return on_; }
     const Vec3& moment_point() const { return moment_point_; }
     /// s, that the call has moved time on by.
     Real seconds() const { return seconds_; }
 
-    void start(const Model& model, const Vec3& moment_point);
+    /// What holds bodies that rest already is as it was when they came to rest.
+    void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
     /// Before the first step of a call, or after a call that took none. `held_velocity`: by node, of held nodes.
     void begin_call(const Model& model, StepScratch& scratch);
@@ -79,13 +76,15 @@ public:
     void forget_attachment(std::uint32_t slot);
 
     std::span<const PairRow> pairs() const { return pairs_; }
-    const BodyRow& body(std::uint32_t slot) const;
+    const Peak& body(std::uint32_t slot) const;
     const Peak& collider(std::uint32_t slot) const;
     const AttachmentRow& attachment(std::uint32_t slot) const;
 
 private:
     PairRow& pair(const PairKey& key);
     void fit(const Model& model);
+    void take_over_rest(const Model& model, const RestingContactTable& resting);
+    void take_over_reactions(const Model& model, std::span<const Vec3> contact_force);
     void add_pairs(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);
     void end_pair_step(const Model& model, std::span<const std::uint8_t> rested, Real h, PairRow& row);
     void add_to_partners(const PairKey& key, const Vec3& impulse, Index contacts);
@@ -97,8 +96,7 @@ private:
     Real measured_seconds_ = 0;   // s, since forces are measured
     std::vector<PairRow> pairs_;  // by key
     // by slot
-    std::vector<BodyRow> bodies_;
-    std::vector<Peak> colliders_;
+    std::vector<Peak> bodies_, colliders_;
     std::vector<AttachmentRow> attachments_;
 };
 

@@ -39,11 +39,6 @@ ForceReport pair_report(const ForceLedger& ledger, const PairKey& key, PairSide 
     return report_of(ledger, {});
 }
 
-Real unknown(const ForceLedger& ledger, const PairKey& key) {
-    const Real of_first = ledger.body(key.first).unknown_seconds;
-    return key.bodies ? std::max(of_first, ledger.body(key.second).unknown_seconds) : of_first;
-}
-
 }  // namespace
 
 Vec3 ForceReport::moment_about(const Vec3& point) const {
@@ -62,7 +57,7 @@ void World::measure_forces(bool on, const Vec3& moment_point) {
             .raise();
     state_->settle();
     if (on)
-        state_->record.forces.start(state_->model, moment_point);
+        state_->record.forces.start(state_->model, state_->cache.resting, moment_point);
     else
         state_->record.forces.stop();
 }
@@ -86,9 +81,7 @@ Forces World::forces() const {
 ForceReport Forces::on(BodyHandle body) const {
     (void)world_->model.row(body, "forces");
     const ForceLedger& ledger = world_->record.forces;
-    const ForceLedger::BodyRow& row = ledger.body(body.slot);
-    ForceReport report = report_of(ledger, row.peak);
-    report.unknown_seconds = row.unknown_seconds;
+    ForceReport report = report_of(ledger, ledger.body(body.slot));
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {
         const bool is_first = pair.key.first == body.slot;
         const bool is_second = pair.key.bodies && pair.key.second == body.slot;
@@ -105,10 +98,7 @@ ForceReport Forces::on(ColliderHandle collider) const {
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot));
     for (const ForceLedger::PairRow& pair : ledger.pairs())
-        if (!pair.key.bodies && pair.key.second == collider.slot) {
-            add(pair.sums, PairSide::second, report);
-            report.unknown_seconds = std::max(report.unknown_seconds, unknown(ledger, pair.key));
-        }
+        if (!pair.key.bodies && pair.key.second == collider.slot) add(pair.sums, PairSide::second, report);
     return report;
 }
 
@@ -118,7 +108,6 @@ ForceReport Forces::on(BodyHandle body, BodyHandle by) const {
     const bool is_first = body.slot <= by.slot;
     const PairKey key{true, is_first ? body.slot : by.slot, is_first ? by.slot : body.slot};
     ForceReport report = pair_report(world_->record.forces, key, is_first ? PairSide::first : PairSide::second);
-    report.unknown_seconds = unknown(world_->record.forces, key);
     if (body == by) {
         report.impulse = report.moment_impulse = report.friction_impulse = Vec3::Zero();
         report.largest_force = 0;
@@ -130,29 +119,23 @@ ForceReport Forces::on(BodyHandle body, ColliderHandle by) const {
     (void)world_->model.row(body, "forces");
     (void)world_->model.row(by, "forces");
     const PairKey key{false, body.slot, by.slot};
-    ForceReport report = pair_report(world_->record.forces, key, PairSide::first);
-    report.unknown_seconds = unknown(world_->record.forces, key);
-    return report;
+    return pair_report(world_->record.forces, key, PairSide::first);
 }
 
 ForceReport Forces::on(ColliderHandle collider, BodyHandle by) const {
     (void)world_->model.row(by, "forces");
     (void)world_->model.row(collider, "forces");
     const PairKey key{false, by.slot, collider.slot};
-    ForceReport report = pair_report(world_->record.forces, key, PairSide::second);
-    report.unknown_seconds = unknown(world_->record.forces, key);
-    return report;
+    return pair_report(world_->record.forces, key, PairSide::second);
 }
 
 ForceReport Forces::by(AttachmentHandle attachment) const {
-    const auto row = static_cast<std::size_t>(world_->model.row(attachment, "forces"));
+    (void)world_->model.row(attachment, "forces");
     const ForceLedger& ledger = world_->record.forces;
     const ForceLedger::AttachmentRow& sums = ledger.attachment(attachment.slot);
     ForceReport report = report_of(ledger, sums.peak);
     report.impulse = sums.sums.impulse;
     report.moment_impulse = sums.sums.moment;
-    const auto body = static_cast<std::size_t>(world_->model.attachments.body[row]);
-    report.unknown_seconds = ledger.body(world_->model.bodies.slot[body]).unknown_seconds;
     return report;
 }
 

@@ -15,6 +15,11 @@ void expect_ascending(const Hdf5File& file, const std::string& path, const auto&
         file.complain(path, "keys in disorder", "ascending keys");
 }
 
+/// In a step smaller numbers count as zero.
+void expect_step(const Hdf5File& file, const std::string& path, Real step) {
+    if (!(step >= std::numeric_limits<Real>::min())) file.complain(path, std::to_string(step), "a time > 0 (s)");
+}
+
 }  // namespace
 
 void check_clock(const Hdf5File& file, const Clock& clock) {
@@ -35,9 +40,7 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
         file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one, or none");
     if (!warm.key.empty() && warm.step.empty())
         file.complain("/warm_start/step", "nothing", "the step of the impulses");
-    for (const Real step : warm.step)  // in a step smaller numbers count as zero
-        if (!(step >= std::numeric_limits<Real>::min()))
-            file.complain("/warm_start/step", std::to_string(step), "a time > 0 (s)");
+    for (const Real step : warm.step) expect_step(file, "/warm_start/step", step);
     expect_ascending(file, "/warm_start/key", warm.key);
 
     PairTable& pairs = cache.pairs;
@@ -117,9 +120,10 @@ void check_candidates(const Hdf5File& file, const Model& model, const PairTable&
     }
 }
 
-void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts) {
+namespace {
+
+void check_rows(const Hdf5File& file, const Model& model, const std::string& group, ContactTable& contacts) {
     const std::size_t count = contacts.size();
-    const std::string group = "/last_step/contacts/";
     contacts.for_each_column(
         [&](const char* name, auto& column, ColumnRole) { expect_size(file, group + name, column.size(), count); });
     expect_rows_of(file, group + "first_body", contacts.first_body, model.bodies.slot.size());
@@ -129,6 +133,19 @@ void check_contacts(const Hdf5File& file, const Model& model, ContactTable& cont
         expect_rows_of(file, group + "stencil/node", stencil.node, model.nodes.position.size());
     for (const Index region : contacts.region)
         if (region < no_index) file.complain(group + "region", std::to_string(region), "a region, or -1");
+}
+
+}  // namespace
+
+void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts) {
+    check_rows(file, model, "/last_step/contacts/", contacts);
+}
+
+void check_resting_contacts(const Hdf5File& file, const Model& model, RestingContactTable& resting) {
+    check_rows(file, model, "/resting_contacts/", resting.contact);
+    expect_size(file, "/resting_contacts/step", resting.step.size(), resting.contact.size());
+    for (const Real step : resting.step) expect_step(file, "/resting_contacts/step", step);
+    expect_ascending(file, "/resting_contacts/key", resting.contact.key);
 }
 
 }  // namespace skerry

@@ -19,6 +19,7 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache);
 void check_candidates(const Hdf5File& file, const Model& model, const PairTable& pairs);
 /// Contacts of the last step.
 void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts);
+void check_resting_contacts(const Hdf5File& file, const Model& model, RestingContactTable& resting);
 void check_clock(const Hdf5File& file, const Clock& clock);
 
 /// Columns of one table, all as long as it.

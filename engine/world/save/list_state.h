@@ -85,6 +85,9 @@ void list_cache(ContactCache& cache, SavedRows& saved, auto&& archive) {
     cache.warm_start.for_each_column([&](const char* name, auto& column, ColumnRole) {
         archive.column(std::string("/warm_start/") + name, column);
     });
+    cache.resting.for_each_column([&](const char* name, auto& column, ColumnRole role) {
+        list_column(std::string("/resting_contacts/") + name, column, role, archive);
+    });
     cache.pairs.for_each_row_column([&](const char* name, auto& column, ColumnRole role) {
         list_column(std::string("/pairs/") + name, column, role, archive);
     });
@@ -106,6 +109,7 @@ void list_cache(ContactCache& cache, SavedRows& saved, auto&& archive) {
 
 void list_run(WorldState& world, SavedRows& saved, auto&& archive) {
     archive.value("/run/counters", world.record.counters);
+    archive.value("/run/resting_steps", world.record.resting_steps);
     archive.value("/run/balance", world.record.balance);
     archive.column("/run/limits/limit", saved.limit);
     archive.column("/run/limits/slot", saved.limit_slot);

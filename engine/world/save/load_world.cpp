@@ -146,6 +146,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     put_start(saved, file, world.record);
     world.scratch.contacts = saved.contacts;
     check_contacts(file, model, world.scratch.contacts);
+    check_resting_contacts(file, model, world.cache.resting);
 }
 
 void expect_hash(const Hdf5File& file, WorldState& world, Reader& reader) {

@@ -1,14 +1,17 @@
-// What is remembered of contacts from step to step: impulses to start from, close pairs and their candidates.
+// What is remembered of contacts from step to step: impulses to start from, contacts of what rests, close pairs and
+// their candidates.
 #pragma once
 
 #include "components/contact_table.h"
 #include "components/pair_table.h"
+#include "components/resting_contact_table.h"
 #include "engine/world/state/model.h"
 
 namespace skerry {
 
 struct ContactCache {
     WarmStartTable warm_start;
+    RestingContactTable resting;
     PairTable pairs;
     SearchState search;
     CrossingTable crossings;

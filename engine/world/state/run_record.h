@@ -24,6 +24,7 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
+    std::uint64_t resting_steps = 0;           // in which nothing moved, so that no stage ran
     std::vector<StartOverlap> start_overlaps;  // of the last look
     std::vector<StartMove> start_moves;
     StepLimits limits;
@@ -34,7 +35,9 @@ struct RunRecord {
     ForceLedger forces;
     std::function<void(const StepReport&)> step_watch;
     std::vector<Contact> contact_view;  // what contacts() shows
+    Column<Index> contact_rows;         // of merge_contacts: which contact each of them is
     bool contact_view_is_current = false;
+    bool balance_of_rest = false;  // the last look at the balance was since nothing moves
 };
 
 }  // namespace skerry

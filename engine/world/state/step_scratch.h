@@ -8,6 +8,7 @@
 #include "components/step_levels.h"
 #include "skerry/settings.h"
 #include "systems/collision/inputs/collision_inputs.h"
+#include "systems/contact/keep_resting_contacts.h"
 #include "systems/contact/measure_contacts.h"
 #include "systems/contact/separate_regions.h"
 #include "systems/contact/sum_contact_impulses.h"
@@ -97,6 +98,7 @@ struct StepScratch {
     RegionTable regions;
     Real awake_mass = 0;      // kg, at the start of the step
     bool ran_inline = false;  // on the calling thread alone
+    bool left_out = false;    // no stage ran, since nothing moves
 
     UnionFind union_find;
     SolverMemory solver_memory;
@@ -110,13 +112,13 @@ struct StepScratch {
     ImplicitCoupling coupling;         // of couple_implicit_bodies
     Column<Real> strain_parts;         // of strain_implicit_bodies
     Column<std::uint8_t> pressed;      // by body at rest, in this step
-    WarmStartTable warm_start_next;    // of store_warm_start
     Column<ExternalWork> work_parts;   // of measure_work
     InversionMemory inversions;        // of find_inversions
     Column<WatchPart> watch_parts;     // of watch_stable_steps
     Column<Real> longest_impulse;      // s, by body, of limit_impulses
     Column<Real> impulse_parts;        // of the same
     Column<Real> viscous_parts;        // of measure_viscosity
+    RestingMemory resting_memory;      // of keep_resting_contacts
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
     bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }

@@ -251,12 +251,12 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         world.record.balance.work += follow_stiffening(model);
         if (keep_watch(world)) {
             if (clock.offset == 0)
-                check_balance(model, lag_between_steps(world), world.record.balance);
+                look_at_balance(world);
             else
                 look_at_end = true;
         }
         const bool heard = call_back([&] {
-            show_contact_problem(model, world.scratch, start, world.record);
+            show_contact_problem(world, start);
             if (world.record.step_watch) world.record.step_watch(std::as_const(report));
             return true;
         });
@@ -271,7 +271,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     }
     world.query_trees.forget();
     if (left == 0) clock.time = end;
-    if (look_at_end) check_balance(model, lag_between_steps(world), world.record.balance);
+    if (look_at_end) look_at_balance(world);
     if (thrown) std::rethrow_exception(thrown);
     return report;
 }

@@ -6,6 +6,7 @@
 #include "systems/collision/find_candidates.h"
 #include "systems/collision/find_contacts.h"
 #include "systems/collision/find_crossings.h"
+#include "systems/contact/keep_resting_contacts.h"
 #include "systems/contact/match_warm_start.h"
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/limit_impulses.h"
@@ -93,7 +94,7 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
             make(w.cache.pairs), make(w.cache.crossings), make(c));
     const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.cache.warm_start),
-            value(p.h), write(c.impulse), if_warm);
+            read(w.cache.resting), value(p.h), write(c.impulse), if_warm);
     const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(m.any_asleep));
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
@@ -217,9 +218,11 @@ void list_commit(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
                         inputs<RestInputs>(a, b, n, r), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
                         outputs<RestOutputs>(b, n, r, w.model.implicit_nodes), if_taken, if_sleepy);
-    g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse),
-            inputs<IdlePairs>(w.cache.pairs), value(p.h), make(w.cache.warm_start), make(w.scratch.warm_start_next),
-            if_taken);
+    g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse), value(p.h),
+            make(w.cache.warm_start), if_taken);
+    g.stage("contact/keep_resting_contacts", keep_resting_contacts, read(c),
+            inputs<RestingInputs>(w.cache.pairs, b, w.model.colliders), value(p.h), make(w.scratch.resting_memory),
+            make(w.cache.resting), if_taken);
 }
 
 }  // namespace

@@ -77,6 +77,15 @@ void end_cycle(Model& model, const StepCycle& cycle);
 /// After a committed step: what its impulses covered. A step that was shortened ends the cycle.
 void count_impulses(const StepParameters& parameters, StepCycle& cycle, RunCounters& counters);
 
+// leave_out_step.cpp
+/// Whether the step that is planned would change nothing but time: all bodies rest, what follows scripts stands still,
+/// and the stages have seen so in a step before. Then colliders and held nodes have the motion of the step.
+bool nothing_moves(WorldState& world);
+/// For who sums up what contacts and attachments give: they gave nothing that was measured.
+void forget_forces_of_step(const Model& model, ForceScratch& forces);
+/// check_balance, but once while nothing moves.
+void look_at_balance(WorldState& world);
+
 // drift_state.cpp
 /// Lets positions, colliders and attachments drift until they are `offset` seconds ahead of the velocities.
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search);
@@ -103,6 +112,6 @@ struct KeptFrames {
 void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                      std::span<const Vec3> position, const KeptFrames& frames, KeptVelocities& kept);
 /// Hands over the contact problem of the step just taken, if somebody wants it.
-void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record);
+void show_contact_problem(const WorldState& world, Real time);
 
 }  // namespace skerry

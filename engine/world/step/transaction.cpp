@@ -51,19 +51,29 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     }
 }
 
-/// Runs the stages, which leave what they find in world.scratch. Returns false when it could tell without them that the
-/// step is not to be taken.
+/// Runs the stages, unless they have nothing to do; they leave what they find in world.scratch. Returns false when it
+/// could tell without them that the step is not to be taken.
 bool run_stages(WorldState& world) {
     StepScratch& scratch = world.scratch;
     Model& model = world.model;
     scratch.findings = {};
-    scratch.findings.verdict = check_distance(model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
-    if (scratch.findings.verdict.fault != StepFault::none) return false;
     scratch.awake_mass = model.note_rest();
+    scratch.left_out = nothing_moves(world);
+    if (!scratch.left_out) {
+        scratch.findings.verdict = check_distance(model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
+        if (scratch.findings.verdict.fault != StepFault::none) return false;
+    }
     scratch.pressed.clear();
     find_active_levels(world.clock.cycle, model.bodies, scratch.parameters);
     if (scratch.parameters.limits_impulses) copy(model.bodies.longest_impulse, scratch.longest_impulse);
     world.transaction.begin_try(model);
+    world.record.contact_view_is_current = false;
+    if (scratch.left_out) {
+        scratch.ran_inline = false;
+        if (scratch.parameters.forces_wanted) forget_forces_of_step(model, scratch.forces);
+        return true;
+    }
+    world.record.balance_of_rest = false;
     Trace* const trace = world.record.tracing ? &world.record.trace : nullptr;
     const bool small = model.elements.first.size() * element_lanes + scratch.contacts.size() < inline_work;
     if (small)
@@ -71,27 +81,35 @@ bool run_stages(WorldState& world) {
     else
         world.graph.run(*world.executor, trace);
     scratch.ran_inline = small;
-    world.record.contact_view_is_current = false;
     return true;
+}
+
+/// Elements remember what they found in this step.
+void keep_frames(WorldState& world) {
+    ElementBlockTable& elements = world.model.elements;
+    const ActiveLevels& levels = world.scratch.parameters.active;
+    if (levels.all() && !world.model.any_asleep) {
+        elements.rotation.swap(elements.rotation_next);
+        elements.viscous_strain.swap(elements.viscous_strain_next);
+        return;
+    }
+    ElementInputs active = world.model.elements_active(levels);
+    // A body that this step wakes has no frames of this step.
+    if (world.model.any_asleep) active.schedule.body_asleep = world.transaction.rested(world.model.bodies);
+    keep_memory(*world.executor, active, elements);
 }
 
 void commit(WorldState& world) {
     StepScratch& scratch = world.scratch;
-    ElementBlockTable& elements = world.model.elements;
     const StepParameters& parameters = scratch.parameters;
     world.cache.crossings.row.clear();
     if (world.record.forces.on()) world.record.forces.add_step(world.model, world.transaction.asleep_before(), scratch);
-    if (parameters.active.all() && !world.model.any_asleep) {
-        elements.rotation.swap(elements.rotation_next);
-        elements.viscous_strain.swap(elements.viscous_strain_next);
-    } else {
-        ElementInputs active = world.model.elements_active(parameters.active);
-        // A body that this step wakes has no frames of this step.
-        if (world.model.any_asleep) active.schedule.body_asleep = world.transaction.rested(world.model.bodies);
-        keep_memory(*world.executor, active, elements);
+    if (!scratch.left_out) {
+        keep_frames(world);
+        add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
-    add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     count_step(scratch, world.record.counters);
+    world.record.resting_steps += scratch.left_out;
     add_step(scratch, world.record.balance);
     count_impulses(parameters, world.clock.cycle, world.record.counters);
     if (parameters.limits_impulses) {

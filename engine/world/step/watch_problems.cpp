@@ -6,6 +6,7 @@
 
 #include "engine/problem/step_problem.h"
 #include "engine/world/step/step.h"
+#include "systems/contact/keep_resting_contacts.h"
 
 namespace skerry {
 
@@ -15,6 +16,17 @@ template <class T>
 void copy(std::span<const T> from, Column<T>& to) {
     to.resize(from.size());
     std::copy(from.begin(), from.end(), to.begin());
+}
+
+/// Contacts of the step stand among those of what rests.
+void say_places_among_all(const ContactTable& contacts, const RestingContactTable& resting, std::vector<Index>& place) {
+    if (resting.empty()) return;
+    Column<Index> rows;
+    merge_contacts(contacts, resting, rows);
+    std::vector<Index> place_of(contacts.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (rows[i] >= 0) place_of[static_cast<std::size_t>(rows[i])] = static_cast<Index>(i);
+    for (Index& row : place) row = place_of[static_cast<std::size_t>(row)];
 }
 
 }  // namespace
@@ -31,7 +43,10 @@ void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> veloc
     copy(frames.deforming_before, kept.deforming_before);
 }
 
-void show_contact_problem(const Model& model, const StepScratch& scratch, Real time, const RunRecord& record) {
+void show_contact_problem(const WorldState& world, Real time) {
+    const Model& model = world.model;
+    const StepScratch& scratch = world.scratch;
+    const RunRecord& record = world.record;
     if (!record.problem_watch.wants(record.counters.steps) || scratch.contacts.size() == 0) return;
     const ContactTable& c = scratch.contacts;
     const KeptVelocities& kept = scratch.kept_velocities;
@@ -46,6 +61,7 @@ void show_contact_problem(const Model& model, const StepScratch& scratch, Real t
     StepProblem problem = step_problem({inputs, kept.velocity_next, c.impulse, c.region}, scratch.parameters.solver,
                                        scratch.parameters.h);
     if (problem.problem.q.empty()) return;
+    say_places_among_all(c, world.cache.resting, problem.contact);
     problem.step = record.counters.steps;
     problem.time = time;
     problem.step_size = scratch.parameters.h;

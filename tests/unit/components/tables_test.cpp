@@ -10,6 +10,7 @@
 #include "components/node_block_table.h"
 #include "components/node_table.h"
 #include "components/region_table.h"
+#include "components/resting_contact_table.h"
 #include "components/surface_table.h"
 
 using namespace skerry;
@@ -18,8 +19,8 @@ using namespace skerry;
 // table's size says how many there are; a flag or two beside them (RegionTable) is less than one column more.
 TEMPLATE_TEST_CASE("the list of a table names every column of it once", "[unit]", NodeTable, ElementBlockTable,
                    BodyTable, BvhTable, MaterialTable, NodeBlockTable, ColliderTable, AttachmentTable, ContactTable,
-                   WarmStartTable, RegionTable, RegionHistoryTable, TriangleTable, EdgeTable, VertexTable,
-                   SurfaceTables) {
+                   WarmStartTable, RestingContactTable, RegionTable, RegionHistoryTable, TriangleTable, EdgeTable,
+                   VertexTable, SurfaceTables) {
     TestType table;
     std::set<const void*> columns;
     std::set<std::string> names;

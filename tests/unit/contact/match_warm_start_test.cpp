@@ -22,39 +22,44 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
     const std::vector<ContactKey> before{key(10), key(20), key(30), key(40)};
     const std::vector<Vec3> normal(4, Vec3::UnitZ());
     const std::vector<Vec3> impulse{{0, 0, 1}, {0, 0, 2}, {0, 1, 3}, {0, 0, 4}};
-    WarmStartTable last, next;
-    store_warm_start(before, normal, impulse, {}, 0.1, last, next);
+    WarmStartTable last;
+    store_warm_start(before, normal, impulse, 0.1, last);
 
     const std::vector<ContactKey> now{key(5), key(10), key(25), key(30), key(50)};  // 20 and 40 gone, 5, 25 and 50 new
     std::vector<Vec3> matched(5, Vec3::Ones());
-    CHECK(match_warm_start(*serial, now, std::vector<Vec3>(5, Vec3::UnitZ()), last, 0.1, matched));
+    CHECK(match_warm_start(*serial, now, std::vector<Vec3>(5, Vec3::UnitZ()), last, {}, 0.1, matched));
     CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 1, 3}, {0, 0, 0}});
 }
 
 TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]") {
-    WarmStartTable last, next;
+    WarmStartTable last;
     store_warm_start(std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()),
-                     std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}}, {}, 1, last, next);
+                     std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}}, 1, last);
     std::vector<Vec3> matched(3);
     match_warm_start(*serial, std::vector<ContactKey>{{1, 3}, {2, 3}, {2, 9}}, std::vector<Vec3>(3, Vec3::UnitX()),
-                     last, 1, matched);
+                     last, {}, 1, matched);
     CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 0, 0}});
 }
 
-TEST_CASE("impulses of idle pairs are kept in their places, for the new step", "[unit][contact]") {
-    WarmStartTable last, next;
+TEST_CASE("a contact that was not in the last step starts from what it came to rest with", "[unit][contact]") {
+    WarmStartTable last;
     const auto ups = [](std::size_t count) { return std::vector<Vec3>(count, Vec3::UnitZ()); };
-    store_warm_start(std::vector<ContactKey>{{1, 1}, {2, 1}, {2, 2}, {4, 1}}, ups(4),
-                     std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, {}, 1, last, next);
-    // pair 2 rests, 1 and 4 were looked for again: 1 has another contact, 4 has none, 5 is new
-    const std::vector<std::uint64_t> pair{1, 2, 3, 4, 5};
-    const std::vector<std::uint8_t> idle{0, 1, 1, 0, 0};
-    store_warm_start(std::vector<ContactKey>{{1, 7}, {5, 1}}, ups(2), std::vector<Vec3>{{5, 0, 0}, {6, 0, 0}},
-                     {pair, idle}, 0.5, last, next);
-    CHECK(std::vector(last.key.begin(), last.key.end()) == std::vector<ContactKey>{{1, 7}, {2, 1}, {2, 2}, {5, 1}});
-    CHECK(std::vector(last.impulse.begin(), last.impulse.end()) ==
-          std::vector<Vec3>{{5, 0, 0}, {1, 0, 0}, {1.5, 0, 0}, {6, 0, 0}});
-    CHECK(last.step[0] == 0.5);
+    store_warm_start(std::vector<ContactKey>{{1, 1}, {4, 1}}, ups(2), std::vector<Vec3>{{1, 0, 0}, {4, 0, 0}}, 1, last);
+    RestingContactTable resting;
+    resting.contact.resize(3);
+    const std::vector<ContactKey> rest{{1, 1}, {2, 1}, {2, 2}};  // the first has been looked for again since
+    for (std::size_t row = 0; row < rest.size(); ++row) {
+        resting.contact.key[row] = rest[row];
+        resting.contact.normal[row] = Vec3::UnitZ();
+        resting.contact.impulse[row] = Vec3(0, 0, 10 + static_cast<Real>(row));
+        resting.step.push_back(0.25 * static_cast<Real>(row + 1));
+    }
+    std::vector<Vec3> matched(4);
+    const std::vector<ContactKey> now{{1, 1}, {2, 1}, {2, 2}, {3, 1}};
+    CHECK(match_warm_start(*serial, now, ups(4), last, resting, 0.5, matched));
+    CHECK(matched == std::vector<Vec3>{{0.5, 0, 0}, {0, 0, 11}, {0, 0, 0.5 / 0.75 * 12}, {0, 0, 0}});
+    CHECK(match_warm_start(*serial, now, ups(4), {}, resting, 0.5, matched));
+    CHECK(matched[0] == Vec3(0, 0, 20));
 }
 
 TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[unit][contact]") {
@@ -66,10 +71,10 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
             (from + 0.5 * Vec3(normal_number(random), normal_number(random), normal_number(random))).normalized();
         if (from.dot(to) < -0.99) continue;
         const Vec3 impulse(normal_number(random), normal_number(random), normal_number(random));
-        WarmStartTable last, next;
-        store_warm_start(std::vector{key(1)}, std::vector{from}, std::vector{impulse}, {}, 0.2, last, next);
+        WarmStartTable last;
+        store_warm_start(std::vector{key(1)}, std::vector{from}, std::vector{impulse}, 0.2, last);
         std::vector<Vec3> matched(1);
-        match_warm_start(*serial, std::vector{key(1)}, std::vector{to}, last, 0.1, matched);
+        match_warm_start(*serial, std::vector{key(1)}, std::vector{to}, last, {}, 0.1, matched);
         const Vec3 expected = 0.5 * (Eigen::AngleAxisd(std::acos(from.dot(to)), from.cross(to).normalized()) * impulse);
         REQUIRE((matched[0] - expected).norm() < 1e-7 * impulse.norm());  // acos loses half the digits near 0
         REQUIRE(matched[0].dot(to) == Approx(0.5 * impulse.dot(from)).margin(1e-14));
@@ -77,20 +82,19 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
 }
 
 TEST_CASE("a normal that flipped carries nothing over", "[unit][contact]") {
-    WarmStartTable last, next;
-    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, {}, 1,
-                     last, next);
+    WarmStartTable last;
+    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, 1, last);
     std::vector<Vec3> matched(1, Vec3::Ones());
-    match_warm_start(*serial, std::vector{key(1)}, std::vector<Vec3>{-Vec3::UnitZ()}, last, 1, matched);
+    match_warm_start(*serial, std::vector{key(1)}, std::vector<Vec3>{-Vec3::UnitZ()}, last, {}, 1, matched);
     CHECK(matched[0] == Vec3::Zero());
 }
 
 TEST_CASE("without a last step all impulses start at zero and the stage is skipped", "[unit][contact]") {
     std::vector<Vec3> matched(2, Vec3::Ones());
-    CHECK_FALSE(
-        match_warm_start(*serial, std::vector{key(1), key(2)}, std::vector<Vec3>(2, Vec3::UnitZ()), {}, 1, matched));
+    CHECK_FALSE(match_warm_start(*serial, std::vector{key(1), key(2)}, std::vector<Vec3>(2, Vec3::UnitZ()), {}, {}, 1,
+                                 matched));
     CHECK(matched == std::vector<Vec3>(2, Vec3::Zero()));
-    CHECK_FALSE(match_warm_start(*serial, {}, {}, {}, 1, {}));
+    CHECK_FALSE(match_warm_start(*serial, {}, {}, {}, {}, 1, {}));
 }
 
 TEST_CASE("matching many contacts gives the same on any number of workers", "[unit][contact][determinism]") {
@@ -101,12 +105,12 @@ TEST_CASE("matching many contacts gives the same on any number of workers", "[un
     }
     std::vector<Vec3> impulse(before.size());
     for (std::size_t i = 0; i < before.size(); ++i) impulse[i] = Vec3(0, 0, static_cast<Real>(before[i].feature));
-    WarmStartTable last, next;
-    store_warm_start(before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse, {}, 1, last, next);
+    WarmStartTable last;
+    store_warm_start(before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse, 1, last);
     for (const int workers : {1, 2, 3, 8}) {
         std::vector<Vec3> matched(now.size());
         const auto executor = make_executor(Backend::threads, workers);
-        match_warm_start(*executor, now, std::vector<Vec3>(now.size(), Vec3::UnitZ()), last, 1, matched);
+        match_warm_start(*executor, now, std::vector<Vec3>(now.size(), Vec3::UnitZ()), last, {}, 1, matched);
         for (std::size_t i = 0; i < now.size(); ++i)
             REQUIRE(matched[i].z() == (now[i].feature % 3 == 0 ? 0 : static_cast<Real>(now[i].feature)));
     }

@@ -1,0 +1,59 @@
+// Steps in which all bodies rest and nothing moves: no stage would change anything (docs/methods/skipping.md 3.2).
+#include <algorithm>
+
+#include "engine/world/step/step.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+bool all_bodies_rest(const BodyTable& bodies) {
+    for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
+        if (bodies.kind[b] == BodyKind::deformable && !bodies.asleep[b]) return false;
+        if (bodies.max_speed[b] != 0) return false;  // the stages have yet to see that it rests
+    }
+    return true;
+}
+
+/// Sets the motion of this step, and says whether there is none.
+bool all_stand_still(auto& table, Real time, Real h) {
+    move_colliders(ColliderMotionInputs::bind({}, table), time, h, table.motion);
+    return std::ranges::all_of(table.motion, [](const RigidMotion& motion) { return motion.stands_still(); });
+}
+
+/// Bodies whose shape was kept while they moved are looked at for their stable step, though they rest now.
+bool looks_are_due(const StepWatch& watch) {
+    for (Index b = watch.body; b < watch.kept; ++b)
+        if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_looked_at) return true;
+    return false;
+}
+
+}  // namespace
+
+bool nothing_moves(WorldState& world) {
+    Model& model = world.model;
+    const StepScratch& scratch = world.scratch;
+    const Real time = world.clock.time, h = scratch.parameters.h;
+    if (!model.any_asleep || !model.settings.contact_budgets || !all_bodies_rest(model.bodies)) return false;
+    if (scratch.contacts.size() > 0 || scratch.regions.size() > 0 || scratch.regions.pushed) return false;
+    if (!world.cache.crossings.row.empty() || looks_are_due(model.watch)) return false;
+    if (!all_stand_still(model.colliders, time, h) || !all_stand_still(model.attachments, time, h)) return false;
+    drive_nodes(NodeMotionInputs::bind({}, model.attachments), h, model.nodes.position, model.nodes.velocity);
+    return true;
+}
+
+void forget_forces_of_step(const Model& model, ForceScratch& forces) {
+    forces.pairs.clear();
+    forces.reactions.assign(model.attachments.slot.size(), {});
+}
+
+void look_at_balance(WorldState& world) {
+    Balance& balance = world.record.balance;
+    // energies are those of the last look, which was of this same state
+    if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;
+    check_balance(world.model, lag_between_steps(world), balance);
+    world.record.balance_of_rest = world.scratch.left_out;
+}
+
+}  // namespace skerry

@@ -1,0 +1,143 @@
+#include "systems/contact/keep_resting_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+#include "components/check.h"
+
+namespace skerry {
+namespace {
+
+class RestingPairs {
+public:
+    explicit RestingPairs(const RestingInputs& inputs) : inputs_(inputs) {}
+
+    bool any_body() const { return std::ranges::find(inputs_.asleep, 1) != inputs_.asleep.end(); }
+
+    /// Whether no side of a contact moves after this step.
+    bool rests(const ContactTable& contacts, std::size_t c) const {
+        return body_rests(contacts.first_body[c]) && body_rests(contacts.second_body[c]) &&
+               stands_still(contacts.collider[c]);
+    }
+
+    /// Calls `take` with the range of rows of each pair, and whether this step passed it over. Both are in key order.
+    void for_each_kept(const RestingContactTable& kept, auto&& take) const {
+        const std::span<const ContactKey> key = kept.contact.key.span();
+        std::size_t p = 0;
+        for (std::size_t begin = 0; begin < key.size();) {
+            const std::uint64_t pair = key[begin].pair;
+            while (p < inputs_.pair.size() && inputs_.pair[p] < pair) ++p;
+            const auto end = static_cast<std::size_t>(
+                std::upper_bound(key.begin() + static_cast<std::ptrdiff_t>(begin), key.end(), pair,
+                                 [](std::uint64_t of, const ContactKey& row) { return of < row.pair; }) -
+                key.begin());
+            take(begin, end, p < inputs_.pair.size() && inputs_.pair[p] == pair && inputs_.idle[p] != 0);
+            begin = end;
+        }
+    }
+
+private:
+    bool stands_still(Index collider) const {
+        return collider == no_index || inputs_.motion[static_cast<std::size_t>(collider)].stands_still();
+    }
+    bool body_rests(Index body) const {
+        if (body == no_index) return true;
+        const auto b = static_cast<std::size_t>(body);
+        return inputs_.kind[b] == BodyKind::kinematic ? stands_still(inputs_.collider_of_body[b])
+                                                      : inputs_.asleep[b] != 0;
+    }
+
+    const RestingInputs& inputs_;
+};
+
+/// Calls `visit` with the columns of three tables side by side; those of the first may be written.
+void for_each_column_of(ContactTable& a, const ContactTable& b, const ContactTable& c, auto&& visit) {
+    constexpr std::size_t most = 32;
+    using Places = std::array<const void*, most>;
+    const auto places_of = [](const ContactTable& table) {
+        Places places{};
+        std::size_t count = 0;
+        // its list of columns is for those who may write them; here only their places are taken
+        const_cast<ContactTable&>(table).for_each_column(
+            [&](const char*, auto& column, ColumnRole) { places.at(count++) = &column; });
+        return places;
+    };
+    const Places second = places_of(b), third = places_of(c);
+    std::size_t at = 0;
+    a.for_each_column([&](const char*, auto& column, ColumnRole) {
+        using Same = std::remove_reference_t<decltype(column)>;
+        visit(column, *static_cast<const Same*>(second[at]), *static_cast<const Same*>(third[at]));
+        ++at;
+    });
+}
+
+/// Where each row of the new table comes from.
+void list_sources(const ContactTable& contacts, const RestingPairs& pairs, const RestingContactTable& kept,
+                  Column<Index>& source) {
+    source.clear();
+    std::size_t c = 0;
+    const auto take_new = [&](std::size_t end) {
+        for (; c < end; ++c)
+            if (pairs.rests(contacts, c)) source.push_back(~static_cast<Index>(c));
+    };
+    const std::span<const ContactKey> key = contacts.key.span();
+    pairs.for_each_kept(kept, [&](std::size_t begin, std::size_t end, bool stays) {
+        if (!stays) return;
+        const ContactKey first{kept.contact.key[begin].pair, 0};
+        take_new(static_cast<std::size_t>(
+            std::lower_bound(key.begin() + static_cast<std::ptrdiff_t>(c), key.end(), first) - key.begin()));
+        for (std::size_t row = begin; row < end; ++row) source.push_back(static_cast<Index>(row));
+    });
+    take_new(key.size());
+}
+
+}  // namespace
+
+bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real h, RestingMemory& memory,
+                           RestingContactTable& kept) {
+    SKERRY_CHECK(inputs.idle.size() == inputs.pair.size());
+    const RestingPairs pairs(inputs);
+    const bool any_rests = pairs.any_body();
+    if (!any_rests && kept.empty()) return false;
+    bool changes = false;
+    for (std::size_t c = 0; any_rests && c < contacts.size() && !changes; ++c) changes = pairs.rests(contacts, c);
+    if (!changes) pairs.for_each_kept(kept, [&](std::size_t, std::size_t, bool stays) { changes |= !stays; });
+    if (!changes) return false;
+
+    list_sources(contacts, pairs, kept, memory.source);
+    const std::span<const Index> source = memory.source;
+    const auto gather = [source](auto& to, auto&& of_kept, auto&& of_step) {
+        to.resize(source.size());
+        for (std::size_t row = 0; row < source.size(); ++row)
+            to[row] = source[row] < 0 ? of_step(static_cast<std::size_t>(~source[row]))
+                                      : of_kept(static_cast<std::size_t>(source[row]));
+    };
+    RestingContactTable& next = memory.next;
+    for_each_column_of(next.contact, kept.contact, contacts, [&](auto& to, const auto& old, const auto& now) {
+        gather(
+            to, [&](std::size_t row) -> const auto& { return old[row]; },
+            [&](std::size_t row) -> const auto& { return now[row]; });
+    });
+    std::ranges::fill(next.contact.region, no_index);
+    gather(
+        next.step, [&](std::size_t row) { return kept.step[row]; }, [h](std::size_t) { return h; });
+    std::swap(kept, next);
+    return true;
+}
+
+void merge_contacts(const ContactTable& contacts, const RestingContactTable& kept, Column<Index>& rows) {
+    rows.clear();
+    std::size_t row = 0;
+    const auto take_resting = [&](auto&& is_before) {
+        for (; row < kept.size() && is_before(kept.contact.key[row]); ++row) rows.push_back(~static_cast<Index>(row));
+    };
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+        take_resting([&](const ContactKey& key) { return key < contacts.key[c]; });
+        if (row < kept.size() && kept.contact.key[row] == contacts.key[c]) ++row;
+        rows.push_back(static_cast<Index>(c));
+    }
+    take_resting([](const ContactKey&) { return true; });
+}
+
+}  // namespace skerry
