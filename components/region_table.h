@@ -26,6 +26,7 @@ enum RegionShortcut : std::uint8_t {
 /// One row per region, numbered by its first contact.
 struct RegionTable {
     Ragged<Index> contacts;    // rows of ContactTable, ascending
+    Ragged<Index> joints;      // rows of JointBlockTable, ascending; no rows where there is no joint
     Column<ContactKey> id;     // key of its first contact: a region that keeps it is the same region in the next step
     Column<Index> iterations;  // sweeps; 0 when the warm start already solves it
     Column<Real> error;        // e_nat, docs/methods/errors.md 2
@@ -41,9 +42,14 @@ struct RegionTable {
     bool pushed = false;  // some region wrote NodeTable::push_out
 
     std::size_t size() const { return contacts.size(); }
+    std::span<const Index> joints_of(std::size_t region) const {
+        return joints.size() == 0 ? std::span<const Index>() : joints[region];
+    }
     void for_each_column(auto&& visit) {
         visit("contacts.offset", contacts.offset, ColumnRole::scratch);
         visit("contacts.item", contacts.item, ColumnRole::scratch);
+        visit("joints.offset", joints.offset, ColumnRole::scratch);
+        visit("joints.item", joints.item, ColumnRole::scratch);
         visit("id", id, ColumnRole::scratch);
         visit("iterations", iterations, ColumnRole::scratch);
         visit("error", error, ColumnRole::scratch);

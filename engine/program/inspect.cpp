@@ -388,6 +388,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"seconds", scene.seconds},
                            {"bodies", report.bodies},
                            {"colliders", report.colliders},
+                           {"joints", plan.joints.size()},
                            {"nodes", report.nodes},
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
@@ -410,7 +411,8 @@ int inspect_scene(const InspectOptions& options) {
     }
     std::cout << scene.name << ": " << scene.description << "\n"
               << "  bodies        " << grouped(report.bodies) << ", " << grouped(report.nodes) << " nodes, "
-              << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders\n"
+              << grouped(report.elements) << " tetrahedra, " << grouped(report.colliders) << " colliders"
+              << (plan.joints.empty() ? "" : ", " + grouped(plan.joints.size()) + " joints") << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body sets one" : report.stable_step_body) << "), "

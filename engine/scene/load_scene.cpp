@@ -85,6 +85,12 @@ Scene build_scene(const ScenePlan& plan) {
     for (const ColliderPlan& collider : plan.colliders)
         colliders.push_back(
             called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); }));
+    for (const JointPlan& joint : plan.joints) {
+        JointSettings settings = joint.settings;
+        settings.first = bodies[joint.first];
+        if (joint.second) settings.second = bodies[*joint.second];
+        called_at(joint.place, [&] { return Joints(world).add(settings); });
+    }
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)

@@ -172,6 +172,33 @@ ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number) {
     return collider;
 }
 
+std::size_t find_joined_body(const ScenePlan& plan, const std::string& wanted, const Place& place) {
+    std::vector<std::string> names;
+    for (const BodyPlan& body : plan.bodies) names.push_back(body.settings.name);
+    const auto found = std::find(names.begin(), names.end(), wanted);
+    if (found == names.end()) place.refuse(in_quotes(wanted), "the name of a body", nearest_hint(wanted, names));
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+JointPlan plan_joint(const JointEntry& entry, const ScenePlan& plan) {
+    JointPlan joint;
+    joint.first = find_joined_body(plan, entry.first, entry.place.key("first"));
+    if (entry.second) joint.second = find_joined_body(plan, *entry.second, entry.place.key("second"));
+    joint.settings.kind = entry.kind;
+    joint.settings.point = entry.point;
+    joint.settings.axis = entry.axis;
+    joint.settings.lower = entry.lower;
+    joint.settings.upper = entry.upper;
+    joint.settings.bodies_touch = entry.bodies_touch;
+    if (entry.motor) {
+        joint.settings.motor = JointMotor{
+            .speed = entry.motor->speed, .position = entry.motor->position, .strength = entry.motor->strength};
+        if (entry.motor->fastest) joint.settings.motor->fastest = *entry.motor->fastest;
+    }
+    joint.place = entry.place;
+    return joint;
+}
+
 void apply(const SceneOverrides& overrides, Settings& settings) {
     if (overrides.threads) settings.threads = *overrides.threads;
     if (overrides.backend) settings.backend = *overrides.backend;
@@ -205,6 +232,7 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i));
+    for (const JointEntry& joint : scene.joints) plan.joints.push_back(plan_joint(joint, plan));
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;
 }

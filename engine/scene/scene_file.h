@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/scene/values.h"
+#include "skerry/joint.h"
 #include "skerry/settings.h"
 
 namespace skerry {
@@ -115,6 +116,21 @@ struct ColliderEntry {
                   collision_mask = ColliderSettings{}.collision_mask;
     Place place;
 };
+struct MotorEntry {
+    std::optional<Real> speed, position;
+    Real strength = 0;
+    std::optional<Real> fastest;
+};
+struct JointEntry {
+    JointKind kind = JointKind::ball;
+    std::string first;
+    std::optional<std::string> second;
+    Vec3 point = JointSettings{}.point, axis = JointSettings{}.axis;
+    std::optional<Real> lower, upper;
+    std::optional<MotorEntry> motor;
+    bool bodies_touch = JointSettings{}.bodies_touch;
+    Place place;
+};
 /// contacts: of a part of a body, what sticks and slides, in the report; all others are series of numbers in a file.
 enum class ProbeQuantity { contacts, motion, force, reaction, energy, stress, volume };
 template <>
@@ -150,6 +166,7 @@ struct SceneFile {
     Named<MaterialSettings> materials;
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
+    std::vector<JointEntry> joints;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

@@ -31,6 +31,12 @@ struct ColliderPlan {
     ColliderSettings settings;
     Place place;
 };
+struct JointPlan {
+    std::size_t first = 0;                // of ScenePlan::bodies
+    std::optional<std::size_t> second{};  // of ScenePlan::bodies
+    JointSettings settings;               // handles of bodies come when it is built
+    Place place;
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // of ScenePlan::bodies
@@ -57,6 +63,7 @@ struct ScenePlan {
     std::vector<Mesh> meshes;  // one for each entry of "bodies": copies share it
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
+    std::vector<JointPlan> joints;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // s

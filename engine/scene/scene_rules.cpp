@@ -252,8 +252,9 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("name", &SceneFile::name, {.meaning = "of the scene; by default that of the file"})
             .key("description", &SceneFile::description, {.meaning = "what it shows"})
             .key("include", &SceneFile::include,
-                 {.meaning = "scene files that come first; their bodies, colliders and materials are added, single "
-                             "values are replaced by those here"})
+                 {.meaning =
+                      "scene files that come first; their bodies, colliders, joints and materials are added, single "
+                      "values are replaced by those here"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "length of a run; 2 by default", .unit = "s", .limits = above(0)})
             .key("frame_step", &SceneFile::frame_step,
@@ -262,6 +263,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
             .key("materials", &SceneFile::materials, {.meaning = "materials by name"})
             .key("bodies", &SceneFile::bodies, {.meaning = "deformable bodies"})
             .key("colliders", &SceneFile::colliders, {.meaning = "rigid shapes"})
+            .key("joints", &SceneFile::joints, {.meaning = "what joins rigid bodies"})
             .key("probes", &SceneFile::probes,
                  {.meaning = "what is recorded: contacts for the report, series of numbers for --probes"})
             .key("probe_step", &SceneFile::probe_step,

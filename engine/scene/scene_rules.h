@@ -48,6 +48,10 @@ const Rule<ShapeEntry>& rule_of<ShapeEntry>();
 template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>();
 template <>
+const Rule<MotorEntry>& rule_of<MotorEntry>();
+template <>
+const Rule<JointEntry>& rule_of<JointEntry>();
+template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();
 template <>
 const Rule<MaterialSettings>& rule_of<MaterialSettings>();

@@ -18,6 +18,7 @@ std::string name_of_column(void* world, const void* place) {
     look_in("resting", w.cache.resting);
     look_in("resting_next", w.scratch.resting_memory.next);
     look_in("contacts", w.scratch.contacts);
+    look_in("joint_blocks", w.scratch.joints);
     look_in("regions", w.scratch.regions);
     if (!found.empty()) return found;
     const auto offset = static_cast<const std::byte*>(place) - static_cast<const std::byte*>(world);

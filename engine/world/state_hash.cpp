@@ -135,6 +135,12 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
     add_script(hash, table.script[a], table.keyframe);
 }
 
+void add_joint(Hash& hash, Model& model, std::size_t j) {
+    add_state(hash, model.joints, single(j));
+    hash.add(slot_of(model.bodies.slot, model.joints.first[j]));
+    hash.add(slot_of(model.bodies.slot, model.joints.second[j]));
+}
+
 void add_collider(Hash& hash, Model& model, std::size_t c) {
     ColliderTable& table = model.colliders;
     add_row_state(hash, table, c);
@@ -213,6 +219,7 @@ std::uint64_t state_hash(WorldState& world) {
         if (model.bodies.kind[b] == BodyKind::deformable) hash.add(body_hash(model, b));
     for (std::size_t c : in_slot_order(model.colliders.slot)) add_collider(hash, model, c);
     for (std::size_t a : in_slot_order(model.attachments.slot)) add_attachment(hash, model, a);
+    for (std::size_t j : in_slot_order(model.joints.slot)) add_joint(hash, model, j);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     WarmStartTable& warm_start = world.cache.warm_start;
     warm_start.for_each_column([&](const char*, const auto& column, ColumnRole) { add_rows(hash, column.span()); });

@@ -11,6 +11,7 @@
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
+#include "engine/world/edit/joints.h"
 #include "engine/world/edit/material_row.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"
@@ -275,6 +276,7 @@ void World::remove(BodyHandle body) {
         model.attachment_map.forget(model.attachment_map.handle_of_slot(slot));
     }
     enable_pairs_of(body, model.disabled_pairs);
+    erase_joints_of(static_cast<std::size_t>(row), model);
     model.body_map.forget(body);
     OpenEdits& edits = state_->edits;
     edits.places.add_body(model, static_cast<std::size_t>(row));

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "components/body_table.h"
+#include "components/joint_table.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
@@ -39,17 +40,20 @@ struct RigidNodes {
     }
 };
 
-/// All of them; no node is of both kinds.
+/// All of them, and what joints join; no node is of both kinds.
 struct NodeGroups {
     const NodeClusters* clusters = nullptr;  // null: none
     RigidNodes rigid{};
+    std::span<const JointBlock> joints{};
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
-                           const BodyTable& body, const RigidBodyTable& rigid) {
-        return {.clusters = &binder.value(clusters), .rigid = RigidNodes::bind(binder, node, body, rigid)};
+                           const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints) {
+        return {.clusters = &binder.value(clusters),
+                .rigid = RigidNodes::bind(binder, node, body, rigid),
+                .joints = binder.read(joints.block)};
     }
 
-    bool empty() const { return (clusters == nullptr || clusters->empty()) && !rigid.any(); }
+    bool empty() const { return (clusters == nullptr || clusters->empty()) && !rigid.any() && joints.empty(); }
     /// The first node of the group that a node belongs to, or itself.
     Index leader(Index node) const { return rigid.leader(clusters == nullptr ? node : clusters->leader(node)); }
 };

@@ -29,8 +29,11 @@ Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Le
 /// Numbers the regions by their first contact.
 template <class Leader>
 Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const Leader& leader,
-                          UnionFind& sets, std::span<Index> contact_region) {
+                          std::span<const JointBlock> joints, UnionFind& sets, std::span<Index> contact_region) {
     sets.start(inverse_mass.size());
+    for (const JointBlock& joint : joints)
+        if (joint.first_node != no_index && joint.second_node != no_index)
+            sets.join(joint.first_node, joint.second_node);
     constexpr std::size_t ahead = 12;  // contacts: by then their nodes have come from the memory
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
@@ -61,19 +64,40 @@ Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> i
     return any ? 1 : 0;
 }
 
-/// Counting sort of the contacts by region: stable, so a region holds its contacts in contact order.
-void collect_contacts(std::span<const Index> contact_region, Index region_count, RegionTable& regions) {
-    Column<Index>& offset = regions.contacts.offset;
+/// Counting sort of `count` contacts or joints by region: stable, so a region holds its contacts in contact order.
+template <class RegionOf>
+void collect(std::size_t count, const RegionOf& region_of, Index region_count, Ragged<Index>& list) {
+    Column<Index>& offset = list.offset;
     offset.assign(static_cast<std::size_t>(region_count) + 1, 0);
-    for (const Index region : contact_region)
-        if (region != no_index) ++offset[region + 1];
+    for (std::size_t i = 0; i < count; ++i)
+        if (region_of(i) != no_index) ++offset[region_of(i) + 1];
     for (Index r = 0; r < region_count; ++r) offset[r + 1] += offset[r];
-    regions.contacts.item.resize(static_cast<std::size_t>(offset[region_count]));
-    for (std::size_t i = 0; i < contact_region.size(); ++i)
-        if (contact_region[i] != no_index) regions.contacts.item[offset[contact_region[i]]++] = static_cast<Index>(i);
+    list.item.resize(static_cast<std::size_t>(offset[region_count]));
+    for (std::size_t i = 0; i < count; ++i)
+        if (region_of(i) != no_index) list.item[offset[region_of(i)]++] = static_cast<Index>(i);
     // the fill has moved each offset to the start of the next region: move them back
     for (Index r = region_count; r > 0; --r) offset[r] = offset[r - 1];
     offset[0] = 0;
+}
+
+void collect_contacts(std::span<const Index> contact_region, Index region_count, RegionTable& regions) {
+    collect(
+        contact_region.size(), [&](std::size_t i) { return contact_region[i]; }, region_count, regions.contacts);
+}
+
+/// With regions of their own where no contact touches what they join. Returns how many regions there are.
+Index collect_joints(std::span<const JointBlock> joints, bool all_as_one, UnionFind& sets, Index region_count,
+                     Ragged<Index>& list) {
+    list.clear();
+    if (joints.empty()) return region_count;
+    const auto region_of = [&](std::size_t i) {
+        const JointBlock& joint = joints[i];
+        return all_as_one ? 0 : sets.number(joint.first_node == no_index ? joint.second_node : joint.first_node);
+    };
+    Index count = all_as_one ? 1 : region_count;
+    for (std::size_t i = 0; i < joints.size(); ++i) count = std::max(count, region_of(i) + 1);
+    collect(joints.size(), region_of, count, list);
+    return count;
 }
 
 void resize_results(Index region_count, RegionTable& regions) {
@@ -94,8 +118,9 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
                       ContactRegions mode, UnionFind& memory, RegionTable& regions, std::span<Index> contact_region) {
     SKERRY_CHECK(contact_region.size() == stencil.size());
     regions.independent = true;
-    if (stencil.empty()) {
+    if (stencil.empty() && groups.joints.empty()) {
         regions.contacts.clear();
+        regions.joints.clear();
         resize_results(0, regions);
         return false;
     }
@@ -104,10 +129,10 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
         case ContactRegions::separate:
             region_count = groups.empty()
                                ? label_by_union_find(
-                                     stencil, inverse_mass, [](Index node) { return node; }, memory, contact_region)
+                                     stencil, inverse_mass, [](Index node) { return node; }, {}, memory, contact_region)
                                : label_by_union_find(
-                                     stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, memory,
-                                     contact_region);
+                                     stencil, inverse_mass, [&](Index node) { return groups.leader(node); },
+                                     groups.joints, memory, contact_region);
             break;
         case ContactRegions::global:
             region_count = label_all_as_one(stencil, inverse_mass, contact_region);
@@ -116,6 +141,7 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
             region_count = label_by_algorithm_1(stencil, inverse_mass, contact_region);
             break;
     }
+    region_count = collect_joints(groups.joints, mode == ContactRegions::global, memory, region_count, regions.joints);
     collect_contacts(contact_region, region_count, regions);
     resize_results(region_count, regions);
     if (mode == ContactRegions::paper_algorithm_1)  // which looks at nodes alone: regions may share groups of them

@@ -11,10 +11,12 @@
 namespace skerry {
 
 /// Fills `regions.contacts` and `contact_region`. Two contacts are in one region if a chain of shared moving nodes
-/// (inverse mass > 0) joins them; nodes of one of the `groups` count as shared. Regions are numbered by their first
-/// contact and hold their contacts in contact order; contacts without a moving node belong to none. `mode` global puts
-/// all into one region; paper_algorithm_1 follows the paper to the letter, with its error (docs/methods/regions.md 2:
-/// areas that share a node stay apart) and without groups. Returns false when there are no contacts (skipped).
+/// (inverse mass > 0) joins them; nodes of one of the `groups` count as shared. Bodies that a joint of the groups
+/// joins do, too. Regions are numbered by their first contact, those of joints alone by their first joint behind them,
+/// and hold contacts and joints in order; contacts without a moving node belong to none. `mode` global puts all into
+/// one region; paper_algorithm_1 follows the paper to the letter, with its error (docs/methods/regions.md 2: areas that
+/// share a node stay apart) and without groups or joints. Returns false when there are no contacts and no joints
+/// (skipped).
 bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
                       ContactRegions mode, UnionFind& memory, RegionTable& regions, std::span<Index> contact_region);
 

@@ -24,8 +24,16 @@ constexpr Real caution = 1.2;     // times the average
 constexpr Real fewest_sweeps = 4;
 constexpr Real first_sweeps = 8, sweeps_of_size = 2;  // of regions not seen before; the second by root of the contacts
 
+/// Contacts, and blocks of joints.
 Index contact_count(const RegionTable& regions, Index region) {
-    return regions.contacts.offset[region + 1] - regions.contacts.offset[region];
+    return regions.contacts.offset[region + 1] - regions.contacts.offset[region] +
+           static_cast<Index>(regions.joints_of(static_cast<std::size_t>(region)).size());
+}
+
+/// Of a region of joints alone: behind all others.
+ContactKey id_of_joint(Index block) {
+    constexpr std::uint64_t last = ~std::uint64_t{0};
+    return {last, static_cast<std::uint64_t>(block)};
 }
 
 bool fits_lanes(Index contacts) {
@@ -75,7 +83,8 @@ void recall_regions(std::span<const ContactKey> key, RegionMemory& memory, Regio
         present.age[r] = 0;
         if (key.empty()) continue;
         // contacts are in key order and regions in that of their first contacts: both lists ascend
-        const ContactKey id = key[regions.contacts[r][0]];
+        const ContactKey id =
+            regions.contacts[r].empty() ? id_of_joint(regions.joints[r][0]) : key[regions.contacts[r][0]];
         regions.id[r] = present.id[r] = id;
         while (old < history.size() && history.id[old] < id) ++old;
         if (old == history.size() || history.id[old] != id) continue;

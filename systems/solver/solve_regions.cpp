@@ -20,7 +20,8 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
         const std::span<const Index> row = regions.contacts[number];
         if (is_large(stage, regions, number)) continue;
         if (touches_rigid(stage.memory, number)) {
-            write_outcome(solve_freedom(stage, row, number, regions.contacts.offset[number]), number, regions);
+            const std::span<const Index> joints = regions.joints_of(static_cast<std::size_t>(number));
+            write_outcome(solve_freedom(stage, row, joints, number, regions.contacts.offset[number]), number, regions);
             continue;
         }
         if (touches_cluster(stage.memory, number)) {
@@ -93,11 +94,12 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
         return false;
     }
     const std::size_t region_nodes = find_region_blocks(contacts, regions, data);
-    data.make_room_for(regions.contacts.item.size(), region_nodes, contacts.inverse_mass.size(), settings);
+    data.make_room_for(data.rows, region_nodes, contacts.inverse_mass.size(), settings);
     if (contacts.rigid.any()) {
-        data.make_room_for_rigid(regions.contacts.item.size(), region_nodes, settings.method);
+        data.make_room_for_rigid(data.rows, region_nodes, settings.method);
         data.newton.make_room(static_cast<std::size_t>(executor.worker_count()));
     }
+    make_room(data.joint_law, data.rows - data.contact_rows);
     schedule_regions(settings, executor.worker_count(), data, regions);
     solve_tasks(executor, {contacts, settings, h, out, data}, regions);
     regions.pushed = data.pushed.load(std::memory_order_relaxed);

@@ -140,6 +140,13 @@ void erase_attachments(const RowMoves& moves, Model& model) {
     model.attachment_map.rows_moved(moves.attachment_now);
 }
 
+/// Those of bodies that are gone went with them.
+void renumber_joints(const RowMoves& moves, JointTable& joints) {
+    for (Column<Index>* const side : {&joints.first, &joints.second})
+        for (Index& body : *side)
+            if (body != no_index) body = moves.body_now[static_cast<std::size_t>(body)];
+}
+
 void erase_colliders(const RowMoves& moves, Model& model) {
     erase_scripted_rows(moves.colliders_gone, model.colliders);
     erase_records(moves.collider_now, model.collider_records);
@@ -216,6 +223,7 @@ void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
 void erase_gone(const RowMoves& moves, Model& model) {
     if (!moves.gone.bodies.empty()) erase_attachments(moves, model);
     if (!moves.gone.bodies.empty()) erase_bodies(moves, model);
+    if (!moves.gone.bodies.empty()) renumber_joints(moves, model.joints);
     if (!moves.colliders_gone.empty() || !moves.gone.bodies.empty()) erase_colliders(moves, model);
 }
 

@@ -38,6 +38,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     all("rigid_bodies", model.rigid_bodies, model.rigid_bodies.size());
     all("implicit_nodes", model.implicit_nodes, model.implicit_nodes.size());
     all("materials", model.materials, model.materials.slot.size());
+    all("joints", model.joints, model.joints.size());
     expect_one_size(file, "colliders", model.colliders.slot.size(),
                     [&](auto&& visit) { model.colliders.for_each_row_column(visit); });
     expect_one_size(file, "attachments", model.attachments.slot.size(),
@@ -83,6 +84,7 @@ void check_handles(const Hdf5File& file, Model& model) {
     check_handles(file, "bodies", model.body_map, of_bodies);
     check_handles(file, "colliders", model.collider_map, slots(model.colliders.slot));
     check_handles(file, "attachments", model.attachment_map, slots(model.attachments.slot));
+    check_handles(file, "joints", model.joint_map, slots(model.joints.slot));
 }
 
 void check_bodies(const Hdf5File& file, const Model& model) {
@@ -286,24 +288,52 @@ void check_clusters(const Hdf5File& file, Model& model) {
     expect_size(file, "/clusters/inverse", clusters.inverse.size(), entries);
 }
 
+bool is_rotation(const Mat3& m) {
+    constexpr Real rounding = 1e-9;
+    return (m.transpose() * m - Mat3::Identity()).norm() < rounding && m.determinant() > 0;
+}
+
 void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
     const auto require = [&](bool good, const char* column, std::size_t r, const char* found, const char* expected) {
         if (!good)
             file.complain(std::string("/rigid_bodies/") + column, found + (" at row " + std::to_string(r)), expected);
     };
-    const auto turns = [](const Mat3& m) {
-        constexpr Real rounding = 1e-9;
-        return (m.transpose() * m - Mat3::Identity()).norm() < rounding && m.determinant() > 0;
-    };
     for (std::size_t r = 0; r < table.size(); ++r) {
         require(table.mass[r] > 0 && std::isfinite(table.mass[r]), "mass", r, "no mass", "a mass > 0 (kg)");
         require(table.moments[r].allFinite() && table.moments[r].minCoeff() > 0, "moments", r, "a moment that is none",
                 "three moments of inertia > 0 (kg m^2)");
-        require(turns(table.axes[r]), "axes", r, "no rotation", "a rotation matrix");
-        require(turns(table.rotation[r]), "rotation", r, "no rotation", "a rotation matrix");
+        require(is_rotation(table.axes[r]), "axes", r, "no rotation", "a rotation matrix");
+        require(is_rotation(table.rotation[r]), "rotation", r, "no rotation", "a rotation matrix");
         require(table.rest_center[r].allFinite() && table.center[r].allFinite(), "center", r, "no place", "numbers");
         require(table.momentum[r].allFinite() && table.angular_momentum[r].allFinite(), "momentum", r,
                 "what is not finite", "numbers");
+    }
+}
+
+void check_joints(const Hdf5File& file, const Model& model) {
+    const JointTable& table = model.joints;
+    expect_rows_of(file, "/joints/first", table.first, model.bodies.slot.size());
+    expect_rows_of(file, "/joints/second", table.second, model.bodies.slot.size(), true);
+    expect_between(file, "/joints/step", table.step, 0.0, unbounded);
+    for (std::size_t j = 0; j < table.size(); ++j) {
+        const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
+            if (!good)
+                file.complain(std::string("/joints/") + column, found + (" at row " + std::to_string(j)), expected);
+        };
+        const auto is_rigid = [&](Index body) {
+            return body == no_index || model.is_rigid(static_cast<std::size_t>(body));
+        };
+        require(is_rigid(table.first[j]), "first", "a body that deforms", "a rigid one");
+        require(is_rigid(table.second[j]) && table.second[j] != table.first[j], "second",
+                "a body that deforms, or the first again", "another rigid one, or -1: the world");
+        for (const JointFrame& frame : {table.first_frame[j], table.second_frame[j]})
+            require(frame.point.allFinite() && is_rotation(frame.axes), "first_frame, second_frame", "no frame",
+                    "a point and a rotation matrix");
+        require(table.lower[j] <= table.upper[j], "lower", "more than upper", "at most upper");
+        require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "less than nothing",
+                "a strength and a speed >= 0");
+        require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "what is not finite",
+                "numbers");
     }
 }
 
@@ -328,6 +358,7 @@ void check_model(const Hdf5File& file, Model& model) {
     check_disabled_pairs(file, model);
     check_clusters(file, model);
     check_rigid_bodies(file, model.rigid_bodies);
+    check_joints(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }

@@ -73,6 +73,7 @@ void list_model(Model& model, auto&& archive) {
     handles("/handles/bodies", model.body_map);
     handles("/handles/colliders", model.collider_map);
     handles("/handles/attachments", model.attachment_map);
+    handles("/handles/joints", model.joint_map);
     list_ragged("/clusters/nodes", model.clusters.nodes, archive);
     archive.column("/clusters/body", model.clusters.body);
     archive.column("/clusters/inverse", model.clusters.inverse);

@@ -19,7 +19,7 @@ namespace {
 
 /// Columns in which a number may be infinite: bounds that nothing has, and the lanes that are left over.
 bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 14> paths{"/watch/step",
+    constexpr std::array<std::string_view, 17> paths{"/watch/step",
                                                      "/watch/look/highest",
                                                      "/tetrahedra/altitude",
                                                      "/tetrahedra/uninverted_until",
@@ -32,7 +32,10 @@ bool may_be_infinite(std::string_view path) {
                                                      "/pairs/valid_until",
                                                      "/pairs/candidates/asleep_until",
                                                      "/search/body_valid_until",
-                                                     "/search/collider_valid_until"};
+                                                     "/search/collider_valid_until",
+                                                     "/joints/lower",
+                                                     "/joints/upper",
+                                                     "/joints/motor"};
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 

@@ -13,6 +13,7 @@
 #include "components/collider_table.h"
 #include "components/contact_table.h"
 #include "components/element_table.h"
+#include "components/joint_table.h"
 #include "components/material_table.h"
 #include "components/pair_table.h"
 #include "components/step_levels.h"
@@ -88,6 +89,10 @@ struct NumbersOf<Keyframe> : SameNumbers<Real, 7> {};
 template <>
 struct NumbersOf<CollisionFilter> : SameNumbers<std::uint32_t, 2> {};
 template <>
+struct NumbersOf<JointFrame> : SameNumbers<Real, 12> {};
+template <>
+struct NumbersOf<JointMotorRow> : SameNumbers<Real, 3> {};
+template <>
 struct NumbersOf<SurfaceProperties> : SameNumbers<Real, 3> {};
 
 /// How many values an enum has: others are refused. 0: no enum.
@@ -114,6 +119,8 @@ template <>
 inline constexpr std::uint64_t value_count<ContactKind> = 5;
 template <>
 inline constexpr std::uint64_t value_count<ContactState> = 3;
+template <>
+inline constexpr std::uint64_t value_count<JointDrive> = 3;
 
 template <class S, class T>
 struct Member {

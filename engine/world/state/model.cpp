@@ -36,6 +36,7 @@ void Model::set_world(std::uint32_t number) {
     body_map.set_world(number);
     collider_map.set_world(number);
     attachment_map.set_world(number);
+    joint_map.set_world(number);
 }
 
 Index Model::row(BodyHandle body, const char* call) const {
@@ -49,6 +50,9 @@ Index Model::row(MaterialHandle material, const char* call) const {
 }
 Index Model::row(AttachmentHandle attachment, const char* call) const {
     return live_row(attachment_map, attachment, call, "attachment");
+}
+Index Model::row(JointHandle joint, const char* call) const {
+    return live_row(joint_map, joint, call, "joint");
 }
 
 ElementInputs Model::all_elements() const {

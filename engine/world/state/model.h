@@ -13,6 +13,7 @@
 #include "components/element_table.h"
 #include "components/handle.h"
 #include "components/implicit_node_table.h"
+#include "components/joint_table.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
 #include "components/node_clusters.h"
@@ -78,11 +79,13 @@ struct Model {
     MaterialTable materials;
     ColliderTable colliders;
     AttachmentTable attachments;
+    JointTable joints;
     DisabledPairTable disabled_pairs;
     HandleMap<MaterialHandle> material_map;
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
     HandleMap<AttachmentHandle> attachment_map;
+    HandleMap<JointHandle> joint_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
@@ -102,6 +105,7 @@ struct Model {
     Index row(ColliderHandle collider, const char* call) const;
     Index row(MaterialHandle material, const char* call) const;
     Index row(AttachmentHandle attachment, const char* call) const;
+    Index row(JointHandle joint, const char* call) const;
 
     /// For what looks at all elements, whether they are active in the present step or not.
     ElementInputs all_elements() const;
@@ -165,6 +169,7 @@ struct Model {
         visit("materials", materials);
         visit("colliders", colliders);
         visit("attachments", attachments);
+        visit("joints", joints);
         visit("disabled_pairs", disabled_pairs);
     }
 };

@@ -4,6 +4,7 @@
 
 #include "components/contact_table.h"
 #include "components/implicit_coupling.h"
+#include "components/joint_table.h"
 #include "components/region_table.h"
 #include "components/step_levels.h"
 #include "skerry/settings.h"
@@ -16,6 +17,7 @@
 #include "systems/dynamics/checks/find_inversions.h"
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/solver/solve_regions.h"
@@ -52,6 +54,7 @@ struct StepFindings {
     ContactMeasures measures;
     ExternalWork external;
     TakenByRest rest;
+    JointMeasures joints;
     Real relaxed = 0;   // J, taken out by what relaxes in the elements in this step
     Real viscous = 0;   // J, by the viscosity of fine elements among coarse in this step
     Real damped = 0;    // J, taken out by damping in this step
@@ -95,6 +98,7 @@ struct StepScratch {
     StepParameters parameters;
     StepFindings findings;
     ContactTable contacts;
+    JointBlockTable joints;
     RegionTable regions;
     Real awake_mass = 0;      // kg, at the start of the step
     bool ran_inline = false;  // on the calling thread alone

@@ -83,13 +83,13 @@ void add_step(const StepScratch& step, Balance& balance) {
     const ContactMeasures& contacts = step.findings.measures;
     const ExternalWork& external = step.findings.external;
     const Vec3 impulse = step.parameters.h * step.awake_mass * step.parameters.gravity + external.impulse +
-                         contacts.outer_impulse - step.findings.rest.momentum;
+                         contacts.outer_impulse + step.findings.joints.impulse - step.findings.rest.momentum;
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
-    const Real work = push_work + external.work + contacts.outer_work - contacts.dissipated - step.findings.damped -
-                      step.findings.strained - step.findings.relaxed - step.findings.viscous -
-                      step.findings.rest.energy;
+    const Real work = push_work + external.work + step.findings.joints.work + contacts.outer_work -
+                      contacts.dissipated - step.findings.damped - step.findings.strained - step.findings.relaxed -
+                      step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
     balance.impulse += impulse;
     balance.momentum_flow += impulse.norm();

@@ -13,6 +13,8 @@
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
+#include "systems/dynamics/joints/measure_joints.h"
+#include "systems/dynamics/joints/prepare_joints.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
@@ -98,9 +100,11 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(m.any_asleep));
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
+    g.stage("dynamics/prepare_joints", prepare_joints,
+            inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep), value(p.h), make(w.scratch.joints));
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
-            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies), value(p.contact_regions),
-            make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
+            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
+            value(p.contact_regions), make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
     g.stage("dynamics/couple_implicit_bodies", couple_implicit_bodies, implicit_bodies(m), read(c.stencil),
             read(m.nodes.body), value(p.h), value(p.theta), make(m.stiff_bodies), make(w.scratch.coupling));
 }
@@ -115,9 +119,12 @@ void list_solve(WorldState& w, TaskGraph& g) {
             if_wanted);
     g.stage("solver/solve_regions", kernels().solve_regions,
             inputs<RegionInputs>(c, n, n.velocity, p.collision.gravity, w.model.clusters, w.scratch.cluster_kick,
-                                 w.model.bodies, w.model.rigid_bodies, w.model.implicit_nodes, w.scratch.coupling),
+                                 w.model.bodies, w.model.rigid_bodies, w.model.implicit_nodes, w.scratch.coupling,
+                                 w.scratch.joints),
             value(p.solver), value(p.h), make(w.scratch.solver_memory), make(w.scratch.regions),
-            outputs<RegionOutputs>(c, n, w.model.rigid_bodies, w.model.implicit_nodes));
+            outputs<RegionOutputs>(c, n, w.model.rigid_bodies, w.model.implicit_nodes, w.scratch.joints));
+    g.stage_with_result("dynamics/measure_joints", w.scratch.findings.joints, measure_joints,
+                        inputs<JointWorkInputs>(w.scratch.joints, w.model.rigid_bodies));
     g.stage_with_result("contact/measure_contacts", w.scratch.findings.measures, measure_contacts, read(c),
                         read(n.inverse_mass), read(n.velocity), read(n.velocity_next), write(c.slip), write(c.state),
                         value(p.solver.friction));
@@ -204,8 +211,8 @@ void list_commit(WorldState& w, TaskGraph& g) {
     const auto if_taken =
         only_if(can_be_taken, read(found.verdict), read(found.crossings), read(found.inversions), value(p));
     const auto if_sleepy = only_if([](const SleepSettings& sleep) { return sleep.on(); }, value(p.sleep));
-    g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(c), read(w.scratch.pressed), read(a.body),
-            read(a.motion), write(b.asleep), write(b.still_time), if_taken, if_sleepy);
+    g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(c, w.model.joints), read(w.scratch.pressed),
+            read(a.body), read(a.motion), write(b.asleep), write(b.still_time), if_taken, if_sleepy);
     g.stage("dynamics/advance_positions", kernels().advance_positions,
             inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h), value(p.integrator),
             outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
@@ -215,9 +222,11 @@ void list_commit(WorldState& w, TaskGraph& g) {
             read(r.rotation_next), outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
-    g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c),
+    g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c, w.model.joints),
                         inputs<RestInputs>(a, b, n, r), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
                         outputs<RestOutputs>(b, n, r, w.model.implicit_nodes), if_taken, if_sleepy);
+    g.stage("dynamics/store_joints", store_joints, read(w.scratch.joints), value(p.h),
+            outputs<JointMemory>(w.model.joints), if_taken);
     g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse), value(p.h),
             make(w.cache.warm_start), if_taken);
     g.stage("contact/keep_resting_contacts", keep_resting_contacts, read(c),

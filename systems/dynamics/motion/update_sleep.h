@@ -11,6 +11,7 @@
 #include "components/column.h"
 #include "components/contact_table.h"
 #include "components/implicit_node_table.h"
+#include "components/joint_table.h"
 #include "components/node_table.h"
 #include "components/options.h"
 #include "components/rigid_body_table.h"
@@ -46,15 +47,18 @@ inline constexpr int looks = 8;
 struct TouchInputs {
     std::span<const Index> first_body, second_body;
     std::span<const ContactState> state;
-    std::span<const Real> gap;               // m
-    std::span<const Vec3> surface_velocity;  // m/s
+    std::span<const Real> gap;                             // m
+    std::span<const Vec3> surface_velocity;                // m/s
+    std::span<const Index> joint_first{}, joint_second{};  // rows of BodyTable that a joint joins
 
-    static TouchInputs bind(const Binder& binder, const ContactTable& contact) {
+    static TouchInputs bind(const Binder& binder, const ContactTable& contact, const JointTable& joint) {
         return {.first_body = binder.read(contact.first_body),
                 .second_body = binder.read(contact.second_body),
                 .state = binder.read(contact.state),
                 .gap = binder.read(contact.gap),
-                .surface_velocity = binder.read(contact.surface_velocity)};
+                .surface_velocity = binder.read(contact.surface_velocity),
+                .joint_first = binder.read(joint.first),
+                .joint_second = binder.read(joint.second)};
     }
 };
 
@@ -77,9 +81,9 @@ struct PressInputs {
 /// without their weight they may not press now. Where no impulse is kept every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes every body that is marked, that a contact of this step presses on, by an impulse or by overlap, or that an
-/// attachment leads. Contacts between bodies at rest are not looked for, so what presses moves. Returns false when none
-/// was woken.
+/// Wakes every body that is marked, that a contact of this step presses on, by an impulse or by overlap, that is
+/// joined to one that is awake, or that an attachment leads. Contacts between bodies at rest are not looked for, so
+/// what presses moves. Returns false when none was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time);

@@ -6,6 +6,7 @@
 #include "components/contact_table.h"
 #include "components/implicit_coupling.h"
 #include "components/implicit_node_table.h"
+#include "components/joint_table.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
@@ -99,6 +100,7 @@ struct RegionInputs {
     std::span<const Vec3> cluster_kick{};    // N s, of this step, by item of clusters->nodes
     RigidInputs rigid{};                     // bodies that move as a whole; none by default
     ImplicitInputs implicit{};               // those of them that deform; none by default
+    std::span<const JointBlock> joints{};    // of rigid bodies; none by default
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
@@ -106,7 +108,8 @@ struct RegionInputs {
     static RegionInputs bind(const Binder& binder, const ContactTable& contact, const NodeTable& node,
                              const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
                              const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid,
-                             const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling) {
+                             const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling,
+                             const JointBlockTable& joints) {
         return {.stencil = binder.read(contact.stencil),
                 .normal = binder.read(contact.normal),
                 .gap = binder.read(contact.gap),
@@ -121,7 +124,8 @@ struct RegionInputs {
                 .clusters = &binder.value(clusters),
                 .cluster_kick = binder.read(cluster_kick),
                 .rigid = RigidInputs::bind(binder, node, body, rigid),
-                .implicit = ImplicitInputs::bind(binder, body, rigid, implicit, coupling)};
+                .implicit = ImplicitInputs::bind(binder, body, rigid, implicit, coupling),
+                .joints = binder.read(joints.block)};
     }
 };
 
@@ -132,9 +136,10 @@ struct RegionOutputs {
     // by row of RigidBodyTable, from zero
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
     std::span<Vec3> deforming_impulse{};  // N s, by row of ImplicitNodeTable, from zero
+    std::span<Vec3> joint_impulse{};      // by joint block: warm start in, solution out
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
-                              ImplicitNodeTable& implicit) {
+                              ImplicitNodeTable& implicit, JointBlockTable& joints) {
         return {.impulse = binder.write(contact.impulse),
                 .velocity_next = binder.write(node.velocity_next),
                 .push_out = binder.write(node.push_out),
@@ -142,7 +147,8 @@ struct RegionOutputs {
                 .contact_moment = binder.write(rigid.contact_moment),
                 .push_velocity = binder.write(rigid.push_velocity),
                 .push_spin = binder.write(rigid.push_spin),
-                .deforming_impulse = binder.write(implicit.contact_impulse)};
+                .deforming_impulse = binder.write(implicit.contact_impulse),
+                .joint_impulse = binder.write(joints.impulse)};
     }
 };
 

@@ -29,6 +29,7 @@ struct RigidTerm {
     Real step = 0;         // 1/kg, weight over mass
     Vec4 arm;              // m, from the centre of mass, times weight
     Columns3 spin_step;    // 1/(kg m), by what an impulse changes the spin: I^-1 [arm]
+    Real turn = 0;         // of the spin itself: 1 or -1 in a joint's rows of spins, whose impulses are moments
 };
 
 struct RigidPart {
@@ -47,6 +48,7 @@ inline Vec4 add_rigid_velocities(const RigidPart& part, const Vec4* velocity, Ve
     for (Index k = 0; k < part.term_count; ++k) {
         const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
         start += term.weight * velocity[term.slot] + cross(velocity[term.slot + 1], term.arm);
+        if (term.turn != 0) start += term.turn * velocity[term.slot + 1];
     }
     return start;
 }
@@ -68,6 +70,7 @@ inline Mat3 rigid_coupling(const RigidPart& a, const RigidPart& b) {
             if (of_a.slot != of_b.slot) continue;
             sum += of_a.weight * of_b.step * Mat3::Identity() -
                    cross_matrix(of_a.arm.head<3>()) * matrix_of(of_b.spin_step);
+            if (of_a.turn != 0) sum += of_a.turn * matrix_of(of_b.spin_step);
         }
     return sum;
 }

@@ -28,6 +28,10 @@ Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
 
 Vec4 FreedomOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     RigidPart& of = memory_.part[static_cast<std::size_t>(i)];
+    if (const JointLaw* law = joint(i)) {
+        const Vec3 r = in_frame(of.frame, impulse).head<3>();
+        return times(of.frame, padded(law->answer(in_frame(of.frame, u).head<3>() - law->block * r)));
+    }
     if (of.term_count > 0 && friction_ == Friction::cone)
         return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
     // A number in the place of W_ii: exact where it is one. Elsewhere a step that is not too long.
@@ -80,9 +84,15 @@ Real FreedomOperator::error() const {
     Real sum = 0;
     for (Index i = 0; i < size(); ++i) {
         if (!(mobility(i) > 0)) continue;
-        const Vec4 residual =
-            natural_map(contact(i), friction_, memory_.impulse[static_cast<std::size_t>(i)], velocity(i));
-        sum += contact(i).diagonal * residual.squaredNorm();
+        const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
+        if (const JointLaw* law = joint(i)) {
+            const Columns3& frame = part(i).frame;
+            sum += mobility(i) * law->natural_map(in_frame(frame, impulse).head<3>(),
+                                                  in_frame(frame, velocity(i)).head<3>(), mobility(i))
+                                     .squaredNorm();
+            continue;
+        }
+        sum += contact(i).diagonal * natural_map(contact(i), friction_, impulse, velocity(i)).squaredNorm();
     }
     return sum == 0 ? 0 : std::sqrt(sum) / scale_;
 }

@@ -9,6 +9,7 @@
 
 #include "components/options.h"
 #include "systems/solver/equations/newton_pool.h"
+#include "systems/solver/local/joint_law.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/through_groups.h"
@@ -20,6 +21,7 @@ namespace skerry {
 struct FreedomMemory {
     std::span<const LumpedContact> contact;  // its nodes are those without a rigid body
     std::span<RigidPart> part;
+    std::span<const JointLaw> joint;      // of the last so many contacts, which are rows of joints
     std::span<Vec4> impulse;              // N s
     std::span<Vec4> velocity;             // m/s and rad/s, moved by the impulse
     std::span<const Vec4> free_velocity;  // without impulses
@@ -55,6 +57,7 @@ public:
     void residual(std::span<Vec4> out) const;
     void multiply(std::span<const Vec4> in, std::span<Vec4> out) const;
     Vec4 project(Index i, const Vec4& impulse) const {
+        if (joint(i) != nullptr) return impulse;  // which sweeps do without
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
     Vec4 feasible(Index i, const Vec4& residual) const {
@@ -85,6 +88,12 @@ public:
     void apply(Index i, const Vec4& impulse, Vec4* velocity) const {
         walk_.apply(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
+    }
+
+    /// null: a contact
+    const JointLaw* joint(Index i) const {
+        const Index first = size() - static_cast<Index>(memory_.joint.size());
+        return i < first ? nullptr : &memory_.joint[static_cast<std::size_t>(i - first)];
     }
 
 private:

@@ -27,11 +27,13 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
     // first the places of regions without any, four by contact, then those of the others
     std::size_t end = 4 * regions.contacts.item.size();
+    memory.rows = memory.contact_rows = regions.contacts.item.size();
     memory.region_clusters.clear();
     memory.region_rigid.clear();
     if (!inputs.clustered() && !inputs.rigid.any()) return end;
     memory.region_clusters.offset.push_back(0);
     memory.region_rigid.offset.push_back(0);
+    if (!inputs.joints.empty()) memory.joint_base.resize(regions.size());
     memory.node_base.resize(regions.size());
     memory.region_of_cluster.assign(inputs.clustered() ? inputs.clusters->size() : 0, no_index);
     memory.region_of_rigid.assign(inputs.rigid.mass.size(), no_index);
@@ -48,6 +50,15 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
                 if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // else its body is held
                     note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
             }
+        }
+        for (const Index joint : regions.joints_of(r)) {
+            const JointBlock& block = inputs.joints[static_cast<std::size_t>(joint)];
+            if (block.first_node != no_index) note(block.first, number, memory.region_of_rigid, memory.region_rigid);
+            if (block.second_node != no_index) note(block.second, number, memory.region_of_rigid, memory.region_rigid);
+        }
+        if (const std::size_t joints = regions.joints_of(r).size(); joints > 0) {
+            memory.joint_base[r] = memory.rows;
+            memory.rows += regions.contacts[r].size() + joints;
         }
         memory.region_clusters.offset.push_back(static_cast<Index>(memory.region_clusters.item.size()));
         memory.region_rigid.offset.push_back(static_cast<Index>(memory.region_rigid.item.size()));

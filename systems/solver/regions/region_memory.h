@@ -12,6 +12,7 @@
 #include "components/region_table.h"
 #include "systems/solver/coloured/order_region.h"
 #include "systems/solver/inputs/solver_settings.h"
+#include "systems/solver/local/joint_law.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/lumped_operator.h"
 #include "systems/solver/equations/newton_pool.h"
@@ -78,7 +79,11 @@ struct RegionMemory {
     Column<std::size_t> node_base;                     // by region: place of its first node
     Column<Index> region_of_cluster, region_of_rigid;  // that touched it last
     Column<RigidPart> rigid_part;                      // by contact; no rows without rigid bodies
-    Column<Vec4> free_velocity;                        // m/s, as `velocity`; no rows without rigid bodies
+    Column<JointLaw> joint_law;                        // by row behind those of all contacts
+    // of regions with joints, whose rows come behind those of all contacts: the place of the first, contacts first
+    Column<std::size_t> joint_base;
+    std::size_t contact_rows = 0, rows = 0;  // of all contacts, and with those
+    Column<Vec4> free_velocity;              // m/s, as `velocity`; no rows without rigid bodies
     // by row of NodeTable
     Column<Index> place;  // in its region's list of nodes, if that list agrees
     // by region

@@ -5,6 +5,7 @@
 
 #include "systems/solver/methods/run_method.h"
 #include "systems/solver/operators/freedom_operator.h"
+#include "systems/solver/regions/joint_rows.h"
 #include "systems/solver/regions/region_blocks.h"
 
 namespace skerry {
@@ -16,6 +17,7 @@ const NodeClusters no_clusters;
 /// then nodes of clusters, then others.
 struct FreedomRegion {
     std::span<const Index> row;    // of its contacts
+    std::span<const Index> joint;  // rows of JointBlockTable, which come behind the contacts
     std::span<const Index> rigid;  // rows of RigidBodyTable
     std::span<const Index> node;   // rows of NodeTable; no_index where a rigid body has its rows
     FreedomMemory memory;
@@ -32,7 +34,8 @@ struct FreedomRegion {
 /// Fills one region.
 class Loading {
 public:
-    Loading(const RegionStage& stage, std::span<const Index> row, Index number, Index base)
+    Loading(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint, Index number,
+            Index base)
         : stage_(stage),
           data_(stage.memory),
           first_(static_cast<std::size_t>(base)),
@@ -40,6 +43,7 @@ public:
           room_(room_of_region(stage.inputs, data_, row.size(), number)),
           node_(data_.node.span().subspan(first_node_, room_)),
           region_{.row = row,
+                  .joint = joint,
                   .rigid = data_.region_rigid[static_cast<std::size_t>(number)],
                   .node = {},
                   .memory = {},
@@ -53,7 +57,9 @@ public:
     FreedomRegion load() {
         list_blocks();
         for (std::size_t i = 0; i < region_.row.size(); ++i) load_contact_at(i);
+        for (std::size_t k = 0; k < region_.joint.size(); ++k) load_joint_at(k);
         set_memory();
+        add_joints();
         for (std::size_t i = 0; i < region_.row.size(); ++i) {
             const LumpedContact& contact = region_.memory.contact[i];
             const Vec4 u =
@@ -116,6 +122,25 @@ private:
         find_mobility(contact, part);
     }
 
+    JointPlaceInRegion joint_place(std::size_t k) const {
+        const std::size_t at = first_ + region_.row.size() + k;
+        return {data_.contact[at], data_.rigid_part[at], data_.joint_law[at - data_.contact_rows]};
+    }
+
+    void load_joint_at(std::size_t k) {
+        const JointPlaceInRegion place = joint_place(k);
+        load_joint(stage_, stage_.inputs.joints[static_cast<std::size_t>(region_.joint[k])], region_.rigid, place);
+        data_.impulse[first_ + region_.row.size() + k].setZero();
+    }
+
+    void add_joints() {
+        for (std::size_t k = 0; k < region_.joint.size(); ++k) {
+            const JointPlaceInRegion place = joint_place(k);
+            const Vec4 u = add_rigid_velocities(place.part, region_.memory.velocity.data(), place.contact.offset);
+            add_joint(place, u, region_.sums);
+        }
+    }
+
     void add_term(RigidPart& part, Index body, Index node, Real weight) {
         const RigidInputs& rigid = stage_.inputs.rigid;
         Index k = 0;
@@ -158,11 +183,17 @@ private:
         contact.inverse_diagonal = contact.diagonal > 0 ? 1 / contact.diagonal : 0;
     }
 
+    std::span<const JointLaw> joint_laws() const {
+        if (region_.joint.empty()) return {};
+        return data_.joint_law.span().subspan(first_ + region_.row.size() - data_.contact_rows, region_.joint.size());
+    }
+
     void set_memory() {
-        const std::size_t contacts = region_.row.size();
+        const std::size_t contacts = region_.row.size() + region_.joint.size();
         region_.node = node_.first(count_);
         region_.memory = {.contact = data_.contact.span().subspan(first_, contacts),
                           .part = data_.rigid_part.span().subspan(first_, contacts),
+                          .joint = joint_laws(),
                           .impulse = data_.impulse.span().subspan(first_, contacts),
                           .velocity = velocities().first(count_),
                           .free_velocity = data_.free_velocity.span().subspan(first_node_, count_),
@@ -190,6 +221,11 @@ void take_warm_impulses(const RegionStage& stage, const FreedomRegion& region, F
         const Vec4 last = padded(stage.out.impulse[static_cast<std::size_t>(region.row[i])]);
         region.memory.impulse[i] = contact.friction.stick == 0 ? Vec4(contact.normal.dot(last) * contact.normal) : last;
     }
+    for (std::size_t k = 0; k < region.joint.size(); ++k) {
+        const std::size_t i = region.row.size() + k;
+        const Vec3& last = stage.out.joint_impulse[static_cast<std::size_t>(region.joint[k])];
+        region.memory.impulse[i] = times(region.memory.part[i].frame, padded(last));
+    }
     op.refresh();
 }
 
@@ -209,6 +245,25 @@ bool start(const RegionStage& stage, const FreedomRegion& region, FreedomOperato
     return start_from_warm_impulse(op, settings, outcome);
 }
 
+/// Solves again with what joints would be off by at the end of the step, where that is more than the tolerance
+/// (docs/methods/joints.md 2).
+void hold_joints_at_end(const RegionStage& stage, const FreedomRegion& region, FreedomOperator& op,
+                        RegionOutcome& outcome) {
+    Real off = 0;  // J
+    for (std::size_t k = 0; k < region.joint.size(); ++k) {
+        const std::size_t at = static_cast<std::size_t>(region.base) + region.row.size() + k;
+        RegionMemory& data = stage.memory;
+        off +=
+            correct_joint(stage, stage.inputs.joints[static_cast<std::size_t>(region.joint[k])], region.memory.velocity,
+                          {data.contact[at], data.rigid_part[at], data.joint_law[at - data.contact_rows]});
+    }
+    const Real small = stage.settings.tolerance * region.scale;
+    if (off <= small * small && !stage.settings.fixed_iterations) return;
+    const Index before = outcome.iterations;
+    outcome = outcome_of(run_method(SolverMethod::ags, op, limits_of(stage.settings)));
+    outcome.iterations += before;
+}
+
 /// The nodes of a contact that deform a body get their shares of its impulse.
 void write_deforming(const RegionStage& stage, const FreedomRegion& region, std::size_t i) {
     if (!stage.inputs.implicit.any()) return;
@@ -222,6 +277,26 @@ void write_deforming(const RegionStage& stage, const FreedomRegion& region, std:
     }
 }
 
+/// What a contact or a joint gave to rigid bodies.
+void write_to_bodies(const RegionStage& stage, const RigidPart& part, const Vec4& impulse) {
+    for (Index k = 0; k < part.term_count; ++k) {
+        const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
+        const auto r = static_cast<std::size_t>(term.row);
+        stage.out.contact_impulse[r] += term.weight * impulse.head<3>();
+        stage.out.contact_moment[r] += cross(term.arm, impulse).head<3>() + term.turn * impulse.head<3>();
+    }
+}
+
+void write_joints(const RegionStage& stage, const FreedomRegion& region) {
+    for (std::size_t k = 0; k < region.joint.size(); ++k) {
+        const std::size_t i = region.row.size() + k;
+        const RigidPart& part = region.memory.part[i];
+        write_to_bodies(stage, part, region.memory.impulse[i]);
+        stage.out.joint_impulse[static_cast<std::size_t>(region.joint[k])] =
+            matrix_of(part.frame).transpose() * region.memory.impulse[i].head<3>();
+    }
+}
+
 /// Velocities of nodes, also of those of rigid bodies that contacts name, and what rigid bodies got.
 void write_solution(const RegionStage& stage, const FreedomRegion& region, RegionOutcome& outcome) {
     const FreedomMemory& memory = region.memory;
@@ -229,14 +304,8 @@ void write_solution(const RegionStage& stage, const FreedomRegion& region, Regio
     for (std::size_t n = 2 * region.rigid.size(); n < region.node.size(); ++n)
         stage.out.velocity_next[static_cast<std::size_t>(region.node[n])] = memory.velocity[n].head<3>();
     for (std::size_t i = 0; i < region.row.size(); ++i) {
-        const RigidPart& part = memory.part[i];
         const auto row = static_cast<std::size_t>(region.row[i]);
-        for (Index k = 0; k < part.term_count; ++k) {
-            const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
-            const auto r = static_cast<std::size_t>(term.row);
-            stage.out.contact_impulse[r] += term.weight * memory.impulse[i].head<3>();
-            stage.out.contact_moment[r] += cross(term.arm, memory.impulse[i]).head<3>();
-        }
+        write_to_bodies(stage, memory.part[i], memory.impulse[i]);
         const Stencil& stencil = stage.inputs.stencil[row];
         for (std::size_t a = 0; a < 4; ++a) {
             const Index node = stencil.node[a];
@@ -257,7 +326,52 @@ void write_solution(const RegionStage& stage, const FreedomRegion& region, Regio
         stage.out.impulse[row] = memory.impulse[i].head<3>();
         outcome.dissipated += dissipated_by(stage, region.row[i]);
     }
+    write_joints(stage, region);
 }
+
+/// Joints while overlaps are pushed out: they hold, and what their axes do in that and in the step stays within their
+/// limits. Keeps the impulses of the push in a workspace that the method has done with.
+class PushedJoints {
+public:
+    PushedJoints(const FreedomRegion& region, const FreedomOperator& op)
+        : region_(region), op_(op), impulse_(region.memory.workspace[0]) {
+        for (std::size_t k = 0; k < region.joint.size(); ++k) impulse_[region.row.size() + k].setZero();
+    }
+
+    /// One sweep. Returns what has changed, J.
+    Real sweep(std::span<Vec4> velocity) const {
+        Real size = 0;
+        for (std::size_t k = 0; k < region_.joint.size(); ++k) {
+            const std::size_t at = region_.row.size() + k;
+            const auto i = static_cast<Index>(at);
+            const RigidPart& part = region_.memory.part[at];
+            const JointLaw& law = *op_.joint(i);
+            const Mat3 frame = matrix_of(part.frame);
+            const Vec3 r = frame.transpose() * impulse_[at].head<3>();
+            const Vec3 u = frame.transpose() * op_.velocity_at(i, velocity.data()).head<3>();
+            const Vec4 next = padded(frame * law.answer(bounds(at, law), u - law.block * r));
+            const Vec4 change = next - impulse_[at];
+            if (change.isZero(0)) continue;
+            op_.push(i, change, velocity.data());
+            impulse_[at] = next;
+            size += op_.inner(i, change, change);
+        }
+        return size;
+    }
+
+private:
+    AxisBounds bounds(std::size_t at, const JointLaw& law) const {
+        const RigidPart& part = region_.memory.part[at];
+        const Vec4 u =
+            region_.memory.contact[at].offset + op_.velocity_at(static_cast<Index>(at), region_.memory.velocity.data());
+        const Real along = part.frame[2].dot(u);
+        return {std::min(law.axis.low - along, Real(0)), std::max(law.axis.high - along, Real(0)), 0, 0};
+    }
+
+    const FreedomRegion& region_;
+    const FreedomOperator& op_;
+    std::span<Vec4> impulse_;
+};
 
 /// As solve_push; memory.velocity is that of the push afterwards.
 bool push(const RegionStage& stage, const FreedomRegion& region, const FreedomOperator& op) {
@@ -284,8 +398,9 @@ bool push(const RegionStage& stage, const FreedomRegion& region, const FreedomOp
         if (mobility > 0) asked += approach * approach / mobility;
     }
     const Real small = settings.tolerance * settings.tolerance * asked;
+    const PushedJoints joints(region, op);
     for (Index iteration = 1; iteration <= settings.max_iterations; ++iteration) {
-        Real size = 0;
+        Real size = joints.sweep(memory.velocity);
         for (Index i = 0; i < count; ++i) {
             const auto at = static_cast<std::size_t>(i);
             const Real mobility = region.memory.part[at].along_normal;
@@ -341,12 +456,16 @@ void push_out(const RegionStage& stage, const FreedomRegion& region, const Freed
 
 }  // namespace
 
-RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row, Index number, Index base) {
-    const FreedomRegion region = Loading(stage, row, number, base).load();
+RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joints,
+                            Index number, Index base) {
+    if (!joints.empty()) base = static_cast<Index>(stage.memory.joint_base[static_cast<std::size_t>(number)]);
+    const FreedomRegion region = Loading(stage, row, joints, number, base).load();
     FreedomOperator op = region.operator_for(stage);
     RegionOutcome outcome;
     if (!start(stage, region, op, outcome))
-        outcome = outcome_of(run_method(stage.settings.method, op, limits_of(stage.settings)));
+        outcome = outcome_of(
+            run_method(joints.empty() ? stage.settings.method : SolverMethod::ags, op, limits_of(stage.settings)));
+    if (!joints.empty() && outcome.status != RegionStatus::not_finite) hold_joints_at_end(stage, region, op, outcome);
     write_solution(stage, region, outcome);
     if (outcome.status != RegionStatus::not_finite) push_out(stage, region, op, outcome);
     return outcome;

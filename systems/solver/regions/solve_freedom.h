@@ -5,7 +5,9 @@
 
 namespace skerry {
 
-/// Solves one such region, by one thread.
-RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row, Index number, Index base);
+/// Solves one such region, by one thread. `joints`: rows of JointBlockTable. With joints, which only sweeps know, by
+/// accelerated sweeps whatever the method.
+RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joints,
+                            Index number, Index base);
 
 }  // namespace skerry

@@ -198,3 +198,39 @@ TEST_CASE("the paper's Algorithm 1 goes wrong more often the more contacts there
     CHECK(wrong_of_100(6) < 60);
     CHECK(wrong_of_100(100) > 80);
 }
+
+TEST_CASE("what a joint joins is one region, and what no contact touches one of its own", "[unit][regions]") {
+    // bodies of two nodes each, 0 1, 2 3, ... of which joints name the first
+    const auto joining = [](Index first, Index second) {
+        JointBlock block{};
+        block.first_node = first;
+        block.second_node = second;
+        return block;
+    };
+    const std::vector<JointBlock> joints{joining(6, no_index), joining(0, 2), joining(4, no_index), joining(8, 6)};
+    const std::vector<Stencil> stencil{touching({2}), touching({0}), touching({4})};
+    const std::vector<Real> inverse_mass(10, 1);
+    NodeGroups groups;
+    groups.joints = joints;
+    RegionTable regions;
+    UnionFind memory;
+    std::vector<Index> region(3);
+    REQUIRE(separate_regions(stencil, inverse_mass, groups, ContactRegions::separate, memory, regions, region));
+    CHECK(region == std::vector<Index>{0, 0, 1});
+    REQUIRE(regions.size() == 3);
+    const auto list = [](std::span<const Index> of) { return std::vector<Index>(of.begin(), of.end()); };
+    CHECK(list(regions.joints_of(0)) == std::vector<Index>{1});
+    CHECK(list(regions.joints_of(1)) == std::vector<Index>{2});
+    CHECK(list(regions.joints_of(2)) == std::vector<Index>{0, 3});
+    CHECK(regions.contacts[2].empty());
+    REQUIRE(separate_regions(stencil, inverse_mass, groups, ContactRegions::global, memory, regions, region));
+    CHECK(regions.size() == 1);
+    CHECK(list(regions.joints_of(0)) == std::vector<Index>{0, 1, 2, 3});
+    // none of contacts alone, and none of joints that are gone
+    std::vector<Index> none;
+    REQUIRE(separate_regions({}, inverse_mass, groups, ContactRegions::separate, memory, regions, none));
+    CHECK(regions.size() == 3);
+    REQUIRE(separate_regions(stencil, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region));
+    CHECK(regions.joints_of(0).empty());
+    CHECK_FALSE(separate_regions({}, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, none));
+}

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "engine/scene/scene_plan.h"
+#include "skerry/joint.h"
 #include "tests/unit/engine/scene_files.h"
 
 using namespace skerry;
@@ -171,4 +172,47 @@ TEST_CASE("a broken mesh file is refused with the scene's place and the mesh fil
         plan_scene(folder.write(
             "b.json", R"({"materials": {"m": {}}, "bodies": [{"mesh": {"file": "broken.msh"}, "material": "m"}]})")),
         Catch::Contains("b.json: bodies[0].mesh: ") && Catch::Contains("broken.msh"));
+}
+
+namespace {
+
+/// Two rigid blocks, one beside the other, and a joint with these keys.
+std::string jointed_scene(const std::string& keys) {
+    const std::string block =
+        R"("mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "rubber", "dynamics": "rigid")";
+    return R"({"materials": {"rubber": {}}, "bodies": [{"name": "door", )" + block + R"(}, {"name": "frame", )" +
+           block + R"(, "position": [1.01, 0, 0]}], "joints": [{)" + keys + "}]}";
+}
+
+}  // namespace
+
+TEST_CASE("joints of a scene join its bodies by name", "[unit]") {
+    const TemporaryFolder folder;
+    Scene scene = load_scene(folder.write("joint.json", jointed_scene(R"("kind": "hinge", "first": "door",
+        "second": "frame", "point": [0.505, 0, 0], "axis": [0, 0, 2], "lower": -1, "upper": 2,
+        "motor": {"speed": 0.5, "strength": 3})")));
+    Joints joints(scene.world);
+    REQUIRE(joints.all().size() == 1);
+    const JointState state = joints.state(joints.all()[0]);
+    CHECK(state.kind == JointKind::hinge);
+    CHECK(scene.world.name(state.first) == "door");
+    REQUIRE(state.second);
+    CHECK(scene.world.name(*state.second) == "frame");
+    CHECK(state.axis == Vec3(0, 0, 1));
+    CHECK((state.point - Vec3(0.505, 0, 0)).norm() < 1e-14);
+    CHECK_FALSE(scene.world.may_collide(state.first, *state.second));
+    REQUIRE(scene.world.advance(0.1).ok());
+    CHECK(joints.state(joints.all()[0]).speed > 0);
+}
+
+TEST_CASE("joints of what is not there, or cannot be, are refused where they stand", "[unit]") {
+    const TemporaryFolder folder;
+    const auto refused = [&](const std::string& keys, const std::string& what) {
+        CHECK_THROWS_WITH(load_scene(folder.write("joint.json", jointed_scene(keys))), Catch::Contains(what));
+    };
+    refused(R"("kind": "ball", "first": "dor")", "joints[0].first: found \"dor\"");
+    refused(R"("kind": "bal", "first": "door")", "joints[0].kind");
+    refused(R"("first": "door")", "kind");
+    refused(R"("kind": "ball", "first": "door", "upper": 1)", "joints[0]");
+    refused(R"("kind": "hinge", "first": "door", "motor": {"strength": 1})", "joints[0].motor");
 }

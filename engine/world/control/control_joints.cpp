@@ -1,0 +1,231 @@
+// Joints come and go, and are driven, between steps (docs/methods/joints.md).
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "engine/world/control/control.h"
+#include "engine/world/edit/joints.h"
+#include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/validate.h"
+#include "skerry/joint.h"
+#include "systems/contact/tangent_frame.h"
+#include "systems/dynamics/joints/prepare_joints.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
+
+[[noreturn]] void refuse_joint(const char* field, const std::string& found, const std::string& expected) {
+    Complaint{.file = {}, .object = "joint", .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+}
+
+bool has_axis(JointKind kind) {
+    return kind == JointKind::hinge || kind == JointKind::slider;
+}
+
+Index rigid_body_of(const Model& model, BodyHandle body, const char* field) {
+    const Index row = model.row(body, "add_joint");
+    if (!model.is_rigid(static_cast<std::size_t>(row)))
+        refuse_joint(field, "body '" + model.body_records[static_cast<std::size_t>(row)].name + "', which deforms",
+                     "a rigid body");
+    return row;
+}
+
+void validate_motor(const JointMotor& motor) {
+    if (motor.speed.has_value() == motor.position.has_value())
+        refuse_joint("motor", motor.speed ? "a speed and a position" : "neither a speed nor a position", "one of them");
+    const Real target = motor.speed.value_or(motor.position.value_or(0));
+    if (!std::isfinite(target)) refuse_joint("motor", std::to_string(target), "a finite speed or position");
+    if (!(std::isfinite(motor.strength) && motor.strength >= 0))
+        refuse_joint("motor.strength", std::to_string(motor.strength), "the most that it exerts, >= 0 (N m or N)");
+    if (!(motor.fastest > 0)) refuse_joint("motor.fastest", std::to_string(motor.fastest), "a speed > 0");
+}
+
+void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
+    if (lower && !std::isfinite(*lower)) refuse_joint("lower", std::to_string(*lower), "a finite number, or none");
+    if (upper && !std::isfinite(*upper)) refuse_joint("upper", std::to_string(*upper), "a finite number, or none");
+    if (lower.value_or(-infinite) > upper.value_or(infinite))
+        refuse_joint("lower", std::to_string(*lower), "at most upper, " + std::to_string(*upper));
+}
+
+void validate_joint(const JointSettings& joint, const Settings& settings) {
+    require_finite("joint", "point", joint.point);
+    require_finite("joint", "axis", joint.axis);
+    if (!(joint.axis.norm() > 0)) refuse_joint("axis", "no length", "a direction");
+    if (settings.contact_regions == ContactRegions::paper_algorithm_1)
+        refuse_joint("first", "a world with contact_regions \"paper_algorithm_1\"", "another, which knows joints");
+    if (has_axis(joint.kind)) {
+        if (joint.motor) validate_motor(*joint.motor);
+        validate_limits(joint.lower, joint.upper);
+        return;
+    }
+    const std::string kind(name_of(joint.kind));
+    if (joint.motor) refuse_joint("motor", "one of a " + kind + " joint", "one of a hinge or slider");
+    if (joint.lower || joint.upper)
+        refuse_joint("lower, upper", "one of a " + kind + " joint", "those of a hinge or slider");
+}
+
+JointFrame frame_on(const Model& model, Index body, const Vec3& point, const Mat3& axes) {
+    if (body == no_index) return {point, axes};
+    const RigidPose pose = pose_of_body(model, static_cast<std::size_t>(body));
+    return {pose.rotation.transpose() * (point - pose.position), pose.rotation.transpose() * axes};
+}
+
+JointDrive drive_of(const std::optional<JointMotor>& motor) {
+    return !motor ? JointDrive::none : motor->speed ? JointDrive::speed : JointDrive::position;
+}
+
+JointMotorRow row_of(const std::optional<JointMotor>& motor) {
+    if (!motor) return {};
+    return {motor->speed.value_or(motor->position.value_or(0)), motor->strength, motor->fastest};
+}
+
+void wake_both(Model& model, std::size_t joint) {
+    model.wake(static_cast<std::size_t>(model.joints.first[joint]));
+    if (model.joints.second[joint] != no_index) model.wake(static_cast<std::size_t>(model.joints.second[joint]));
+}
+
+std::optional<BodyHandle> second_of(const Model& model, std::size_t joint) {
+    const Index row = model.joints.second[joint];
+    if (row == no_index) return {};
+    return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);
+}
+
+BodyHandle first_of(const Model& model, std::size_t joint) {
+    return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(model.joints.first[joint])]);
+}
+
+/// Whether another joint keeps the same bodies from touching.
+bool parted_elsewhere(const JointTable& table, std::size_t joint) {
+    for (std::size_t j = 0; j < table.size(); ++j) {
+        const bool same = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||
+                          (table.first[j] == table.second[joint] && table.second[j] == table.first[joint]);
+        if (j != joint && same && table.parts[j] != 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+JointHandle Joints::add(const JointSettings& joint) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("add_joint");
+    Model& model = state.model;
+    validate_joint(joint, model.settings);
+    const Index first = rigid_body_of(model, joint.first, "first");
+    const Index second = joint.second ? rigid_body_of(model, *joint.second, "second") : no_index;
+    if (first == second) refuse_joint("second", "the first body again", "another body, or none: the world");
+    JointTable& table = model.joints;
+    const std::size_t row = table.size();
+    table.for_each_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
+    const JointHandle handle = model.joint_map.insert(static_cast<Index>(row));
+    const Vec3 axis = joint.axis.normalized();
+    const TangentFrame tangents = tangent_frame(axis);
+    Mat3 axes;
+    axes << tangents.first, tangents.second, axis;
+    table.slot[row] = handle.slot;
+    table.kind[row] = joint.kind;
+    table.drive[row] = drive_of(joint.motor);
+    table.first[row] = first;
+    table.second[row] = second;
+    table.first_frame[row] = frame_on(model, first, joint.point, axes);
+    table.second_frame[row] = frame_on(model, second, joint.point, axes);
+    table.lower[row] = joint.lower.value_or(-infinite);
+    table.upper[row] = joint.upper.value_or(infinite);
+    table.motor[row] = row_of(joint.motor);
+    table.coordinate[row] = table.step[row] = 0;
+    table.impulse[row] = table.moment[row] = Vec3::Zero();
+    table.parts[row] = 0;
+    if (second != no_index && !joint.bodies_touch) {
+        table.parts[row] = world_->may_collide(joint.first, *joint.second) || parted_elsewhere(table, row);
+        world_->set_collision(joint.first, *joint.second, false);
+    }
+    wake_both(model, row);
+    return handle;
+}
+
+void Joints::remove(JointHandle joint) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("remove");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(joint, "remove"));
+    wake_both(model, row);
+    if (model.joints.parts[row] != 0 && !parted_elsewhere(model.joints, row))
+        world_->set_collision(first_of(model, row), *second_of(model, row), true);
+    model.joint_map.forget(joint);
+    std::vector<std::uint8_t> gone(model.joints.size(), 0);
+    gone[row] = 1;
+    erase_joints(gone, model);
+}
+
+bool Joints::alive(JointHandle joint) const {
+    return WorldAccess::state_of(*world_).model.joint_map.row(joint) != no_index;
+}
+
+std::vector<JointHandle> Joints::all() const {
+    std::vector<JointHandle> handles;
+    const Model& model = WorldAccess::state_of(*world_).model;
+    for (const std::uint32_t slot : model.joints.slot) handles.push_back(model.joint_map.handle_of_slot(slot));
+    return handles;
+}
+
+JointState Joints::state(JointHandle joint) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const auto j = static_cast<std::size_t>(model.row(joint, "joint"));
+    const JointInputs joints = JointInputs::bind({}, model.joints, model.bodies, model.rigid_bodies, model.any_asleep);
+    const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
+                     second = joints.place(joints.second[j], joints.second_frame[j]);
+    JointState now;
+    now.kind = joints.kind[j];
+    now.first = first_of(model, j);
+    now.second = second_of(model, j);
+    now.point = first.point;
+    now.axis = second.axes.col(2);
+    now.coordinate = joint_coordinate(now.kind, first, second, joints.coordinate[j]);
+    const PointVelocity of_first = velocity_at(model, joints.first[j], first.point),
+                        of_second = velocity_at(model, joints.second[j], first.point);
+    if (now.kind == JointKind::hinge) now.speed = now.axis.dot(of_first.spin - of_second.spin);
+    if (now.kind == JointKind::slider) now.speed = now.axis.dot(of_first.velocity - of_second.velocity);
+    Vec3 apart = first.point - second.point;
+    if (now.kind == JointKind::slider) apart -= now.axis.dot(apart) * now.axis;
+    now.error = apart.norm();
+    if (!(joints.step[j] > 0)) return now;
+    now.force = second.axes * joints.impulse[j] / joints.step[j];
+    now.moment = second.axes * joints.moment[j] / joints.step[j];
+    return now;
+}
+
+void Joints::set_motor(JointHandle joint, const std::optional<JointMotor>& motor) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_motor");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(joint, "set_motor"));
+    if (!has_axis(model.joints.kind[row]))
+        refuse_joint("motor", "one of a " + std::string(name_of(model.joints.kind[row])) + " joint",
+                     "one of a hinge or slider");
+    if (motor) validate_motor(*motor);
+    const JointMotorRow wanted = row_of(motor);
+    if (model.joints.drive[row] == drive_of(motor) && model.joints.motor[row] == wanted) return;
+    model.joints.drive[row] = drive_of(motor);
+    model.joints.motor[row] = wanted;
+    wake_both(model, row);
+}
+
+void Joints::set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_limits");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(joint, "set_limits"));
+    if (!has_axis(model.joints.kind[row]))
+        refuse_joint("lower, upper", "those of a " + std::string(name_of(model.joints.kind[row])) + " joint",
+                     "those of a hinge or slider");
+    validate_limits(lower, upper);
+    const Real least = lower.value_or(-infinite), most = upper.value_or(infinite);
+    if (model.joints.lower[row] == least && model.joints.upper[row] == most) return;
+    model.joints.lower[row] = least;
+    model.joints.upper[row] = most;
+    wake_both(model, row);
+}
+
+}  // namespace skerry

@@ -1,0 +1,44 @@
+// What joints gave to the bodies that they move in this step, for the balance of a run.
+#pragma once
+
+#include <span>
+
+#include "components/joint_table.h"
+#include "components/rigid_body_table.h"
+#include "jobs/access.h"
+
+namespace skerry {
+
+struct JointMeasures {
+    Vec3 impulse = Vec3::Zero();  // N s, from the world and from held bodies
+    Real work = 0;                // J: of motors and of what leads, less what stops took
+};
+
+/// Rigid bodies after the solve, by row.
+struct JointWorkInputs {
+    std::span<const JointBlock> block;
+    std::span<const Vec3> impulse;  // of the blocks
+    std::span<const Real> mass;
+    std::span<const Vec3> center, momentum, angular_momentum;
+    std::span<const Mat3> inverse_inertia;
+    std::span<const Vec3> kick, moment_kick, contact_impulse, contact_moment;
+
+    static JointWorkInputs bind(const Binder& binder, const JointBlockTable& blocks, const RigidBodyTable& rigid) {
+        return {.block = binder.read(blocks.block),
+                .impulse = binder.read(blocks.impulse),
+                .mass = binder.read(rigid.mass),
+                .center = binder.read(rigid.center),
+                .momentum = binder.read(rigid.momentum),
+                .angular_momentum = binder.read(rigid.angular_momentum),
+                .inverse_inertia = binder.read(rigid.inverse_inertia),
+                .kick = binder.read(rigid.kick),
+                .moment_kick = binder.read(rigid.moment_kick),
+                .contact_impulse = binder.read(rigid.contact_impulse),
+                .contact_moment = binder.read(rigid.contact_moment)};
+    }
+};
+
+/// Sequential, in the order of the blocks.
+JointMeasures measure_joints(const JointWorkInputs& joints);
+
+}  // namespace skerry

@@ -1,0 +1,101 @@
+#include "systems/dynamics/joints/prepare_joints.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+namespace {
+
+/// The turn about the axis of the second that takes its first direction nearest to that of the first.
+Real angle_between(const Mat3& first, const Mat3& second) {
+    return std::atan2(first.col(0).dot(second.col(1)), first.col(0).dot(second.col(0)));
+}
+
+/// rad, in the frame of the second: by which the axis of the first is off, or all of it where it must not turn.
+Vec3 turning_error(JointKind kind, const Mat3& first, const Mat3& second) {
+    if (kind != JointKind::hinge) return second.transpose() * rotation_vector(first * second.transpose());
+    return second.transpose() * second.col(2).cross(first.col(2));
+}
+
+AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate) {
+    return {.locked = false,
+            .coordinate = coordinate,
+            .lower = joints.lower[j],
+            .upper = joints.upper[j],
+            .drive = joints.drive[j],
+            .motor = joints.motor[j]};
+}
+
+}  // namespace
+
+JointPlace JointInputs::place(Index body, const JointFrame& frame) const {
+    if (body == no_index) return {frame.point, frame.axes};
+    const auto r = static_cast<std::size_t>(rigid(body));
+    const Mat3 from_mesh = rotation[r] * axes[r].transpose();
+    return {center[r] + from_mesh * (frame.point - rest_center[r]), from_mesh * frame.axes};
+}
+
+Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before) {
+    if (kind == JointKind::slider) return second.axes.col(2).dot(first.point - second.point);
+    if (kind != JointKind::hinge) return 0;
+    constexpr Real turn = 2 * std::numbers::pi;
+    const Real angle = angle_between(first.axes, second.axes);
+    return angle + turn * std::round((before - angle) / turn);
+}
+
+bool prepare_joints(const JointInputs& joints, Real h, JointBlockTable& blocks) {
+    blocks.block.clear();
+    blocks.impulse.clear();
+    blocks.coordinate.resize(joints.size());
+    blocks.resting.resize(joints.size());
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        blocks.resting[j] = joints.rests(j);
+        if (blocks.resting[j]) continue;
+        const JointKind kind = joints.kind[j];
+        const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
+                         second = joints.place(joints.second[j], joints.second_frame[j]);
+        blocks.coordinate[j] = joint_coordinate(kind, first, second, joints.coordinate[j]);
+        JointBlock block{.joint = static_cast<Index>(j),
+                         .turning = false,
+                         .first = joints.rigid(joints.first[j]),
+                         .second = joints.rigid(joints.second[j]),
+                         .first_node = joints.moving_node(joints.first[j]),
+                         .second_node = joints.moving_node(joints.second[j]),
+                         .point = first.point,
+                         .frame = second.axes,
+                         .error = second.axes.transpose() * (first.point - second.point),
+                         .axis = {}};
+        if (block.first_node == no_index && block.second_node == no_index) continue;
+        const Real scale = joints.step[j] > 0 ? h / joints.step[j] : 0;
+        if (kind == JointKind::slider) block.axis = axis_of(joints, j, blocks.coordinate[j]);
+        blocks.block.push_back(block);
+        blocks.impulse.push_back(scale * joints.impulse[j]);
+        if (kind == JointKind::ball) continue;
+        block.turning = true;
+        block.error = turning_error(kind, first.axes, second.axes);
+        block.axis = kind == JointKind::hinge ? axis_of(joints, j, blocks.coordinate[j]) : AxisLaw{};
+        blocks.block.push_back(block);
+        blocks.impulse.push_back(scale * joints.moment[j]);
+    }
+    return joints.size() > 0;
+}
+
+bool store_joints(const JointBlockTable& blocks, Real h, const JointMemory& out) {
+    for (std::size_t j = 0; j < out.step.size(); ++j) {
+        if (blocks.resting[j]) continue;
+        out.coordinate[j] = blocks.coordinate[j];
+        out.impulse[j] = out.moment[j] = Vec3::Zero();
+        out.step[j] = h;
+    }
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const auto j = static_cast<std::size_t>(blocks.block[i].joint);
+        (blocks.block[i].turning ? out.moment : out.impulse)[j] = blocks.impulse[i];
+    }
+    return out.step.size() > 0;
+}
+
+}  // namespace skerry

@@ -1,0 +1,107 @@
+// The equations that joints ask of the velocities of this step (docs/methods/joints.md 2).
+#pragma once
+
+#include <span>
+
+#include "components/body_table.h"
+#include "components/joint_table.h"
+#include "components/rigid_body_table.h"
+#include "jobs/access.h"
+
+namespace skerry {
+
+/// Where a joint's frame is on one of its bodies, or in the world.
+struct JointPlace {
+    Vec3 point;
+    Mat3 axes;
+};
+
+struct JointInputs {
+    std::span<const JointKind> kind;
+    std::span<const JointDrive> drive;
+    std::span<const Index> first, second;
+    std::span<const JointFrame> first_frame, second_frame;
+    std::span<const Real> lower, upper;
+    std::span<const JointMotorRow> motor;
+    std::span<const Real> coordinate;
+    std::span<const Vec3> impulse, moment;
+    std::span<const Real> step;
+    std::span<const Range> body_rigid, body_nodes;  // BodyTable
+    std::span<const std::uint8_t> body_asleep;      // BodyTable; empty: none is
+    // RigidBodyTable
+    std::span<const Index> holder;
+    std::span<const Vec3> center, rest_center;
+    std::span<const Mat3> axes, rotation;
+
+    static JointInputs bind(const Binder& binder, const JointTable& joint, const BodyTable& body,
+                            const RigidBodyTable& rigid, const bool& any_asleep) {
+        return {.kind = binder.read(joint.kind),
+                .drive = binder.read(joint.drive),
+                .first = binder.read(joint.first),
+                .second = binder.read(joint.second),
+                .first_frame = binder.read(joint.first_frame),
+                .second_frame = binder.read(joint.second_frame),
+                .lower = binder.read(joint.lower),
+                .upper = binder.read(joint.upper),
+                .motor = binder.read(joint.motor),
+                .coordinate = binder.read(joint.coordinate),
+                .impulse = binder.read(joint.impulse),
+                .moment = binder.read(joint.moment),
+                .step = binder.read(joint.step),
+                .body_rigid = binder.read(body.rigid),
+                .body_nodes = binder.read(body.nodes),
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
+                .holder = binder.read(rigid.holder),
+                .center = binder.read(rigid.center),
+                .rest_center = binder.read(rigid.rest_center),
+                .axes = binder.read(rigid.axes),
+                .rotation = binder.read(rigid.rotation)};
+    }
+
+    std::size_t size() const { return kind.size(); }
+    /// Row of RigidBodyTable; of the world no_index.
+    Index rigid(Index body) const {
+        return body == no_index ? no_index : body_rigid[static_cast<std::size_t>(body)].begin;
+    }
+    /// The first node of a body that impulses can move, else no_index.
+    Index moving_node(Index body) const {
+        const Index row = rigid(body);
+        if (row == no_index || holder[static_cast<std::size_t>(row)] != no_index) return no_index;
+        return body_nodes[static_cast<std::size_t>(body)].begin;
+    }
+    /// Whether no body of a joint moves in this step.
+    bool rests(std::size_t j) const {
+        const auto is_out = [&](Index body) {
+            return moving_node(body) == no_index || body_asleep[static_cast<std::size_t>(body)] != 0;
+        };
+        return !body_asleep.empty() && is_out(first[j]) && is_out(second[j]);
+    }
+    JointPlace place(Index body, const JointFrame& frame) const;
+};
+
+/// The way of a slider (m) or the angle of a hinge (rad) between its places on both bodies, the turn nearest to the one
+/// before; 0 of others.
+Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
+
+/// Writes the blocks of all joints of which a body moves, with the impulses of the last step as the first guess.
+/// Returns false where there is no joint (skipped).
+bool prepare_joints(const JointInputs& joints, Real h, JointBlockTable& blocks);
+
+/// What is known of the joints once a step is taken.
+struct JointMemory {
+    std::span<Real> coordinate;
+    std::span<Vec3> impulse, moment;
+    std::span<Real> step;
+
+    static JointMemory bind(const Binder& binder, JointTable& joint) {
+        return {.coordinate = binder.write(joint.coordinate),
+                .impulse = binder.write(joint.impulse),
+                .moment = binder.write(joint.moment),
+                .step = binder.write(joint.step)};
+    }
+};
+
+/// Keeps what the joints gave for the next step. Returns false where there is no joint (skipped).
+bool store_joints(const JointBlockTable& blocks, Real h, const JointMemory& out);
+
+}  // namespace skerry

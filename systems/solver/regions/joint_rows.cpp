@@ -1,0 +1,189 @@
+#include "systems/solver/regions/joint_rows.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+namespace {
+
+/// One body at the point of a joint, kicked.
+struct BodyMotion {
+    Vec3 arm = Vec3::Zero();                            // m, from its centre
+    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // m/s, rad/s
+    Vec3 spin_rate = Vec3::Zero();                      // rad/s^2, of its free turn
+
+    BodyMotion(const RigidInputs& rigid, Index body, bool moves, const Vec3& point) {
+        if (body == no_index) return;
+        const auto r = static_cast<std::size_t>(body);
+        arm = point - rigid.center[r];
+        velocity = rigid.velocity(r);
+        spin = rigid.spin(r);
+        if (moves)
+            spin_rate = rigid.inverse_inertia[r] * (rigid.angular_momentum[r] + rigid.moment_kick[r]).cross(spin);
+    }
+    Vec3 turning() const { return spin.cross(arm); }
+    Vec3 at_point() const { return velocity + turning(); }
+};
+
+/// m/s^2 or rad/s^2: half the acceleration of the error as it is seen from the second body, while both move freely.
+Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion& second) {
+    if (of_spins) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
+    const Vec3 of_first = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
+    const Vec3 of_second = second.spin.cross(second.turning()) - second.spin_rate.cross(second.arm);
+    return (of_first + of_second) / 2 - second.spin.cross(first.at_point() - second.velocity);
+}
+
+/// No faster than the settings let overlaps be pushed out, beside what the bodies move with.
+Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& first, const BodyMotion& second) {
+    constexpr Real turning = 1;  // rad/s
+    return of_spins ? turning + first.spin.norm() + second.spin.norm()
+                    : stage.settings.recovery_speed + first.turning().norm() + second.turning().norm();
+}
+
+/// `mobility`: of the axis, 1/kg or 1/(kg m^2).
+AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
+    AxisBounds bounds;
+    bounds.low = std::min((axis.lower - axis.coordinate) / h, fastest);
+    bounds.high = std::max((axis.upper - axis.coordinate) / h, -fastest);
+    if (axis.drive == JointDrive::none) return bounds;
+    bounds.most = h * axis.motor.most;
+    bounds.target = axis.motor.target;
+    if (axis.drive == JointDrive::speed) return bounds;
+    const Real way = axis.motor.target - axis.coordinate;
+    // half of its strength is left for loads while it brakes
+    const Real brakes = std::sqrt(axis.motor.most * mobility * std::abs(way));
+    bounds.target = std::copysign(std::min({std::abs(way) / h, axis.motor.most_speed, brakes}), way);
+    return bounds;
+}
+
+/// m/s or rad/s along the rows: by which the error is taken back.
+Vec3 pull_of(const JointBlock& block, Real h, Real fastest) {
+    Vec3 pull = block.error / h;
+    if (!block.axis.locked) pull.z() = 0;
+    const Real speed = pull.norm();
+    return speed > fastest ? Vec3(fastest / speed * pull) : pull;
+}
+
+/// How a body moves over the step with these velocities.
+struct BodyEnd {
+    Vec3 center = Vec3::Zero(), center_next = Vec3::Zero();
+    Mat3 turn = Mat3::Identity();
+
+    BodyEnd(const RegionStage& stage, Index body, Index slot, std::span<const Vec4> velocity) {
+        if (body == no_index) return;
+        const RigidInputs& rigid = stage.inputs.rigid;
+        const auto r = static_cast<std::size_t>(body);
+        center = rigid.center[r];
+        if (slot == no_index) {  // it is led
+            center_next = center + stage.h * rigid.velocity(r);
+            turn = rotation_matrix(stage.h * rigid.spin(r));
+            return;
+        }
+        const auto at = static_cast<std::size_t>(slot);
+        const Vec3 spin = velocity[at + 1].head<3>();
+        const Mat3& inverse = rigid.inverse_inertia[r];
+        const Vec3 rate = inverse * (inverse.inverse() * spin).cross(spin);
+        center_next = center + stage.h * velocity[at].head<3>();
+        turn = rotation_matrix(stage.h * (spin + stage.h / 2 * rate));
+    }
+    Vec3 moved(const Vec3& point) const { return center_next + turn * (point - center); }
+};
+
+/// The error of a block at the end of the step, along its rows as they are then.
+Vec3 error_at_end(const JointBlock& block, const BodyEnd& first, const BodyEnd& second) {
+    const Mat3 frame = second.turn * block.frame;
+    if (!block.turning)
+        return frame.transpose() * (first.moved(block.point) - second.moved(block.point - block.frame * block.error));
+    if (block.axis.locked) {
+        const Mat3 of_first = first.turn * rotation_matrix(block.frame * block.error);
+        return frame.transpose() * rotation_vector(of_first * second.turn.transpose());
+    }
+    const Vec3 axis = block.frame.col(2), off = block.frame * Vec3(block.error.x(), block.error.y(), 0);
+    const Vec3 of_first = std::sqrt(std::max(Real(0), 1 - off.squaredNorm())) * axis + off.cross(axis);
+    return frame.transpose() * frame.col(2).cross(first.turn * of_first);
+}
+
+void add_term(const RegionStage& stage, const JointBlock& block, Index body, Real sign, std::span<const Index> rigid,
+              RigidPart& part) {
+    const auto r = static_cast<std::size_t>(body);
+    RigidTerm& term = part.term[static_cast<std::size_t>(part.term_count++)];
+    const auto place = std::find(rigid.begin(), rigid.end(), body) - rigid.begin();
+    term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = Vec4::Zero(), .spin_step = {}};
+    const Mat3& inverse_inertia = stage.inputs.rigid.inverse_inertia[r];
+    if (block.turning) {
+        term.turn = sign;
+        term.spin_step = columns_of(sign * inverse_inertia);
+        return;
+    }
+    term.weight = sign;
+    term.step = sign / stage.inputs.rigid.mass[r];
+    term.arm = sign * padded(block.point - stage.inputs.rigid.center[r]);
+    term.spin_step = columns_of(inverse_inertia * cross_matrix(term.arm.head<3>()));
+}
+
+}  // namespace
+
+void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
+                const JointPlaceInRegion& place) {
+    const bool first_moves = block.first_node != no_index, second_moves = block.second_node != no_index;
+    const BodyMotion first(stage.inputs.rigid, block.first, first_moves, block.point);
+    const BodyMotion second(stage.inputs.rigid, block.second, second_moves, block.point);
+    const Real fastest = fastest_pull(stage, block.turning, first, second);
+    const bool with_axis = !block.axis.locked;
+
+    RigidPart& part = place.part;
+    part.term_count = 0;
+    if (first_moves) add_term(stage, block, block.first, 1, rigid, part);
+    if (second_moves) add_term(stage, block, block.second, -1, rigid, part);
+    part.frame = columns_of(block.frame);
+    const Mat3 mobility = rigid_coupling(part, part);
+    part.mobility = columns_of(mobility);
+    part.along_normal = part.steepest = mobility.norm();
+    place.law.prepare(block.frame.transpose() * mobility * block.frame, with_axis);
+    place.law.axis = with_axis ? bounds_of(block.axis, place.law.axis_mobility, stage.h, fastest) : AxisBounds{};
+
+    Vec3 bias = pull_of(block, stage.h, fastest) +
+                stage.h * (block.frame.transpose() * half_acceleration(block.turning, first, second));
+    if (with_axis) bias.z() = 0;
+    Vec3 offset = block.frame * bias;
+    if (!first_moves) offset += block.turning ? first.spin : first.at_point();
+    if (!second_moves) offset -= block.turning ? second.spin : second.at_point();
+
+    LumpedContact& contact = place.contact;
+    contact = LumpedContact{};
+    contact.normal = part.frame[2];
+    contact.offset = padded(offset);
+    contact.diagonal = mobility.trace() / 3;
+    contact.inverse_diagonal = 1 / contact.diagonal;
+}
+
+Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
+                   const JointPlaceInRegion& place) {
+    const bool first_moves = block.first_node != no_index, second_moves = block.second_node != no_index;
+    const RigidPart& part = place.part;
+    const Index first_slot = first_moves ? part.term[0].slot : no_index;
+    const Index second_slot = second_moves ? part.term[first_moves ? 1 : 0].slot : no_index;
+    const BodyEnd first(stage, block.first, first_slot, velocity), second(stage, block.second, second_slot, velocity);
+    const BodyMotion first_before(stage.inputs.rigid, block.first, first_moves, block.point);
+    const BodyMotion second_before(stage.inputs.rigid, block.second, second_moves, block.point);
+    const Real fastest = fastest_pull(stage, block.turning, first_before, second_before);
+    const Vec3 left = block.error - stage.h * pull_of(block, stage.h, fastest);
+    Vec3 off = (error_at_end(block, first, second) - left) / stage.h;
+    if (!block.axis.locked) off.z() = 0;
+    place.contact.offset += padded(block.frame * off);
+    return place.contact.inverse_diagonal * off.squaredNorm();
+}
+
+void add_joint(const JointPlaceInRegion& place, const Vec4& u, LoadSums& sums) {
+    const Vec3 of_rows = matrix_of(place.part.frame).transpose() * u.head<3>();
+    const Vec3 residual = place.law.natural_map(Vec3::Zero(), of_rows, place.contact.diagonal);
+    sums.moving += place.contact.inverse_diagonal * u.squaredNorm();
+    if (residual.isZero(0)) return;
+    sums.separating = false;
+    sums.asked += place.contact.diagonal * residual.squaredNorm();
+}
+
+}  // namespace skerry

@@ -1,0 +1,129 @@
+// Limits and motors of joints, against closed forms (docs/methods/joints.md 3).
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "skerry/joint.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+constexpr Real length = 0.4, side = 0.04, reach = 0.2;  // m, of an arm that lies along x from the hinge at the origin
+const Mesh arm_mesh = mesh::box({length, side, side}, {2, 1, 1});
+const Real mass = 1000 * side * side * length;                                            // kg
+const Real inertia = mass * (length * length + side * side) / 12 + mass * reach * reach;  // kg m^2, about the hinge
+const Real weight_moment = mass * standard_gravity * reach;                               // N m, lying flat
+
+/// An arm on a hinge: turned about -y it rises.
+struct Arm {
+    World world;
+    BodyHandle body;
+    JointHandle hinge;
+
+    Arm(const JointSettings& joint, const Vec3& gravity = {0, 0, -standard_gravity}, Real h = 1.0 / 500)
+        : world([&] {
+              Settings settings = accurate(gravity, 1e-10);
+              settings.step_size = h;
+              return settings;
+          }()) {
+        body = world.add_body(
+            arm_mesh, {.material = world.add_material({}), .position = {reach, 0, 0}, .dynamics = BodyDynamics::rigid});
+        JointSettings settings = joint;
+        settings.kind = JointKind::hinge;
+        settings.first = body;
+        settings.axis = {0, -1, 0};
+        hinge = Joints(world).add(settings);
+    }
+    JointState state() { return Joints(world).state(hinge); }
+};
+
+}  // namespace
+
+TEST_CASE("a hinge stops at its limits, which carry the weight", "[scene][joints]") {
+    Arm arm({.lower = -0.5, .upper = 0.3});
+    REQUIRE(arm.world.advance(2).ok());
+    CHECK(arm.state().coordinate == Approx(-0.5).epsilon(1e-6));
+    CHECK(arm.state().speed == Approx(0).margin(1e-9));
+    CHECK((arm.state().moment - Vec3(0, -weight_moment * std::cos(0.5), 0)).norm() < 1e-6 * weight_moment);
+    CHECK(arm.state().force.z() == Approx(mass * standard_gravity).epsilon(1e-6));
+    arm.world.set_gravity({0, 0, standard_gravity});
+    REQUIRE(arm.world.advance(2).ok());
+    CHECK(arm.state().coordinate == Approx(0.3).epsilon(1e-6));
+    // beyond a limit it is taken back
+    Joints(arm.world).set_limits(arm.hinge, -0.5, 0.1);
+    REQUIRE(arm.world.advance(1).ok());
+    CHECK(arm.state().coordinate == Approx(0.1).epsilon(1e-6));
+    Joints(arm.world).set_limits(arm.hinge, {}, {});
+    REQUIRE(arm.world.advance(0.3).ok());
+    CHECK(arm.state().coordinate > 0.2);
+    CHECK(arm.world.report().energy_error_share < 1e-3);
+}
+
+TEST_CASE("a motor speeds up with its strength, and goes on at its speed", "[scene][joints]") {
+    const Real strength = 0.5, speed = 4;
+    Arm arm({.motor = JointMotor{.speed = speed, .strength = strength}}, Vec3::Zero());
+    REQUIRE(arm.world.advance(0.1).ok());
+    CHECK(arm.state().speed == Approx(strength / inertia * 0.1).epsilon(1e-4));
+    CHECK(arm.state().moment.y() == Approx(-strength).epsilon(1e-4));
+    REQUIRE(arm.world.advance(1).ok());
+    CHECK(arm.state().speed == Approx(speed).epsilon(1e-6));
+    CHECK(arm.state().moment.norm() < 1e-3);
+    const Real before = arm.state().coordinate;
+    REQUIRE(arm.world.advance(5).ok());  // more than three turns
+    CHECK(arm.state().coordinate - before == Approx(5 * speed).epsilon(1e-4));
+    Joints(arm.world).set_motor(arm.hinge, JointMotor{.speed = -1, .strength = 100});
+    REQUIRE(arm.world.advance(0.01).ok());
+    CHECK(arm.state().speed == Approx(-1).epsilon(1e-4));
+    Joints(arm.world).set_motor(arm.hinge, {});
+    REQUIRE(arm.world.advance(1).ok());
+    CHECK(arm.state().speed == Approx(-1).epsilon(1e-3));
+    CHECK(arm.world.report().energy_error_share < 1e-3);
+}
+
+TEST_CASE("a motor holds what it can, and what it cannot falls with what is left", "[scene][joints]") {
+    Arm holds({.motor = JointMotor{.position = 0, .strength = 1.01 * weight_moment}});
+    REQUIRE(holds.world.advance(2).ok());
+    CHECK(std::abs(holds.state().coordinate) < 1e-9);
+    CHECK(holds.state().moment.y() == Approx(-weight_moment).epsilon(1e-6));
+
+    Arm falls({.motor = JointMotor{.position = 0, .strength = 0.4 * weight_moment}});
+    REQUIRE(falls.world.advance(0.05).ok());
+    CHECK(falls.state().speed == Approx(-0.05 * 0.6 * weight_moment / inertia).epsilon(2e-3));
+    CHECK(falls.state().moment.y() == Approx(-0.4 * weight_moment).epsilon(1e-6));
+}
+
+TEST_CASE("a motor takes a hinge to a position at its speed, and stops there", "[scene][joints]") {
+    const Real target = std::numbers::pi / 3, fastest = 1.5;
+    Arm arm({.motor = JointMotor{.position = target, .strength = 50, .fastest = fastest}});
+    REQUIRE(arm.world.advance(0.2).ok());
+    CHECK(arm.state().coordinate == Approx(0.2 * fastest).epsilon(1e-2));
+    CHECK(arm.state().speed == Approx(fastest).epsilon(1e-6));
+    REQUIRE(arm.world.advance(1).ok());
+    CHECK(arm.state().coordinate == Approx(target).epsilon(1e-6));
+    CHECK(arm.state().moment.y() == Approx(-weight_moment * std::cos(target)).epsilon(1e-4));
+    // a stop in its way is stronger
+    Joints(arm.world).set_limits(arm.hinge, -1, 1.2);
+    Joints(arm.world).set_motor(arm.hinge, JointMotor{.position = 3, .strength = 50, .fastest = fastest});
+    REQUIRE(arm.world.advance(1).ok());
+    CHECK(arm.state().coordinate == Approx(1.2).epsilon(1e-6));
+    Joints(arm.world).set_motor(arm.hinge, JointMotor{.position = 0, .strength = 50});
+    REQUIRE(arm.world.advance(0.2).ok());  // as fast as it can brake: no further
+    CHECK(std::abs(arm.state().coordinate) < 1e-6);
+    CHECK(std::abs(arm.state().speed) < 1e-6);
+}
+
+TEST_CASE("a setter that gives what was there changes no bit", "[scene][joints]") {
+    const JointMotor motor{.speed = 1, .strength = 2};
+    Arm arm({.lower = -1, .motor = motor});
+    REQUIRE(arm.world.advance(0.2).ok());
+    const std::uint64_t before = arm.world.state_hash();
+    Joints(arm.world).set_motor(arm.hinge, motor);
+    Joints(arm.world).set_limits(arm.hinge, -1, {});
+    CHECK(arm.world.state_hash() == before);
+    CHECK_THROWS_AS(Joints(arm.world).set_motor(arm.hinge, JointMotor{}), SceneError);
+    CHECK_THROWS_AS(Joints(arm.world).set_limits(arm.hinge, 1, 0), SceneError);
+    CHECK(arm.world.state_hash() == before);
+}
