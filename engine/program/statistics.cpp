@@ -135,6 +135,7 @@ Json statistics_of(const RunResult& result) {
           {"pair_searches", r.pair_searches},
           {"candidates", r.candidates},
           {"inline_steps", r.inline_steps},
+          {"resting_steps", r.resting_steps},
           {"crossing_tests", r.crossing_tests},
           {"crossings_found", r.crossings_found},
           {"crossed", r.crossed}}},

@@ -220,7 +220,7 @@ const Rule<Settings>& rule_of<Settings>() {
             .key(
                 "sleep", &S::sleep,
                 {.meaning = "bodies that hardly move for sleep_time, and do not move more and more, rest with all that "
-                            "they touch, until something presses on them"})
+                            "they touch, until something presses on them; false by default: they go on moving"})
             .key("sleep_speed", &S::sleep_speed,
                  {.meaning = "above 0: bodies slower than this for sleep_time rest, in place of what sleep says",
                   .unit = "m/s",
@@ -228,7 +228,8 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("sleep_time", &S::sleep_time,
                  {.meaning = "how long a body has to be still to be put to rest", .unit = "s", .limits = at_least(0)})
             .key("contact_budgets", &S::contact_budgets,
-                 {.meaning = "skip what cannot have come close; false searches everything"})
+                 {.meaning =
+                      "skip what cannot have come close, and steps in which nothing moves; false searches everything"})
             .key("continuous_collision", &S::continuous_collision,
                  {.meaning = "a step in which surfaces would go through each other is tried again with what crossed as "
                              "contacts"})

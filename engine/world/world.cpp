@@ -131,7 +131,6 @@ World World::clone() const {
     to.scratch.findings = from.scratch.findings;
     to.scratch.contacts = from.scratch.contacts;
     to.record.counters = from.record.counters;
-    to.record.resting_steps = from.record.resting_steps;
     to.record.limits = from.record.limits;
     to.record.balance = from.record.balance;
     to.record.start_overlaps = from.record.start_overlaps;

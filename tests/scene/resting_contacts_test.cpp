@@ -6,7 +6,6 @@
 #include <iterator>
 #include <string>
 
-#include "engine/world/world_state.h"
 #include "skerry/output.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
@@ -59,10 +58,6 @@ struct Stack {
         return sum;
     }
 };
-
-std::uint64_t steps_left_out(const World& world) {
-    return WorldAccess::state_of(world).record.resting_steps;
-}
 
 void check_same(const Contact& a, const Contact& b, Real scale) {
     CHECK(a.first == b.first);
@@ -233,7 +228,7 @@ TEST_CASE("worlds at rest that are cloned, saved and loaded show the same contac
     expect_same();
     for (World* world : {&stack.world, &loaded, &cloned}) REQUIRE(world->advance(0.0217).ok());
     expect_same();
-    CHECK(steps_left_out(loaded) == steps_left_out(stack.world));
+    CHECK(loaded.report().resting_steps == stack.world.report().resting_steps);
     for (World* world : {&stack.world, &loaded, &cloned}) {
         world->wake(stack.low);
         REQUIRE(world->advance(0.02).ok());
@@ -263,8 +258,8 @@ TEST_CASE("a step that nothing moves in is left out, with the bits that its stag
             CAPTURE(call, quick.world.report().asleep);
             REQUIRE(quick.world.state_hash() == slow.world.state_hash());
         }
-        CHECK(steps_left_out(quick.world) > 100);
-        CHECK(steps_left_out(slow.world) == 0);
+        CHECK(quick.world.report().resting_steps > 100);
+        CHECK(slow.world.report().resting_steps == 0);
         CHECK(quick.world.report().steps == slow.world.report().steps);
         CHECK(quick.world.report().energy_error == slow.world.report().energy_error);
         CHECK(quick.world.report().balanced_steps == slow.world.report().balanced_steps);
@@ -289,11 +284,11 @@ TEST_CASE("a collider that begins to move ends the steps that are left out", "[s
     REQUIRE(stack.settle(11));
     REQUIRE(stack.world.advance(12 - stack.world.time()).ok());
     REQUIRE(stack.all_rest());
-    const std::uint64_t left_out = steps_left_out(stack.world);
+    const std::uint64_t left_out = stack.world.report().resting_steps;
     CHECK(left_out > 0);
     REQUIRE(stack.world.advance(1).ok());
     CHECK_FALSE(stack.world.asleep(stack.high));
     CHECK(stack.world.asleep(stack.beside));
     CHECK(stack.world.center_of_mass(stack.high).z() < 0.152);
-    CHECK(steps_left_out(stack.world) == left_out);
+    CHECK(stack.world.report().resting_steps == left_out);
 }

@@ -28,8 +28,6 @@ struct ForceReport {
     Index most_contacts = 0;           // the same, of the step that had most
     Real seconds = 0;                  // s, by which the call moved time on
     Vec3 moment_point = Vec3::Zero();  // m, that of measure_forces
-    // s, of them, at rest since before forces were measured: what acted then is not known and not counted
-    Real unknown_seconds = 0;
 
     /// N, mean over the call; zero where it took no step.
     Vec3 force() const { return seconds > 0 ? Vec3(impulse / seconds) : Vec3::Zero(); }
@@ -49,7 +47,8 @@ struct PairForces {
 
 /// A view of a world that measures forces, valid as long as the world is where it is. What was removed since the call
 /// has taken its contacts along. Bodies at rest are held by the mean of what held them while they were still: the sum
-/// over what holds one is its weight and loads to within mass times its speed over sleep_time.
+/// over what holds one is its weight and loads to within mass times its speed over sleep_time. Where forces were not
+/// measured then, by what held them in the last step before they came to rest (World::contacts).
 ///
 /// The partners of a pair have opposite impulses, to the last bit. Their moments differ by what the distance between
 /// their surfaces makes of friction: each acts on the nodes, or on the point of the collider, which it is applied to.

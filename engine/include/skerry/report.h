@@ -37,7 +37,8 @@ struct EnumNames<StepLimit> {
     }};
 };
 
-/// One contact of the last step.
+/// One contact of the last step, or between what rests: then as it was in the last step before that, with the impulse
+/// that its force has in a step as long as the last one.
 struct Contact {
     // the body of the point, or of the first edge; a stale handle where that is of a mesh collider
     BodyHandle first{};
@@ -54,7 +55,7 @@ struct Contact {
     Vec3 slip = Vec3::Zero();     // m/s, tangential relative velocity after the step
     Vec3 impulse = Vec3::Zero();  // N s, on the first body
     ContactMotion motion = ContactMotion::open;
-    Index region = -1;  // -1: none of its nodes moves
+    Index region = -1;  // -1: none of its nodes moves, or it is between what rests
 };
 
 /// Seconds and runs of one stage.
@@ -101,7 +102,7 @@ public:
     int limited = 0;         // steps that were shorter than step_size of the settings, which limited_by does not stand
     Real limited_step = 0;   // s, what it stands
     std::string limited_by;  // name of the body
-    Index contacts = 0;      // of the last step
+    Index contacts = 0;      // of the last step, without those between what rests
     Index regions = 0;
     Index largest_region = 0;    // contacts
     Index unconverged = 0;       // regions, summed over the steps
@@ -191,11 +192,12 @@ struct StartMove {
 /// Sums, and largest values, over all steps since the world was made. Each step adds to them.
 struct RunCounters {
     std::uint64_t steps = 0;
-    std::uint64_t inline_steps = 0;  // too small to pay for threads
-    std::uint64_t shortened = 0;     // steps tried again at half the length
-    std::uint64_t retried = 0;       // steps tried again with what crossed in them as contacts
-    std::uint64_t limited = 0;       // steps shorter than step_size of the settings, which a body does not stand
-    std::uint64_t inversions = 0;    // elements that turned inside out, each time that one did
+    std::uint64_t inline_steps = 0;   // too small to pay for threads
+    std::uint64_t resting_steps = 0;  // all rested and nothing moved, so that no stage had anything to do
+    std::uint64_t shortened = 0;      // steps tried again at half the length
+    std::uint64_t retried = 0;        // steps tried again with what crossed in them as contacts
+    std::uint64_t limited = 0;        // steps shorter than step_size of the settings, which a body does not stand
+    std::uint64_t inversions = 0;     // elements that turned inside out, each time that one did
     std::uint64_t contact_sum = 0, iteration_sum = 0;  // contacts, and sweeps of regions, of each step
     std::uint64_t solved = 0;                          // regions
     std::uint64_t unconverged = 0;                     // regions

@@ -165,13 +165,14 @@ struct Settings {
     StartOverlaps start_overlaps = StartOverlaps::resolve;
     Real max_strain_step = 0.2;  // a step in which F of an element changes by more (Frobenius norm) is refused
     // A body that has been still for sleep_time is put to rest, together with all that it touches: it is left out of
-    // the step and its contacts are not reported until something presses on it or changes it. With `sleep` a body is
+    // the step, with its contacts as they were, until something presses on it or changes it. With `sleep` a body is
     // still that hardly moves, and does not move more and more (docs/methods/skipping.md 3.1); where sleep_speed is
     // above 0, one all of whose nodes are slower than that.
     bool sleep = false;
-    Real sleep_speed = 0;         // m/s, >= 0
-    Real sleep_time = 0.5;        // s, >= 0
-    bool contact_budgets = true;  // skip what cannot have come close; off searches everything
+    Real sleep_speed = 0;   // m/s, >= 0
+    Real sleep_time = 0.5;  // s, >= 0
+    // Skip what cannot have come close, and steps in which nothing moves; off searches everything.
+    bool contact_budgets = true;
     // A step in which surfaces would go through each other is tried again with what crossed as contacts. Only fast
     // pairs are looked at.
     bool continuous_collision = true;

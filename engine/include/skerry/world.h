@@ -195,7 +195,8 @@ public:
     std::optional<SurfaceHit> nearest_point(const Vec3& point, Real max_distance, const QueryFilter& filter = {}) const;
 
     // What happened.
-    /// Of the last step, in a fixed order, without those of what was removed since; none when the step was refused.
+    /// Of the last step and of what rests, in a fixed order, without those of what was removed since; none when the
+    /// step was refused.
     std::span<const Contact> contacts() const;
     WorldReport report() const;
     Energy energy() const;

@@ -95,8 +95,7 @@ void require_weights(const PointProbe& point) {
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
-    // without a step no time passed that an impulse acted for; what a rest hides is not known
-    const bool known = force.seconds > 0 && !(force.unknown > 0);
+    const bool known = force.seconds > 0;  // without a step no time passed that an impulse acted for
     const Real none = std::numeric_limits<Real>::quiet_NaN();
     const Real per = known ? 1 / force.seconds : none;
     put_vector(known ? force.impulse : Vec3::Constant(none), values);
@@ -126,7 +125,6 @@ void ForceSum::add(const ForceReport& report) {
     pressing += report.pressing_impulse;
     largest = std::max(largest, report.largest_force);
     seconds += report.seconds;
-    unknown += report.unknown_seconds;
     contacts = report.contacts;
 }
 

@@ -10,7 +10,7 @@ namespace skerry {
 /// What a probe of forces got since the row before.
 struct ForceSum {
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();  // N s, N m s
-    Real pressing = 0, largest = 0, seconds = 0, unknown = 0;
+    Real pressing = 0, largest = 0, seconds = 0;
     Index contacts = 0;
 
     void add(const ForceReport& report);

@@ -110,7 +110,6 @@ void list_cache(ContactCache& cache, SavedRows& saved, auto&& archive) {
 
 void list_run(WorldState& world, SavedRows& saved, auto&& archive) {
     archive.value("/run/counters", world.record.counters);
-    archive.value("/run/resting_steps", world.record.resting_steps);
     archive.value("/run/balance", world.record.balance);
     archive.column("/run/limits/limit", saved.limit);
     archive.column("/run/limits/slot", saved.limit_slot);

@@ -24,7 +24,6 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
-    std::uint64_t resting_steps = 0;           // in which nothing moved, so that no stage ran
     std::vector<StartOverlap> start_overlaps;  // of the last look
     std::vector<StartMove> start_moves;
     StepLimits limits;

@@ -47,6 +47,7 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
         counters.worst_region = size;
     }
     counters.inline_steps += scratch.ran_inline;
+    counters.resting_steps += scratch.left_out;
     counters.dissipated += findings.measures.dissipated + findings.damped + findings.strained + findings.relaxed +
                            findings.viscous + findings.rest.energy;
     counters.max_penetration = std::max(counters.max_penetration, findings.measures.max_penetration);

@@ -109,7 +109,6 @@ void commit(WorldState& world) {
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
     count_step(scratch, world.record.counters);
-    world.record.resting_steps += scratch.left_out;
     add_step(scratch, world.record.balance);
     count_impulses(parameters, world.clock.cycle, world.record.counters);
     if (parameters.limits_impulses) {
