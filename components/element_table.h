@@ -19,6 +19,7 @@ using NodeLane = Lanes<Index, element_lanes>;        // rows of NodeTable
 using TetrahedronNodes = std::array<NodeLane, 4>;    // corner a of lane l: nodes[a][l]
 using ElementGradient = std::array<ElementLane, 3>;  // 1/m, component i of lane l: gradient[i][l]
 using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y, z
+using ElementForm = std::array<ElementLane, 6>;      // symmetric: xx, yy, zz, xy, yz, zx
 // Of a symmetric strain: xx, yy, zz, xy, yz, zx; then a volume strain of its own
 using ElementStrain = std::array<ElementLane, 7>;
 
@@ -49,10 +50,13 @@ struct TetrahedronBlockTable {
 /// gradients zero and repeat the first node of the block, so that they add nothing. Element e of the table is lane e %
 /// element_lanes of block e / element_lanes.
 struct ElementBlockTable {
-    Column<Index> first;                    // row of ElementNodeTable
-    Column<Index> count;                    // of rows
-    Column<ElementLane> volume;             // m^3, at rest; 0 in a lane that is left over
-    Column<ElementLane> mass_share;         // weight with which an element takes mass from its nodes (stable_step.h)
+    Column<Index> first;             // row of ElementNodeTable
+    Column<Index> count;             // of rows
+    Column<ElementLane> volume;      // m^3, at rest; 0 in a lane that is left over
+    Column<ElementLane> mass_share;  // weight with which an element takes mass from its nodes (stable_step.h)
+    // 1/(kg m^2), Q of the mass G Q^-1 G^T that an element takes from its nodes (mass_forms.h); 0: it goes by
+    // mass_share
+    Column<ElementForm> mass_form;
     Column<ElementLane> implicit_modulus;   // Pa, stiffness of an element that a cluster carries; 0: an explicit one
     Column<ElementRotation> rotation;       // corotational frame, the start of the next extraction
     Column<ElementRotation> rotation_next;  // this step's frame; swapped with rotation when the step is committed
@@ -81,6 +85,7 @@ struct ElementBlockTable {
         visit("count", count, ColumnRole::state);
         visit("volume", volume, ColumnRole::state);
         visit("mass_share", mass_share, ColumnRole::state);
+        visit("mass_form", mass_form, ColumnRole::state);
         visit("implicit_modulus", implicit_modulus, ColumnRole::state);
         visit("rotation", rotation, ColumnRole::state);
         visit("body", body, ColumnRole::link);

@@ -9,6 +9,7 @@
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
+#include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
 
@@ -90,6 +91,18 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     std::vector<Real> stiffness_sum(model.nodes.position.size());
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
     kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
+    if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
+        // Shares tell which elements are stiff, for themselves; how long the step is they tell too low.
+        Real shortest = std::numeric_limits<Real>::infinity();
+        for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
+        const Real longer =
+            kernels()
+                .stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum)
+                .step /
+            shortest;
+        for (ElementLane& lanes : step)
+            for (Real& own : lanes.lane) own *= longer;
+    }
     const RaggedView<Index> covered = model.body_records[row].element_tetrahedra.view();
     std::vector<Real> of_tetrahedra(static_cast<std::size_t>(model.bodies.tetrahedron_count[row]),
                                     std::numeric_limits<Real>::infinity());

@@ -19,6 +19,7 @@
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
 #include "systems/dynamics/motion/predict_velocity.h"
+#include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/solver/solve_regions.h"
@@ -53,6 +54,7 @@ struct Kernels {
                               std::span<const Real> mass, std::span<Real> stiffness_sum);
     decltype(&skerry::element_steps) element_steps;
     decltype(&skerry::find_mass_shares) find_mass_shares;
+    decltype(&skerry::find_mass_forms) find_mass_forms;
     decltype(&skerry::watch_stable_steps) watch_stable_steps;
     decltype(&skerry::solve_regions) solve_regions;
 };

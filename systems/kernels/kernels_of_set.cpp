@@ -31,6 +31,7 @@ const skerry::Kernels SKERRY_KERNELS = {
     .stable_step = &skerry::stable_step,
     .element_steps = &skerry::element_steps,
     .find_mass_shares = &skerry::find_mass_shares,
+    .find_mass_forms = &skerry::find_mass_forms,
     .watch_stable_steps = &skerry::watch_stable_steps,
     .solve_regions = &skerry::solve_regions,
 };

@@ -4,6 +4,7 @@
 
 #include "jobs/executor.h"
 #include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/stability/mass_forms.h"
 #include "tests/support/elastic_body.h"
 #include "tests/support/element_kinds.h"
 #include "tests/support/exact_frequency.h"
@@ -194,5 +195,10 @@ TEST_CASE("the stable step of a layered body is below its limit, and shares of m
             CHECK(after <= 0.9 * limit * (1 + 1e-6));
             CHECK(after >= 0.6 * 0.9 * limit);
             CHECK(after >= 0.99 * before);
+            find_mass_forms(body.inputs(), body.blocks, body.position, body.mass, products_of_group,
+                            body.elements.mass_form.span());
+            const Real by_forms = test::stable_step_of(body);
+            CHECK(by_forms <= 0.9 * limit * (1 + 1e-6));
+            CHECK(by_forms >= 0.6 * 0.9 * limit);
         }
 }

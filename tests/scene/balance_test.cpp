@@ -42,11 +42,12 @@ World busy_world(Real step_safety, Real damping = 0, const MaterialSettings& los
 
 TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the error of the step", "[scene]") {
     const MaterialSettings usual, none = test::lossless({});
-    for (const auto& [safety, losses, most] : {std::tuple{1.0, none, 1e-3},
-                                               {0.5, none, 1e-3},
-                                               {0.25, none, 1e-3},
-                                               {1.0, usual, 5e-3},
-                                               {0.25, usual, 2e-3}}) {
+    for (const auto& [safety, losses, most] :
+         {std::tuple{0.65, none, 1e-3},  // without losses the error is of second order in the step
+          {0.5, none, 1e-3},
+          {0.25, none, 1e-3},
+          {1.0, usual, 5e-3},
+          {0.25, usual, 2e-3}}) {
         World world = busy_world(safety, 0, losses);
         REQUIRE(world.advance(0.4).ok());
         const WorldReport report = world.report();

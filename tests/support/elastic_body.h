@@ -75,7 +75,8 @@ struct ElasticBody {
                 .relaxation_rate = elements.relaxation_rate,
                 .own_frequency = elements.own_frequency,
                 .relaxing_share = elements.relaxing_share,
-                .viscous_strain = elements.viscous_strain};
+                .viscous_strain = elements.viscous_strain,
+                .mass_form = elements.mass_form};
     }
 
     /// `h`: s, since the elements were last looked at: what relaxes does so for this long. Returns what that

@@ -35,6 +35,7 @@ private:
         with(mass_, rows(model.nodes.mass, nodes));
         with(inverse_mass_, rows(model.nodes.inverse_mass, nodes));
         with(mass_share_, rows(model.elements.mass_share, blocks));
+        with(mass_form_, rows(model.elements.mass_form, blocks));
         with(implicit_modulus_, rows(model.elements.implicit_modulus, blocks));
         with(relaxation_rate_, rows(model.elements.relaxation_rate, blocks));
         with(own_frequency_, rows(model.elements.own_frequency, blocks));
@@ -43,6 +44,7 @@ private:
 
     std::size_t body_;
     std::vector<Real> mass_, inverse_mass_, relaxing_share_;
+    std::vector<ElementForm> mass_form_;
     std::vector<ElementLane> mass_share_, implicit_modulus_, relaxation_rate_, own_frequency_;
     Real rest_step_ = 0, stable_step_ = 0;
 };

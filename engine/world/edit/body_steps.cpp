@@ -7,6 +7,7 @@
 #include "engine/world/kernels.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/find_relaxation.h"
+#include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
 
@@ -78,6 +79,19 @@ void set_masses(Model& model, const NewBody& body, Range range) {
         nodes.inverse_mass[n] = nodes.mass[n] > 0 ? 1 / nodes.mass[n] : 0;
 }
 
+void choose_mass_forms(Model& model, Index row, std::span<const Vec3> position, std::span<Real> stiffness_sum) {
+    const Range blocks = model.bodies.blocks[static_cast<std::size_t>(row)];
+    const auto step = [&] {
+        return kernels().stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
+    };
+    const std::span<ElementForm> form = rows_of(model.elements.mass_form, blocks);
+    std::ranges::fill(form, ElementForm{});
+    const Real by_shares = step();
+    kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
+    // in groups, as large bodies are, forms lose some of what they gain
+    if (!(step() > by_shares)) std::ranges::fill(form, ElementForm{});
+}
+
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
                 std::span<const Vec3> position, Column<Real>& stiffness_sum) {
     const auto b = static_cast<std::size_t>(row);
@@ -96,9 +110,11 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
                        bodies.rest_step[b]);
     // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
     const auto& levels = bodies.level_count[b];
-    if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; }))
+    if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; })) {
         kernels().find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
                                    rows_of(model.elements.mass_share, blocks));
+        choose_mass_forms(model, row, position, stiffness_sum);
+    }
     bodies.rest_step[b] = bodies.stable_step[b] = step();
 }
 
@@ -115,6 +131,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
 
     ElementBlockTable& elements = model.elements;
     start_mass_shares(model.all_elements(), blocks, rows_of(elements.mass_share, blocks));
+    std::ranges::fill(rows_of(elements.mass_form, blocks), ElementForm{});
     std::ranges::fill(rows_of(elements.implicit_modulus, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.relaxation_rate, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.own_frequency, blocks), ElementLane{});

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/world/edit/edit_model.h"
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/checks/check_state.h"
@@ -88,6 +89,11 @@ Found find(Model& model, std::size_t b, Real step, std::span<const Vec3> positio
     return {true, sizes};
 }
 
+/// Elements of a body with clusters go by their shares: implicit ones take no mass.
+void share_masses(Model& model, std::size_t b) {
+    std::ranges::fill(rows_of(model.elements.mass_form, model.bodies.blocks[b]), ElementForm{});
+}
+
 /// Every element explicit again, with the masses shared as for a new body.
 void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     const Range blocks = model.bodies.blocks[b];
@@ -98,6 +104,7 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     note_leeway(model, b);
     kernels().find_mass_shares(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.mass, stiffness_sum,
                                share);
+    choose_mass_forms(model, static_cast<Index>(b), model.nodes.rest_position, stiffness_sum);
     model.bodies.rest_step[b] = step_of(model, b, model.nodes.rest_position, stiffness_sum);
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }
@@ -176,6 +183,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
     const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (lasts * step);
     if (found.possible &&
         cost_of(model, entries + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {
+        share_masses(model, body);
         model.bodies.cluster_step[body] = step;
         note_leeway(model, body);
         return true;
@@ -195,6 +203,7 @@ void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
     const Plan plan = choose_plan(model, sums);
     for (const auto& [b, elements] : plan.body) {
         elements.put_back(model, b);
+        share_masses(model, b);
         model.bodies.cluster_step[b] = plan.step;
         note_leeway(model, b);
         model.bodies.rest_step[b] = std::min(plan.step, step_of(model, b, model.nodes.rest_position, sums));

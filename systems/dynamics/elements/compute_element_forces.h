@@ -27,6 +27,7 @@ struct ElementInputs {
     std::span<const Real> relaxing_share = {};
     std::span<const ElementStrain> viscous_strain = {};
     ElementSchedule schedule = {};
+    std::span<const ElementForm> mass_form = {};  // 1/(kg m^2); empty: elements go by mass_share
 
     std::size_t blocks() const { return first.size(); }
     BlockNodes nodes_of(std::size_t block) const {
@@ -63,7 +64,8 @@ struct ElementInputs {
                              .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
                              .body_cap = binder.read(body.level_cap),
                              .touched = binder.read(element.touched),
-                             .body_has_touched = binder.read(body.has_touched)}};
+                             .body_has_touched = binder.read(body.has_touched)},
+                .mass_form = binder.read(element.mass_form)};
     }
 };
 

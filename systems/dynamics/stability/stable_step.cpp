@@ -78,6 +78,7 @@ struct Pieces {
     }
     void sum(const PieceRun& run) const {
         for_each_block(run.blocks, run.level, [&](std::size_t b) {
+            if (has_mass_form(elements, b)) return;
             add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
                           [](std::size_t) { return true; });
         });
@@ -89,7 +90,8 @@ struct Pieces {
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, level, [&](std::size_t b) {
             const LaneMat3<Real8> F = deformation_of(elements, b, position);
-            visit(b, frequency_squared_of(elements, b, F, mass, stiffness_sum, q, enough));
+            visit(b, has_mass_form(elements, b) ? frequency_squared_by_form(elements, b, F, q, enough)
+                                                : frequency_squared_of(elements, b, F, mass, stiffness_sum, q, enough));
         });
     }
 };
@@ -198,7 +200,9 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     SKERRY_CHECK(step.size() == static_cast<std::size_t>(blocks.size()));
     clear_stiffness(elements, blocks, stiffness_sum);
     const int levels = levels_of(elements, blocks);
-    const Pieces pieces{elements, position, mass, stiffness_sum};
+    ElementInputs by_shares = elements;
+    by_shares.mass_form = {};
+    const Pieces pieces{by_shares, position, mass, stiffness_sum};
     const std::uint64_t count = pieces_of_look(blocks, levels);
     for (std::uint64_t piece = 0; piece < count;) {
         const PieceRun run = run_from(blocks, levels, piece, count);

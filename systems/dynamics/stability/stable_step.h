@@ -17,11 +17,12 @@ struct StableStep {
     Index element = no_index;  // of ElementBlockTable (lane e % 8 of block e / 8): the element that bounds it
 };
 
-/// Stable step of one body in its present shape: the mass of each node is shared among its elements in proportion to
-/// their stiffness and their mass_share, and omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material
-/// Hessian of the present deformation bounded as docs/methods/stable_step.md 4 gives it. A rigorous bound (never above
-/// the exact limit), sequential, deterministic. Where elements have levels it is the step of level 0 for which every
-/// level has what element_levels.h asks. `stiffness_sum` is scratch, one entry a node.
+/// Stable step of one body in its present shape: the mass of each node is shared among its elements by mass_forms.h,
+/// where they have such, or in proportion to their stiffness and their mass_share, and omega_max^2 <= max_e
+/// lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material Hessian of the present deformation bounded as
+/// docs/methods/stable_step.md 4 gives it. A rigorous bound (never above the exact limit), sequential, deterministic.
+/// Where elements have levels it is the step of level 0 for which every level has what element_levels.h asks.
+/// `stiffness_sum` is scratch, one entry a node.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
@@ -37,7 +38,8 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
 StableStep result_of(const StepLook& look);
 
 /// The step that each element of these blocks allows by itself (s), with the shares of masses that it has: the shortest
-/// is that of stable_step. Infinity where nothing bounds a step, and in lanes left over.
+/// is that of stable_step, or below it where the body goes by mass forms, by which all elements allow the same at rest.
+/// Infinity where nothing bounds a step, and in lanes left over.
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
 

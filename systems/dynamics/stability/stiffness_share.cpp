@@ -40,6 +40,26 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             viscous_stretch(green_strain(F), elements.viscous_strain[block])};
 }
 
+/// Bound of omega^2 of each element of a block with the masses that Q stands for.
+Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const LaneMat3<Real8>& Q,
+               LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness) {
+    const MaterialConstants material = elements.material_of(block);
+    const Real8 volume = load(elements.volume[block]);
+    // nothing, or no number where F is none: not every bound looks at F
+    const Real8 nothing = 0.0 * inner_product(F, F);
+    if (!material.relaxes() || elements.viscous_strain.empty())
+        return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness) + nothing;
+    ViscousPart viscous = viscous_part(elements, block, F);
+    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness);
+    if (all(in_full <= enough)) return in_full + nothing;
+    // A spring that relaxes by a step's end counts less, and the less the longer the step: the step by the springs in
+    // full is a safe guess of it.
+    const Real8 step = step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0);
+    viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
+    viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
+    return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness) + nothing;
+}
+
 }  // namespace
 
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position) {
@@ -81,22 +101,16 @@ void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<El
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
                            Real enough) {
-    const MaterialConstants material = elements.material_of(block);
-    const LaneMat3<Real8> Q = inverse_mass_tensor(elements, block, F, mass, stiffness_sum);
-    const Real8 volume = load(elements.volume[block]);
-    // nothing, or no number where F is none: not every bound looks at F
-    const Real8 nothing = 0.0 * inner_product(F, F);
-    if (!material.relaxes() || elements.viscous_strain.empty())
-        return frequency_squared_bound(material, F, {}, volume, Q, q, enough) + nothing;
-    ViscousPart viscous = viscous_part(elements, block, F);
-    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough);
-    if (all(in_full <= enough)) return in_full + nothing;
-    // A spring that relaxes by a step's end counts less, and the less the longer the step: the step by the springs in
-    // full is a safe guess of it.
-    const Real8 step = step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0);
-    viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
-    viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
-    return frequency_squared_bound(material, F, viscous, volume, Q, q, enough) + nothing;
+    return bound_of(elements, block, F, inverse_mass_tensor(elements, block, F, mass, stiffness_sum), q, enough,
+                    Sharpness::trace);
+}
+
+Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                                LaneQuaternion<Real8>& q, Real enough) {
+    const ElementForm& form = elements.mass_form[block];
+    const Real8 xy = load(form[3]), yz = load(form[4]), zx = load(form[5]);
+    return bound_of(elements, block, F, {{load(form[0]), xy, zx}, {xy, load(form[1]), yz}, {zx, yz, load(form[2])}}, q,
+                    enough, Sharpness::bisected);
 }
 
 Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

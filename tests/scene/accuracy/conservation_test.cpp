@@ -118,7 +118,7 @@ TEST_CASE("a free spinning bar of smoothed elements keeps energy and angular mom
         const auto material =
             world.add_material(test::lossless({.young_modulus = 1e6, .poisson_ratio = 0.3, .model = model}));
         world.add_body(mesh::box({1, 0.1, 0.1}, {20, 2, 2}), {.material = material, .angular_velocity = {0.5, 3, 1}});
-        const Real h = 0.8 * world.stable_step();
+        const Real h = 0.55 * world.stable_step();  // half of what the bar stands: the error is of second order
         const WorldReport start = world.report();
         const auto energy = [&] {
             const Energy now = world.energy();

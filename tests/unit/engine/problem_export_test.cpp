@@ -78,7 +78,7 @@ Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 TEST_CASE("the impulses of a step solve the problem that it shows", "[unit][problem]") {
     Stack stack;
     stack.watch();
-    stack.world.advance(0.1);
+    stack.world.advance(0.14);
     REQUIRE(stack.problems.size() > 20);
     REQUIRE(stack.any_coupled());
     int turns = 0;
@@ -201,7 +201,7 @@ TEST_CASE("regions alone are solved as the whole step is", "[unit][problem]") {
 TEST_CASE("bounces are part of the problem that a step shows", "[unit][problem]") {
     Stack stack(Stack::exact(), {.young_modulus = 2e4, .density = 500, .restitution = 0.7});
     stack.watch();
-    stack.world.advance(0.05);
+    stack.world.advance(0.07);
     REQUIRE(stack.problems.size() > 10);
     for (const StepProblem& step : stack.problems) CHECK(independent_error(step.problem, step.impulse) < 1e-8);
 }
@@ -210,7 +210,7 @@ TEST_CASE("a problem says when its mu is not all of the friction", "[unit][probl
     const MaterialSettings two{.young_modulus = 2e4, .density = 500, .static_friction = 0.6, .dynamic_friction = 0.3};
     for (const bool same : {true, false}) {
         Stack stack = same ? Stack() : Stack(Stack::exact(), two);
-        stack.watch(10);
+        stack.watch(5);
         stack.world.advance(0.05);
         REQUIRE_FALSE(stack.problems.empty());
         const ContactProblem& problem = stack.problems.back().problem;

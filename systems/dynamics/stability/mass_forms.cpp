@@ -1,0 +1,463 @@
+// With W = lambda Q^-1 / V an element's stiffness is below lambda G V W G^T / lambda, a form of scalars: one number a
+// node, the same for x, y and z. So how all elements hold each other is a matrix a third as wide as the stiffness, and
+// no element has to be at its worst alone. W = 2 mu 1 + lambda tr(Z) Z^-1 is above the law at rest for every positive
+// Z; a good Z is the root of the mean of grad u grad u^T over the highest modes, which are found beside it, round by
+// round.
+#include "systems/dynamics/stability/mass_forms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "components/check.h"
+#include "systems/dynamics/stability/stiffness_share.h"
+#include "systems/material/relaxation.h"
+
+namespace skerry {
+
+namespace {
+
+using Symmetric = LaneSymmetric<Real8>;
+
+Symmetric load_form(const ElementForm& form) {
+    return {load(form[0]), load(form[1]), load(form[2]), load(form[3]), load(form[4]), load(form[5])};
+}
+void store_form(const Symmetric& s, ElementForm& form) {
+    const Real8 entry[6] = {s.xx, s.yy, s.zz, s.xy, s.yz, s.zx};
+    for (std::size_t i = 0; i < 6; ++i) store(entry[i], form[i]);
+}
+
+Symmetric inverse_of(const Symmetric& s) {
+    const Real8 xx = s.yy * s.zz - s.yz * s.yz, xy = s.zx * s.yz - s.xy * s.zz, zx = s.xy * s.yz - s.zx * s.yy;
+    const Real8 scale = 1.0 / (s.xx * xx + s.xy * xy + s.zx * zx);
+    return {scale * xx, scale * (s.xx * s.zz - s.zx * s.zx), scale * (s.xx * s.yy - s.xy * s.xy),
+            scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
+}
+Symmetric mean_of(const Symmetric& a, const Symmetric& b, Real part_of_b) {
+    const auto mean = [=](const Real8& x, const Real8& y) { return (1 - part_of_b) * x + part_of_b * y; };
+    return {mean(a.xx, b.xx), mean(a.yy, b.yy), mean(a.zz, b.zz), mean(a.xy, b.xy), mean(a.yz, b.yz), mean(a.zx, b.zx)};
+}
+
+/// About the root of a positive matrix whose trace is 1 (Denman and Beavers 1976), too large where it is below 0.03.
+Symmetric root_of(const Symmetric& s) {
+    constexpr int passes = 6;
+    Symmetric root = s, inverse{Real8{} + 1.0, Real8{} + 1.0, Real8{} + 1.0, {}, {}, {}};
+    for (int pass = 0; pass < passes; ++pass) {
+        const Symmetric next = mean_of(root, inverse_of(inverse), 0.5);
+        inverse = mean_of(inverse, inverse_of(root), 0.5);
+        root = next;
+    }
+    return root;
+}
+
+/// Numbers between -1 and 1, the same on every machine (splitmix64).
+class Noise {
+public:
+    Real4 next() { return Real4{one(), one(), one(), one()}; }
+
+private:
+    Real one() {
+        std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+        return static_cast<Real>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+    }
+    std::uint64_t state_ = 1;
+};
+
+Real sum_of(const Real4& x) {
+    return (x[0] + x[1]) + (x[2] + x[3]);
+}
+
+/// Elements that share the mass of their nodes among themselves alone.
+struct ElementGroup {
+    Range blocks;
+    std::vector<Index> node{};     // from 0 at the first node of the body, along the group
+    std::size_t width = 0;         // of the band of its matrix: how far apart nodes of one element are, and one
+    std::vector<Real> mass{};      // kg, what the group has of its nodes
+    std::vector<Real> diagonal{};  // of its form
+    std::vector<Real4> vector{};   // towards its highest modes
+    Real highest = 0;              // 1/s^2, of its form, from below
+};
+
+class FormSearch {
+public:
+    FormSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> mass,
+               Real most_products, std::span<ElementForm> form)
+        : elements_(elements), blocks_(blocks), most_products_(most_products), form_(form), weight_(form.size()) {
+        Index last = 0;
+        first_node_ = std::numeric_limits<Index>::max();
+        for_each_node(blocks, [&](Index node) {
+            first_node_ = std::min(first_node_, node);
+            last = std::max(last, node);
+        });
+        const auto count = static_cast<std::size_t>(last + 1 - first_node_);
+        mass_ = mass.subspan(static_cast<std::size_t>(first_node_), count);
+        position_ = position.subspan(static_cast<std::size_t>(first_node_), count);
+        Real fastest = 0;  // 1/s
+        for (auto b = first_block(); b < static_cast<std::size_t>(blocks.end); ++b) {
+            const MaterialConstants material = elements.material_of(b);
+            stiffest_ = std::max({stiffest_, 2 * material.shear_modulus, material.lame_lambda});
+            if (!elements.own_frequency.empty())
+                for (const Real own : elements.own_frequency[b].lane) fastest = std::max(fastest, own);
+        }
+        constexpr Real longer = 1.5;  // than a step that elements bound one by one
+        if (fastest > 0) relaxing_step_ = longer * step_times_frequency / fastest;
+        vector_.resize(count);
+        product_.resize(count);
+        place_.resize(count, no_index);
+    }
+
+    /// Chooses Z, in the place of the forms, and the weights V W that go with it.
+    void choose() {
+        constexpr int rounds = 16, products = 5;
+        constexpr Real noise_part = 0.3;  // of what the vectors are, anew in each round: modes that are not there yet
+        // from the identity, a mean over what the rounds find
+        for (ElementForm& of_block : form_)
+            for (std::size_t i = 0; i < 6; ++i)
+                for (Real& lane : of_block[i].lane) lane = i < 3 ? Real{1} / 3 : 0;
+        Noise noise;
+        for (int round = 0; round < rounds; ++round) {
+            weigh();
+            for (std::size_t n = 0; n < vector_.size(); ++n)
+                if (mass_[n] > 0) vector_[n] += (round == 0 ? 1 : noise_part) / std::sqrt(mass_[n]) * noise.next();
+            for (int p = 0; p < products; ++p) {
+                std::ranges::fill(product_, Real4{});
+                add_product(blocks_);
+                Real size = 0;  // that of a vector of noise is 1
+                for (std::size_t n = 0; n < vector_.size(); ++n) {
+                    vector_[n] = mass_[n] > 0 ? product_[n] / mass_[n] : Real4{};
+                    size += mass_[n] * sum_of(vector_[n] * vector_[n]);
+                }
+                const Real scale = std::sqrt(static_cast<Real>(4 * vector_.size()) / (3 * size));
+                for (Real4& x : vector_) x *= scale;
+            }
+            follow(1 / static_cast<Real>(2 + round));
+        }
+        weigh();
+    }
+
+    /// A bound on the highest frequency of the form, squared, 1/s^2: the forms over it are the masses of the nodes at
+    /// most.
+    Real bound() {
+        std::vector<ElementGroup> groups;
+        cut(blocks_, groups);
+        share(groups);
+        constexpr Real above = 1.005;  // what the vectors have not found yet
+        Real bound = 0;
+        for (const ElementGroup& group : groups) bound = std::max(bound, above * group.highest);
+        for (const ElementGroup& group : groups) {
+            const std::vector<Real> matrix = matrix_of(group);
+            Real growth = above;
+            for (; std::isfinite(bound) && !is_below(matrix, group.width, bound); growth *= growth) bound *= growth;
+        }
+        return bound;
+    }
+
+    /// Q from V W and the bound.
+    void finish(Real bound) {
+        for (std::size_t i = 0; i < form_.size(); ++i) {
+            const Real8 volume = load(elements_.volume[first_block() + i]);
+            Symmetric Q = Real8(Real8{} + bound) * inverse_of(load_form(weight_[i]));
+            for (Real8* entry : {&Q.xx, &Q.yy, &Q.zz, &Q.xy, &Q.yz, &Q.zx}) *entry = volume > 0.0 ? *entry : Real8{};
+            store_form(Q, form_[i]);
+        }
+    }
+
+private:
+    std::size_t first_block() const { return static_cast<std::size_t>(blocks_.begin); }
+    std::size_t local(Index node) const { return static_cast<std::size_t>(node - first_node_); }
+
+    void for_each_node(Range blocks, auto&& visit) const {
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+            const BlockNodes nodes = elements_.nodes_of(b);
+            for (Index k = 0; k < nodes.count; ++k)
+                for (const Index node : nodes.node[k].lane) visit(node);
+        }
+    }
+    /// visit(block, lane, nodes)
+    void for_each_element(Range blocks, auto&& visit) const {
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                if (elements_.volume[b][l] > 0) visit(b, l, elements_.nodes_of(b));
+    }
+
+    /// V W = V (2 mu 1 + lambda tr(Z) Z^-1)
+    void weigh() {
+        for (std::size_t i = 0; i < form_.size(); ++i) {
+            const auto [shear, volumetric] = moduli_of(first_block() + i);
+            const Symmetric Z = load_form(form_[i]);
+            Symmetric W = Real8(volumetric * Z.trace()) * inverse_of(Z);
+            W.xx += shear;
+            W.yy += shear;
+            W.zz += shear;
+            store_form(load(elements_.volume[first_block() + i]) * W, weight_[i]);
+        }
+    }
+    struct Moduli {
+        Real8 shear, volumetric;  // 2 mu and lambda, Pa
+    };
+    /// With what relaxes as it will count in steps of about relaxing_step_.
+    Moduli moduli_of(std::size_t block) const {
+        constexpr Real least = 1e-9;  // of the stiffest: what has no stiffness takes some mass all the same
+        const MaterialConstants material = elements_.material_of(block);
+        Moduli moduli{Real8{} + std::max(2 * material.shear_modulus, least * stiffest_),
+                      Real8{} + std::max(material.lame_lambda, Real{0})};
+        if (material.relaxes() && !elements_.relaxing_share.empty()) {
+            const ViscousModuli viscous = viscous_moduli(material, elements_.relaxing_share[block]);
+            const Real8 strain = 2.0 / (2.0 + relaxing_step_ * load(elements_.relaxation_rate[block]));
+            const Real8 volume = 2.0 / (2.0 + (relaxing_step_ / bulk_time) * load(elements_.own_frequency[block]));
+            moduli.shear += 2 * viscous.mu * strain;
+            moduli.volumetric += std::max(viscous.lambda, Real{0}) * strain + viscous.bulk * volume;
+        }
+        return moduli;
+    }
+
+    /// Gradients of the vectors in one element.
+    std::array<Real4, 3> gradient_of_vectors(const BlockNodes& nodes, std::size_t l) const {
+        std::array<Real4, 3> t{};
+        for (Index k = 0; k < nodes.count; ++k) {
+            const Real4& x = vector_[local(nodes.node[k][l])];
+            for (std::size_t i = 0; i < 3; ++i) t[i] += nodes.gradient[k][i][l] * x;
+        }
+        return t;
+    }
+    /// product += sum_e G V W G^T vector
+    void add_product(Range blocks) {
+        for_each_element(blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
+            const ElementForm& w = weight_[b - first_block()];
+            const std::array<Real4, 3> t = gradient_of_vectors(nodes, l);
+            const Real4 x = w[0][l] * t[0] + w[3][l] * t[1] + w[5][l] * t[2];
+            const Real4 y = w[3][l] * t[0] + w[1][l] * t[1] + w[4][l] * t[2];
+            const Real4 z = w[5][l] * t[0] + w[4][l] * t[1] + w[2][l] * t[2];
+            for (Index k = 0; k < nodes.count; ++k) {
+                const ElementGradient& g = nodes.gradient[k];
+                product_[local(nodes.node[k][l])] += g[0][l] * x + g[1][l] * y + g[2][l] * z;
+            }
+        });
+    }
+    /// Z goes towards the root of the sum of grad v grad v^T over the vectors v, by this part.
+    void follow(Real part) {
+        constexpr Real even = 0.03;  // of what it goes towards
+        for (std::size_t i = 0; i < form_.size(); ++i) {
+            const std::size_t b = first_block() + i;
+            const BlockNodes nodes = elements_.nodes_of(b);
+            ElementForm sums{};
+            for (std::size_t l = 0; l < element_lanes; ++l) {
+                const std::array<Real4, 3> t = gradient_of_vectors(nodes, l);
+                for (std::size_t r = 0; r < 3; ++r) {
+                    sums[r][l] = sum_of(t[r] * t[r]);
+                    sums[3 + r][l] = sum_of(t[r] * t[(r + 1) % 3]);
+                }
+            }
+            Symmetric C = load_form(sums);
+            const Real8 trace = C.trace();
+            const auto known = (trace > 1e-200) & (trace < 1e200);
+            C = Real8(known ? (1 - even) / trace : Real8{}) * C;
+            const Real8 third = known ? Real8{} + even / 3 : Real8{} + 1.0 / 3;
+            C.xx += third;
+            C.yy += third;
+            C.zz += third;
+            const Symmetric root = root_of(C);
+            const Symmetric Z = load_form(form_[i]);
+            store_form(mean_of(Z, Real8(1.0 / root.trace()) * root, part), form_[i]);
+        }
+    }
+
+    /// Groups of elements that lie close together, as large as the decomposition of their matrix may cost.
+    void cut(Range blocks, std::vector<ElementGroup>& groups) {
+        ElementGroup group{.blocks = blocks};
+        for_each_node(blocks, [&](Index node) {
+            Index& seen = place_[local(node)];
+            if (seen != no_index) return;
+            seen = 0;
+            group.node.push_back(node - first_node_);
+        });
+        sort_along(group.node);
+        number(group);
+        for_each_element(blocks, [&](std::size_t, std::size_t l, const BlockNodes& nodes) {
+            Index low = place_[local(nodes.node[0][l])], high = low;
+            for (Index k = 1; k < nodes.count; ++k) {
+                low = std::min(low, place_[local(nodes.node[k][l])]);
+                high = std::max(high, place_[local(nodes.node[k][l])]);
+            }
+            group.width = std::max(group.width, static_cast<std::size_t>(high - low + 1));
+        });
+        forget_numbers(group);
+        const auto size = static_cast<Real>(group.node.size()), width = static_cast<Real>(group.width);
+        if (size * width * width > 2 * most_products_ && blocks.size() > 1) {
+            const Index middle = blocks.begin + blocks.size() / 2;
+            cut({blocks.begin, middle}, groups);
+            cut({middle, blocks.end}, groups);
+            return;
+        }
+        groups.push_back(std::move(group));
+    }
+    /// Along the longest side of their bounding box.
+    void sort_along(std::vector<Index>& nodes) const {
+        Vec3 low = position_[static_cast<std::size_t>(nodes[0])], high = low;
+        for (const Index n : nodes) {
+            low = low.cwiseMin(position_[static_cast<std::size_t>(n)]);
+            high = high.cwiseMax(position_[static_cast<std::size_t>(n)]);
+        }
+        Eigen::Index axis = 0;
+        (high - low).maxCoeff(&axis);
+        std::ranges::sort(nodes, [&](Index a, Index b) {
+            const Real x = position_[static_cast<std::size_t>(a)][axis],
+                       y = position_[static_cast<std::size_t>(b)][axis];
+            return x != y ? x < y : a < b;
+        });
+    }
+    void number(const ElementGroup& group) {
+        for (std::size_t i = 0; i < group.node.size(); ++i)
+            place_[static_cast<std::size_t>(group.node[i])] = static_cast<Index>(i);
+    }
+    void forget_numbers(const ElementGroup& group) {
+        for (const Index n : group.node) place_[static_cast<std::size_t>(n)] = no_index;
+    }
+
+    /// Masses of the nodes that groups have in common, evened out as those of elements are (stable_step.h).
+    void share(std::vector<ElementGroup>& groups) {
+        constexpr int rounds = 4, products = 8;
+        std::vector<Real> of_nodes(vector_.size()), share(groups.size(), 1);
+        for (ElementGroup& group : groups) {
+            add_diagonal(group);
+            for (const Index n : group.node) group.vector.push_back(vector_[static_cast<std::size_t>(n)]);
+        }
+        for (int round = 0; round < rounds; ++round) {
+            std::ranges::fill(of_nodes, Real{0});
+            for (std::size_t g = 0; g < groups.size(); ++g)
+                for (std::size_t i = 0; i < groups[g].node.size(); ++i)
+                    of_nodes[static_cast<std::size_t>(groups[g].node[i])] += share[g] * groups[g].diagonal[i];
+            Real highest = 0;
+            for (std::size_t g = 0; g < groups.size(); ++g) {
+                ElementGroup& group = groups[g];
+                group.mass.resize(group.node.size());
+                for (std::size_t i = 0; i < group.node.size(); ++i) {
+                    const auto n = static_cast<std::size_t>(group.node[i]);
+                    group.mass[i] = of_nodes[n] > 0 ? mass_[n] * (share[g] * group.diagonal[i] / of_nodes[n]) : 0;
+                }
+                group.highest = highest_of(group, products);
+                highest = std::max(highest, group.highest);
+            }
+            if (groups.size() == 1 || !(highest > 0) || round + 1 == rounds) return;
+            for (std::size_t g = 0; g < groups.size(); ++g) share[g] *= std::sqrt(groups[g].highest / highest);
+        }
+    }
+    void add_diagonal(ElementGroup& group) {
+        std::vector<Real> sum(vector_.size());
+        for_each_element(group.blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
+            const ElementForm& w = weight_[b - first_block()];
+            for (Index k = 0; k < nodes.count; ++k) {
+                const Real x = nodes.gradient[k][0][l], y = nodes.gradient[k][1][l], z = nodes.gradient[k][2][l];
+                sum[local(nodes.node[k][l])] += w[0][l] * x * x + w[1][l] * y * y + w[2][l] * z * z +
+                                                2 * (w[3][l] * x * y + w[4][l] * y * z + w[5][l] * z * x);
+            }
+        });
+        for (const Index n : group.node) group.diagonal.push_back(sum[static_cast<std::size_t>(n)]);
+    }
+    /// Rayleigh's quotient of the group's vectors after some products: the highest is not below it.
+    Real highest_of(ElementGroup& group, int products) {
+        Real highest = 0;
+        for (int p = 0; p < products; ++p) {
+            for (std::size_t i = 0; i < group.node.size(); ++i) {
+                vector_[static_cast<std::size_t>(group.node[i])] = group.vector[i];
+                product_[static_cast<std::size_t>(group.node[i])] = Real4{};
+            }
+            add_product(group.blocks);
+            Real4 energy{}, size{};
+            for (std::size_t i = 0; i < group.node.size(); ++i) {
+                const Real4& of = product_[static_cast<std::size_t>(group.node[i])];
+                energy += group.vector[i] * of;
+                size += group.mass[i] * (group.vector[i] * group.vector[i]);
+                group.vector[i] = group.mass[i] > 0 ? of / group.mass[i] : Real4{};
+            }
+            highest = 0;
+            for (int v = 0; v < 4; ++v)
+                if (size[v] > 0) highest = std::max(highest, energy[v] / size[v]);
+            if (!(highest > 0)) return 0;
+            for (Real4& x : group.vector) x /= highest;
+        }
+        return highest;
+    }
+
+    /// M^-1/2 sum_e G V W G^T M^-1/2 of a group: of each row the band from the diagonal on.
+    std::vector<Real> matrix_of(const ElementGroup& group) {
+        const std::size_t size = group.node.size();
+        std::vector<Real> matrix(size * group.width), scale(size);
+        for (std::size_t i = 0; i < size; ++i) scale[i] = group.mass[i] > 0 ? 1 / std::sqrt(group.mass[i]) : 0;
+        number(group);
+        for_each_element(group.blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
+            const ElementForm& w = weight_[b - first_block()];
+            const auto place = [&](Index k) { return static_cast<std::size_t>(place_[local(nodes.node[k][l])]); };
+            for (Index k = 0; k < nodes.count; ++k) {
+                const std::size_t row = place(k);
+                const Real x = scale[row] * nodes.gradient[k][0][l], y = scale[row] * nodes.gradient[k][1][l],
+                           z = scale[row] * nodes.gradient[k][2][l];
+                const Real wx = w[0][l] * x + w[3][l] * y + w[5][l] * z, wy = w[3][l] * x + w[1][l] * y + w[4][l] * z,
+                           wz = w[5][l] * x + w[4][l] * y + w[2][l] * z;
+                for (Index j = 0; j < nodes.count; ++j) {
+                    const ElementGradient& g = nodes.gradient[j];
+                    const std::size_t column = place(j);
+                    if (column < row) continue;
+                    matrix[row * group.width + (column - row)] +=
+                        scale[column] * (wx * g[0][l] + wy * g[1][l] + wz * g[2][l]);
+                }
+            }
+        });
+        forget_numbers(group);
+        return matrix;
+    }
+    /// Whether limit - matrix has a Cholesky decomposition, by more than rounding.
+    static bool is_below(const std::vector<Real>& matrix, std::size_t width, Real limit) {
+        const Real rounding = 1e-10 * limit;
+        const std::size_t size = matrix.size() / width;
+        std::vector<Real> rest(matrix.size());
+        for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = (i % width == 0 ? limit : 0) - matrix[i];
+        for (std::size_t k = 0; k < size; ++k) {
+            const Real* const row = &rest[k * width];
+            if (!(row[0] > rounding)) return false;
+            const Real inverse = 1 / row[0];
+            const std::size_t end = std::min(width, size - k);
+            for (std::size_t i = 1; i < end; ++i) {
+                const Real factor = row[i] * inverse;
+                if (factor == 0) continue;
+                Real* const to = &rest[(k + i) * width];
+                for (std::size_t j = i; j < end; ++j) to[j - i] -= factor * row[j];
+            }
+        }
+        return true;
+    }
+
+    const ElementInputs& elements_;
+    Range blocks_;
+    Real most_products_;
+    Index first_node_ = 0;
+    std::span<const Vec3> position_;       // m, from the first node of the body
+    std::span<const Real> mass_;           // kg, from the first node of the body
+    std::span<ElementForm> form_;          // Z, then Q
+    std::vector<ElementForm> weight_;      // V W, Pa m^3
+    std::vector<Real4> vector_, product_;  // by node
+    Real stiffest_ = 0;                    // Pa
+    Real relaxing_step_ = 0;               // s
+    std::vector<Index> place_;             // by node, in a group
+};
+
+}  // namespace
+
+void find_mass_forms(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                     std::span<const Real> mass, Real most_products, std::span<ElementForm> form) {
+    SKERRY_CHECK(form.size() == static_cast<std::size_t>(blocks.size()));
+    if (blocks.size() == 0) return;
+    FormSearch search(elements, blocks, position, mass, most_products, form);
+    search.choose();
+    const Real bound = search.bound();
+    if (bound > 0 && std::isfinite(bound))
+        search.finish(bound);
+    else
+        std::ranges::fill(form, ElementForm{});
+}
+
+}  // namespace skerry
