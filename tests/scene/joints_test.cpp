@@ -107,7 +107,7 @@ TEST_CASE("a double pendulum keeps its energy", "[scene][joints]") {
             most = std::max(most, std::abs(now.kinetic + now.potential - start.kinetic - start.potential));
         }
         CAPTURE(h);
-        CHECK(most < 0.08 * scale * h * 120);
+        CHECK(most < 0.06 * scale * h * 120);
         CHECK(bars.world.report().energy_error_share < 1e-3);
     }
 }

@@ -21,8 +21,9 @@ enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff, stopped };
 enum class ContactMotion { open, stick, slide };
 /// What keeps a step from being longer (docs/step_length.md). setting: step_size. rest: the stable step of a body as it
 /// is at rest; strain: that of a body as it is deformed. speed: an element would deform by more than max_strain_step
-/// in a step; inversion: an element would turn inside out; crossing: surfaces would cross. The last three are found in
-/// tries that are given up; steps grow back from half their length by a tenth each.
+/// in a step; inversion: an element would turn inside out; crossing: surfaces would cross. Speed
+/// is measured before a step; inversions, crossings and sudden impacts are found in tries that are given up, and steps
+/// grow back by a fifth each.
 enum class StepLimit { setting, rest, strain, speed, inversion, crossing };
 
 template <>

@@ -19,20 +19,23 @@ Real impulse_of_level(Real h, int level) {
     return std::ldexp(h, level);
 }
 
-/// By the greatest speed alone.
-bool all_slow(const ImpulseLimitInputs& inputs, std::size_t body, Real h, Real max_strain_step) {
+/// Levels, within the body, of whose elements the greatest speed alone does not tell that they are slow enough. Those
+/// of slivers often are among them, and few elements are of these.
+unsigned levels_to_look_at(const ImpulseLimitInputs& inputs, std::size_t body, Real h, Real max_strain_step) {
+    unsigned levels = 0;
     for (int k = 0; k < element_level_count; ++k) {
         const auto level = static_cast<std::size_t>(k);
-        if (inputs.body_level_count[body][level] == 0) continue;
+        const int in_world = inputs.body_level[body] + k;
+        if (in_world == 0 || inputs.body_level_count[body][level] == 0) continue;
         const Real rate = inputs.body_frame_speed[body] * inputs.body_steepness[body][level];
-        if (!(rate * impulse_of_level(h, inputs.body_level[body] + k) <= max_strain_step)) return false;
+        if (!(rate * impulse_of_level(h, in_world) <= max_strain_step)) levels |= 1u << k;
     }
-    return true;
+    return levels;
 }
 
 /// Of one block whose elements have this level in the world.
 Real longest_of_block(const ImpulseLimitInputs& inputs, std::size_t block, Real h, int level, Real max_strain_step) {
-    if (level == 0 || inputs.element_touched[block]) return no_limit;
+    if (inputs.element_touched[block]) return no_limit;
     const auto first = static_cast<std::size_t>(inputs.element_first[block]);
     const BlockNodes nodes{&inputs.element_node[first], &inputs.element_gradient[first], inputs.element_count[block]};
     const LaneMat3<Real8> change = deformation_gradient(nodes, inputs.velocity_next);
@@ -50,7 +53,8 @@ void limit_impulses(Executor& executor, const ImpulseLimitInputs& inputs, Real h
     for (std::size_t body = 0; body < inputs.body_blocks.size(); ++body) {
         const Range blocks = inputs.body_blocks[body];
         if (blocks.size() == 0 || inputs.body_asleep[body]) continue;
-        if (all_slow(inputs, body, h, max_strain_step)) {
+        const unsigned levels = levels_to_look_at(inputs, body, h, max_strain_step);
+        if (levels == 0) {
             longest[body] = no_limit;
             continue;
         }
@@ -61,9 +65,11 @@ void limit_impulses(Executor& executor, const ImpulseLimitInputs& inputs, Real h
             executor, static_cast<std::size_t>(blocks.size()), limited_blocks_per_job, partial, no_limit,
             [&](std::size_t begin, std::size_t end) {
                 Real least = no_limit;
-                for (std::size_t b = first + begin; b < first + end; ++b)
+                for (std::size_t b = first + begin; b < first + end; ++b) {
+                    if ((levels >> inputs.element_level[b] & 1u) == 0) continue;
                     least = std::min(least,
                                      longest_of_block(inputs, b, h, level + inputs.element_level[b], max_strain_step));
+                }
                 return least;
             },
             [](Real a, Real b) { return std::min(a, b); });

@@ -247,8 +247,8 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose()};
 }
 
-// Of D, what contacts give way by within a round. A tenth of it takes twice the rounds fewer and finds no way to their
-// ends; ten times as much takes more rounds.
+// Of D, what contacts give way by within a round. With a tenth of it there are half as many rounds, whose Newton steps
+// often find no end; with ten times as much there are more rounds.
 constexpr Real softness = 1e-2;
 
 }  // namespace
