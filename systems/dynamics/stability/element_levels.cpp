@@ -72,7 +72,8 @@ void drop_thin_levels(std::span<const ElementLane> volume, std::span<std::uint8_
 }
 
 /// Takes down elements at the border of another material whose elements are two levels finer or more, to the level of
-/// those. Their impulses would come at nodes that belong to the modes of all of the stiff side, and be in time with some.
+/// those. Their impulses would come at nodes that belong to the modes of all of the stiff side, and be in time with
+/// some.
 void refine_borders(const Search& search, std::span<std::uint8_t> level) {
     const auto material_of = [&](std::size_t b) { return search.elements.material[b]; };
     const auto for_each_node = [&](std::size_t b, std::size_t l, auto&& visit) {

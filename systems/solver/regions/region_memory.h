@@ -11,11 +11,11 @@
 #include "components/ragged.h"
 #include "components/region_table.h"
 #include "systems/solver/coloured/order_region.h"
+#include "systems/solver/equations/newton_pool.h"
 #include "systems/solver/inputs/solver_settings.h"
 #include "systems/solver/local/joint_law.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/lumped_operator.h"
-#include "systems/solver/equations/newton_pool.h"
 
 namespace skerry {
 
