@@ -66,7 +66,12 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     const std::uint64_t before = world.state_hash();
     tries = {};
     CHECK(try_step(state, plan, tries) == StepOutcome::again_shorter);
-    CHECK(tries.longest == plan.h / 2);
+    const StrainRate fastest = state.scratch.findings.verdict.fastest;
+    CHECK(fastest.body == 0);
+    CHECK(fastest.rate * plan.h > state.model.settings.max_strain_step);
+    // by a tenth slower than it deforms now, but not below a quarter of the step at once
+    CHECK(tries.at_most() == Approx(std::max(0.9 * state.model.settings.max_strain_step / fastest.rate, plan.h / 4)));
+    CHECK(tries.fastest == 0);
     CHECK(world.state_hash() == before);
 
     velocity[0].x() *= 200;  // also in a sixty-fourth of the step

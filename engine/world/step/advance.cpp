@@ -129,7 +129,7 @@ void note_limit(WorldState& world, StepReport& report) {
 void require_countable(const Model& model, Real dt) {
     constexpr Real most = std::numeric_limits<int>::max();
     Index body = no_index;
-    const Real stable = stable_step(model.bodies, &body) * model.settings.step_safety;
+    const Real stable = stable_step(model, &body) * model.settings.step_safety;
     const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
     char found[64];

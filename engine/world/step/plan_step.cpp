@@ -24,7 +24,7 @@ constexpr std::uint8_t touched_cycles = 8;
 int level_of_body(const Model& model, std::size_t b, Real h) {
     constexpr int most = step_level_count - element_level_count;
     if (model.bodies.blocks[b].size() == 0) return 0;
-    const Real ratio = model.bodies.stable_step[b] * model.settings.step_safety / h;
+    const Real ratio = step_of_body(model, b) * model.settings.step_safety / h;
     constexpr Real rounding = 1e-9;
     return ratio > 1 ? static_cast<int>(std::min<Real>(most, std::log2(ratio * (1 + rounding)))) : 0;
 }

@@ -15,7 +15,9 @@ void count_step(const StepScratch& scratch, RunCounters& counters);
 
 // stable_steps.cpp
 /// The largest step that the stiffest body stands, as last watched, and which body (row) that is.
-Real stable_step(const BodyTable& bodies, Index* body = nullptr);
+Real stable_step(const Model& model, Index* body = nullptr);
+/// What one body stands, s: the bound of its elements, less what its damping takes (docs/methods/stable_step.md 6.1).
+Real step_of_body(const Model& model, std::size_t body);
 /// The same, for users: where all bodies are rigid, and stand any step, the one that is taken.
 Real told_step(const Model& model, Index* body = nullptr);
 /// The longest step that is taken: that of the settings, or the stable step where that is shorter.

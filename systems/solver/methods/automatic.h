@@ -61,7 +61,7 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
 
 /// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again
 /// by the pace of the last stretch, the steps are tried from the present impulse; if they do not finish, sweeps go on,
-/// for three times as long as before, or where steps are dear, to the end.
+/// for three times as long as before.
 template <ContactOperator Op>
 requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // the steps are those of the exact cone
@@ -106,8 +106,7 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
         test.offer(newton.error);
         sweeps.start_anew();
         error_before = newton.error;
-        // where bodies deform a step costs tens of sweeps, and where steps failed once they mostly fail again
-        pause = looks_later ? static_cast<Real>(limits.max_iterations) : 2 * pause;
+        pause *= 2;
     }
     return test.give_up(sweeps.iterations() + newton_steps);
 }
