@@ -428,8 +428,8 @@ TEST_CASE("a collider put into the way of what rests pushes it", "[scene]") {
         else
             field.world.add_collider(Sphere{0.02}, {.position = at, .motion = {.velocity = {0, 0, -0.2}}});
         const Real height = field.world.center_of_mass(ball).z();
-        REQUIRE(field.world.advance(0.05).ok());
-        CHECK(field.world.center_of_mass(ball).z() < height - 0.0005);
+        REQUIRE(field.world.advance(0.1).ok());  // some of it goes on with the swing that rest has held
+        CHECK(field.world.center_of_mass(ball).z() < height - 0.001);
     }
 }
 
