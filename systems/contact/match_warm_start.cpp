@@ -22,9 +22,9 @@ Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
 }
 
 /// Runs along the keys of a table, all of which ascend.
-class Place {
+class SearchPlace {
 public:
-    Place(std::span<const ContactKey> keys, const ContactKey& first)
+    SearchPlace(std::span<const ContactKey> keys, const ContactKey& first)
         : keys_(keys), row_(static_cast<std::size_t>(std::ranges::lower_bound(keys, first) - keys.begin())) {}
 
     /// Whether there is such a row, and then it is row().
@@ -52,7 +52,7 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     const Real scale = last.key.empty() ? 0 : h / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         // every block finds its own place in both tables, then all run along together
-        Place of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
+        SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             impulse[i] = Vec3::Zero();
             if (of_last.find(key[i])) {
