@@ -74,7 +74,7 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     CHECK(tries.fastest == 0);
     CHECK(world.state_hash() == before);
 
-    velocity[0].x() *= 200;  // also in a sixty-fourth of the step
+    velocity[0].x() *= 200;  // also in a 128th of the step
     world.set_velocities(body, velocity);
     tries = {};
     CHECK(try_step(state, {.h = plan.h / 128, .steps = 2, .stable = plan.h}, tries) == StepOutcome::refused);

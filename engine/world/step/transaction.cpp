@@ -19,7 +19,7 @@ constexpr int tries_at_one_length = 4;
 /// A step that a body is too fast for, or in which something crosses, is tried again at half its length, down to this
 /// fraction of the stable step; then steps grow back. The bound is on the length: halvings counted step by step add up
 /// until time stands still.
-constexpr Real most_shortening = 64;
+constexpr Real most_shortening = 128;
 
 /// The same for a step that turns elements inside out. Of those in thrown meshes a third stay upright in one half as
 /// long; where they are pressed over, and not thrown, shorter steps are in vain. But they keep the energy of what is
