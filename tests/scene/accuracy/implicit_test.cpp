@@ -131,7 +131,13 @@ TEST_CASE("no step of implicit bodies that hit each other gains energy", "[scene
                      std::to_string(theta).substr(0, 4),
              .formula = "E+ <= E",
              .found = gained,
-             .tolerance = 1e-6,
+             .tolerance = 1e-12,
              .kind = Tolerance::absolute});
+        accuracy::check({.item = 49,
+                         .name = "the same, kinetic, elastic and dissipated energy at the end over the start - 1",
+                         .formula = "0",
+                         .found = (before + world.report().energy.dissipated) / start - 1,
+                         .tolerance = 1e-10,
+                         .kind = Tolerance::absolute});
     }
 }
