@@ -231,6 +231,27 @@ TEST_CASE("stacks of implicit and rigid blocks come to rest, implicit ones by Ne
     CHECK(speed < 2e-6);
 }
 
+TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not", "[scene][implicit]") {
+    const auto unconverged = [](SolverMethod method) {
+        Settings settings;
+        settings.step_size = 0.01;
+        settings.method = method;
+        World world(settings);
+        const auto soft = world.add_material({.young_modulus = 1e6, .poisson_ratio = 0.3, .friction = 0.5});
+        world.add_collider(Plane{});
+        const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
+        for (int k = 0; k < 8; ++k)
+            world.add_body(
+                block,
+                {.material = soft, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = BodyDynamics::implicit_elastic});
+        const StepReport report = world.advance(0.15);
+        REQUIRE(report.ok());
+        return report.unconverged;
+    };
+    CHECK(unconverged(SolverMethod::automatic) == 0);
+    CHECK(unconverged(SolverMethod::ags) > 0);
+}
+
 TEST_CASE("theta is refused where it has no meaning", "[scene][implicit]") {
     Settings settings;
     settings.theta = 0.4;

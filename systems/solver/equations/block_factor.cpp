@@ -124,12 +124,8 @@ void BlockFactor::multiply(std::span<const Real> blocks, std::span<const Real> x
         const Index g = order_[k];
         const auto add = [&](Index row, Index column) {
             const DenseBlock of = block(row, column);
-            const Real* const from = blocks.data() + (of.data - number_.data());
-            Real* const to = right_.data() + first(row);
-            for (Index c = 0; c < of.columns; ++c) {
-                const Real factor = x[first(column) + static_cast<std::size_t>(c)];
-                for (Index r = 0; r < of.rows; ++r) to[r] += from[c * of.stride + r] * factor;
-            }
+            add_product(of, blocks.data() + (of.data - number_.data()), x.data() + first(column),
+                        right_.data() + first(row));
         };
         add(g, g);
         for (const Index h : later_[k]) add(g, h), add(h, g);

@@ -66,6 +66,8 @@ public:
     /// The right-hand side: K x. Returns x K x.
     Real set_right(std::span<const Real> x);
 
+    Real softness = 0;  // of D, what contacts give way by in a round
+
     // by number, m/s and rad/s: the motion that is looked for, that which its impulses make, their difference, and a
     // step with the motion before it
     Column<Real> present, answered, change, step, before;

@@ -18,6 +18,9 @@ void subtract(const Real8& what, Real* from) {
     const Real8 left = *reinterpret_cast<const Real8InMemory*>(from) - what;
     *reinterpret_cast<Real8InMemory*>(from) = left;
 }
+void put(const Real8& what, Real* to) {
+    *reinterpret_cast<Real8InMemory*>(to) = what;
+}
 Real load(const Real* from, Real) {
     return *from;
 }
@@ -25,9 +28,21 @@ void subtract(Real what, Real* from) {
     *from -= what;
 }
 
-/// A column of registers of c -= a b, sums in registers. Part: Real8 or Real.
+/// What becomes of a column of registers of a product: taken off what is there, or only off the last rows of it, those
+/// above being done, or put in its place.
+constexpr auto take_off = [](const auto& what, Real* from) { subtract(what, from); };
+struct TakeOffLast {
+    Index count;
+
+    void operator()(const Real8& what, Real* from) const {
+        for (Index k = 8 - count; k < 8; ++k) from[k] -= what[k];
+    }
+};
+constexpr auto put_there = [](const Real8& what, Real* to) { put(what, to); };
+
+/// A column of registers of a b, sums in registers, which `finish` brings to the same rows of c. Part: Real8 or Real.
 template <class Part>
-void subtract_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c, Index row) {
+void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c, Index row, const auto& finish) {
     const Real* const start = a.data + row;
     Index at = 0;
     for (; at + 4 <= c.columns; at += 4) {
@@ -41,16 +56,16 @@ void subtract_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c
             third += column * b2[k];
             fourth += column * b3[k];
         }
-        subtract(first, c.column(at) + row);
-        subtract(second, c.column(at + 1) + row);
-        subtract(third, c.column(at + 2) + row);
-        subtract(fourth, c.column(at + 3) + row);
+        finish(first, c.column(at) + row);
+        finish(second, c.column(at + 1) + row);
+        finish(third, c.column(at + 2) + row);
+        finish(fourth, c.column(at + 3) + row);
     }
     for (; at < c.columns; ++at) {
         Part sum{};
         const Real *factor = b.column(at), *from = start;
         for (Index k = 0; k < b.rows; ++k, from += a.stride) sum += load(from, Part{}) * factor[k];
-        subtract(sum, c.column(at) + row);
+        finish(sum, c.column(at) + row);
     }
 }
 
@@ -83,14 +98,55 @@ bool factor_panel(const DenseBlock& a, Index begin, Index end, Index* pivot) {
     return true;
 }
 
+/// Inverse of the triangle of a whole panel: to solve for many columns with it is to multiply registers.
+struct TriangleInverse {
+    static_assert(panel == 8);
+    alignas(Real8) Real number[panel * panel] = {};  // column by column
+
+    Real* column(Index k) { return number + k * panel; }
+    static TriangleInverse lower(const DenseBlock& factors, Index begin) {
+        TriangleInverse of;
+        for (Index c = 0; c < panel; ++c) {
+            Real* const x = of.column(c);
+            x[c] = 1;
+            for (Index k = c; k < panel; ++k)
+                for (Index i = k + 1; i < panel; ++i) x[i] -= factors.column(begin + k)[begin + i] * x[k];
+        }
+        return of;
+    }
+    static TriangleInverse upper(const DenseBlock& factors, Index begin) {
+        TriangleInverse of;
+        for (Index c = 0; c < panel; ++c) {
+            Real* const x = of.column(c);
+            x[c] = 1;
+            for (Index k = c + 1; k-- > 0;) {
+                x[k] /= factors.column(begin + k)[begin + k];
+                for (Index i = 0; i < k; ++i) x[i] -= factors.column(begin + k)[begin + i] * x[k];
+            }
+        }
+        return of;
+    }
+    /// b is multiplied by it: four columns are read before they are written.
+    void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, put_there); }
+};
+constexpr Index many_columns = panel;  // from as many on an inverse is worth its cost
+
 /// b = L^-1 b of the unit lower triangle of the factors' rows and columns [begin, end).
 void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b) {
+    if (end - begin == panel && b.columns >= many_columns) {
+        TriangleInverse::lower(factors, begin).multiply(b.part(begin, 0, panel, b.columns));
+        return;
+    }
     for (Index c = 0; c < b.columns; ++c) {
         Real* const x = b.column(c);
         for (Index k = begin; k < end; ++k) subtract_scaled(x[k], factors.column(k) + k + 1, x + k + 1, end - k - 1);
     }
 }
 void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b) {
+    if (end - begin == panel && b.columns >= many_columns) {
+        TriangleInverse::upper(factors, begin).multiply(b.part(begin, 0, panel, b.columns));
+        return;
+    }
     for (Index c = 0; c < b.columns; ++c) {
         Real* const x = b.column(c);
         for (Index k = end - 1; k >= begin; --k) {
@@ -104,8 +160,26 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
 
 void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
     Index row = 0;
-    for (; row + 8 <= c.rows; row += 8) subtract_rows<Real8>(a, b, c, row);
-    for (; row < c.rows; ++row) subtract_rows<Real>(a, b, c, row);
+    for (; row + 8 <= c.rows; row += 8) multiply_rows<Real8>(a, b, c, row, take_off);
+    if (row < c.rows && c.rows >= 8)
+        multiply_rows<Real8>(a, b, c, c.rows - 8, TakeOffLast{c.rows - row});
+    else
+        for (; row < c.rows; ++row) multiply_rows<Real>(a, b, c, row, take_off);
+}
+
+void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Real* y) {
+    const auto column = [&](Index k) { return numbers + k * shape.stride; };
+    Index at = 0;
+    for (; at + 4 <= shape.columns; at += 4) {
+        const auto sum_of_row = [&]<class Part>(Index row, Part sum) {
+            for (Index k = at; k < at + 4; ++k) sum += load(column(k) + row, Part{}) * x[k];
+            return sum;
+        };
+        Index row = 0;
+        for (; row + 8 <= shape.rows; row += 8) put(sum_of_row(row, load(y + row, Real8{})), y + row);
+        for (; row < shape.rows; ++row) y[row] = sum_of_row(row, y[row]);
+    }
+    for (; at < shape.columns; ++at) subtract_scaled(-x[at], column(at), y, shape.rows);
 }
 
 bool factor_dense(const DenseBlock& a, Index* pivot) {

@@ -22,6 +22,8 @@ struct DenseBlock {
 
 /// c -= a b.
 void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c);
+/// y += a x, where `numbers` are those of a, placed as in `shape`.
+void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Real* y);
 /// a = L U with rows exchanged: `pivot[k]` is the row that came to k. Returns false where a is singular.
 bool factor_dense(const DenseBlock& a, Index* pivot);
 /// b = a^-1 b, of the factors.

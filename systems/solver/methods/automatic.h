@@ -97,7 +97,8 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
         error_before = result.error;
         iteration_before = result.iterations;
         if (pace * trial > std::log(result.error / limits.tolerance)) continue;
-        constexpr Index most_steps = 20;  // those that finish take up to 14 (docs/decisions/0004)
+        // those that finish take up to 14 (docs/decisions/0004); those of rounds, which see themselves where they fail
+        constexpr Index most_steps = HasNewtonSteps<Op> ? 40 : 20;
         const SolveResult newton =
             take_newton_steps(op, result.error, limits.tolerance,
                               std::min(most_steps, limits.max_iterations - result.iterations - newton_steps));

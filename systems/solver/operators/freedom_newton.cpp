@@ -247,11 +247,23 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose()};
 }
 
-// Of D, what contacts give way by within a round. With a tenth of it there are half as many rounds, whose Newton steps
-// often find no end; with ten times as much there are more rounds.
-constexpr Real softness = 1e-2;
-
 }  // namespace
+
+/// refresh(), where what impulses do to bodies that deform is summed up by node first: each of them moves all touched
+/// nodes of its body, and several contacts name it.
+void FreedomOperator::refresh_by_nodes(BodyEquations& equations) {
+    const std::span<Vec4> sum = memory_.scratch;
+    std::ranges::copy(memory_.free_velocity, memory_.velocity.begin());
+    std::ranges::fill(sum, Vec4::Zero());
+    for (Index i = 0; i < size(); ++i) {
+        const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
+        if (impulse.isZero(0)) continue;
+        walk_.collect(contact(i), impulse, sum.data(), memory_.velocity.data());
+        apply_to_rigid(part(i), impulse, memory_.velocity.data());
+    }
+    for (const Unknown& of : equations.unknown())
+        if (deforms(of)) walk_.spread(of.row, sum[static_cast<std::size_t>(of.row)], memory_.velocity.data());
+}
 
 /// Impulses answer to the present motion, P( start - u / (softness D) ), and the velocities of the region and
 /// `answered` are those that they make. Returns ( answered - present ) K ( answered - present ), J, and leaves that
@@ -261,13 +273,13 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
     for (Index i = 0; i < size(); ++i) {
         if (!(mobility(i) > 0)) continue;
         const auto at = static_cast<std::size_t>(i);
-        const Real soft = softness * contact(i).diagonal;
+        const Real soft = equations.softness * contact(i).diagonal;
         const Vec3 u = contact(i).offset.head<3>() + equations.velocity(i, equations.present.span());
         const Answer answer = answer_coulomb_at(start[at].head<3>() - u / soft, contact(i).normal.head<3>(), limits(i));
         memory_.impulse[at] = padded(answer.impulse);
         if (with_matrix && !answer.open) equations.add(i, answer.derivative / soft);
     }
-    refresh();
+    refresh_by_nodes(equations);
     gather(equations, equations.answered);
     for (std::size_t k = 0; k < equations.change.size(); ++k)
         equations.change[k] = equations.answered[k] - equations.present[k];
@@ -302,19 +314,38 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
     return answer_motion(equations, start, true);
 }
 
+namespace {
+
+// Of D, what contacts give way by within a round: the less, the fewer rounds, and the more steps each of them takes.
+// Soft bodies are solved at the first, stiff ones at a hundredth of it, so that it follows how hard rounds are.
+constexpr Real most_softness = 0.3, least_softness = 1e-4;
+
+/// Of the next round, after one that took so many steps.
+Real softness_after(Index steps, Real softness) {
+    constexpr Index few = 4;
+    constexpr Real harder = 0.3;
+    return steps <= few ? std::max(least_softness, harder * softness) : softness;
+}
+
+}  // namespace
+
 SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    constexpr Real enough = 0.1;  // of the error at the start of a round, for it to be at its end
+    constexpr Real enough = 0.1;         // of the error at the start of a round, for it to be at its end
+    constexpr Index most_in_round = 14;  // a round that takes more finds no end soon
     BodyEquations& equations = newton_memory();
-    assemble(equations);
+    if (!std::exchange(inertia_is_known_, true)) assemble(equations);
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
     std::ranges::copy(memory_.impulse, start.begin());
     std::ranges::copy(memory_.impulse, best.begin());
     gather(equations, equations.present);
     SolveResult result{0, error, error <= tolerance};
+    equations.softness = most_softness;
     std::optional<Real> lack = answer_motion(equations, start, true);
     Real error_at_start = error;
-    while (!result.converged && result.iterations < limit) {
+    Index in_round = 0;
+    while (!result.converged && result.iterations < limit && in_round < most_in_round) {
         ++result.iterations;
+        ++in_round;
         lack = step_motion(equations, start, *lack);
         if (!lack) break;
         const Real now = this->error();
@@ -324,6 +355,8 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
             std::ranges::copy(memory_.impulse, best.begin());
         }
         if (std::sqrt(*lack) > enough * scale_ * error_at_start || !(now < error_at_start)) continue;
+        equations.softness = softness_after(in_round, equations.softness);
+        in_round = 0;
         // the next round: from these impulses, and the motion that they make
         error_at_start = now;
         std::ranges::copy(memory_.impulse, start.begin());

@@ -104,6 +104,7 @@ private:
     void assemble(BodyEquations& equations) const;
     /// What impulses do to the unknowns, from the velocities of the region.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
+    void refresh_by_nodes(BodyEquations& equations);
     Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix);
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
     void list_unknowns(BodyEquations& equations) const;
@@ -129,6 +130,7 @@ private:
     ThroughGroups walk_;
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
+    bool inertia_is_known_ = false;  // to the equations, from the first steps on
 };
 
 }  // namespace skerry

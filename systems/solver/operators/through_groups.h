@@ -27,11 +27,21 @@ public:
                 clusters_.apply_to_node(contact, a, impulse, velocity);
                 continue;
             }
-            const Vec3 weighted = contact.weight[a] * impulse.head<3>();
-            Vec4* const first = velocity + (contact.node[a] - place);
-            const std::span<const PaddedMat3> row = implicit_->coupling->row(body_of(contact.node[a]), place);
-            for (std::size_t k = 0; k < row.size(); ++k) first[k].noalias() += row[k] * weighted;
+            move_nodes_of(contact.node[a], place, contact.weight[a] * impulse.head<3>(), velocity);
         }
+    }
+    /// The same, but what falls to nodes that deform a body is added to `sum`, by node of the region, for spread().
+    void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
+        for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
+            if (deforming_place(contact.node[a]) == no_index)
+                clusters_.apply_to_node(contact, a, impulse, velocity);
+            else
+                sum[contact.node[a]] += contact.weight[a] * impulse;
+        }
+    }
+    /// An impulse on a node that deforms a body.
+    void spread(Index n, const Vec4& impulse, Vec4* velocity) const {
+        move_nodes_of(n, deforming_place(n), impulse.head<3>(), velocity);
     }
     /// The same where bodies do not deform: for what moves positions alone.
     void apply_undeformed(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
@@ -74,6 +84,12 @@ public:
     }
 
 private:
+    /// By an impulse on node `n` of the region, in its place among the touched ones of its body.
+    void move_nodes_of(Index n, Index place, const Vec3& impulse, Vec4* velocity) const {
+        Vec4* const first = velocity + (n - place);
+        const std::span<const PaddedMat3> row = implicit_->coupling->row(body_of(n), place);
+        for (std::size_t k = 0; k < row.size(); ++k) first[k].noalias() += row[k] * impulse;
+    }
     std::size_t body_of(Index n) const {
         return static_cast<std::size_t>(rigid_->nodes.row(node_[static_cast<std::size_t>(n)]));
     }

@@ -28,16 +28,18 @@ DenseBlock block_of(std::vector<Real>& numbers, Index rows, Index columns) {
 
 TEST_CASE("a dense factor that exchanges rows solves what Eigen solves", "[solver]") {
     const auto size = GENERATE(Index{1}, Index{3}, Index{8}, Index{9}, Index{30}, Index{77});
-    CAPTURE(size);
+    const auto columns = GENERATE(Index{5}, Index{23});  // many are solved for with inverses of triangles
+    CAPTURE(size, columns);
     const auto count = static_cast<std::size_t>(size);
     std::vector<Real> numbers = random_numbers(count * count, 7);
     if (size > 1) numbers[0] = 0;  // asks for another pivot
-    std::vector<Real> right = random_numbers(count * 5, 8);
-    const Eigen::MatrixXd expected = matrix_of(numbers, size, size).partialPivLu().solve(matrix_of(right, size, 5));
+    std::vector<Real> right = random_numbers(count * static_cast<std::size_t>(columns), 8);
+    const Eigen::MatrixXd expected =
+        matrix_of(numbers, size, size).partialPivLu().solve(matrix_of(right, size, columns));
     std::vector<Index> pivot(count);
     REQUIRE(factor_dense(block_of(numbers, size, size), pivot.data()));
-    solve_dense(block_of(numbers, size, size), pivot.data(), block_of(right, size, 5));
-    CHECK((matrix_of(right, size, 5) - expected).norm() < 1e-10 * expected.norm());
+    solve_dense(block_of(numbers, size, size), pivot.data(), block_of(right, size, columns));
+    CHECK((matrix_of(right, size, columns) - expected).norm() < 1e-10 * expected.norm());
 }
 
 TEST_CASE("a singular matrix has no dense factor", "[solver]") {
@@ -54,6 +56,16 @@ TEST_CASE("a product is taken off a matrix of any shape", "[solver]") {
     const Eigen::MatrixXd expected = matrix_of(c, rows, columns) - matrix_of(a, rows, 6) * matrix_of(b, 6, columns);
     subtract_product(block_of(a, rows, 6), block_of(b, 6, columns), block_of(c, rows, columns));
     CHECK((matrix_of(c, rows, columns) - expected).norm() < 1e-14);
+}
+
+TEST_CASE("a product with a vector is added to one of any length", "[solver]") {
+    const auto rows = GENERATE(Index{1}, Index{8}, Index{13}), columns = GENERATE(Index{1}, Index{4}, Index{11});
+    std::vector<Real> a = random_numbers(static_cast<std::size_t>(rows * columns), 1);
+    std::vector<Real> x = random_numbers(static_cast<std::size_t>(columns), 2);
+    std::vector<Real> y = random_numbers(static_cast<std::size_t>(rows), 3);
+    const Eigen::MatrixXd expected = matrix_of(y, rows, 1) + matrix_of(a, rows, columns) * matrix_of(x, columns, 1);
+    add_product(block_of(a, rows, columns), a.data(), x.data(), y.data());
+    CHECK((matrix_of(y, rows, 1) - expected).norm() < 1e-14);
 }
 
 TEST_CASE("a sparse matrix of blocks is solved as the dense one, and as often as it is filled", "[solver]") {
