@@ -32,6 +32,14 @@ Vec3 mean_velocity(std::span<const Vec3> velocity, Range nodes) {
     return mean.allFinite() ? mean : Vec3(Vec3::Zero());
 }
 
+/// m/s, in a frame of this velocity.
+Real greatest_speed(std::span<const Vec3> velocity, Range nodes, const Vec3& frame) {
+    Real squared = 0;
+    for (Index n = nodes.begin; n < nodes.end; ++n)
+        squared = std::max(squared, (velocity[static_cast<std::size_t>(n)] - frame).squaredNorm());
+    return std::sqrt(squared);
+}
+
 }  // namespace
 
 Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin, const Vec3& offset) {
@@ -58,6 +66,8 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             out.displacement[b] = 0;
             out.frame[b].offset = Vec3::Zero();
             out.frame[b].velocity = mean_velocity(bodies.velocity, bodies.body_nodes[b]);
+            // the search of the next step reckons with this frame (step_reach.cpp)
+            out.frame_speed[b] = greatest_speed(bodies.velocity, bodies.body_nodes[b], out.frame[b].velocity);
             const auto first = static_cast<std::ptrdiff_t>(bodies.body_nodes[b].begin),
                        last = static_cast<std::ptrdiff_t>(bodies.body_nodes[b].end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

@@ -35,7 +35,7 @@ struct DisplacementOutputs {
     std::span<Vec3> origin;          // m, by node: where it was when its body's displacement was last zero
     std::span<std::uint8_t> rebase;  // by body, or empty: 1 asks for a displacement of zero; cleared
     std::span<MovingFrame> frame;    // BodyTable
-    std::span<Real> displacement, travel;
+    std::span<Real> frame_speed, displacement, travel;
 
     /// `rebase`: by body.
     static DisplacementOutputs bind(const Binder& binder, NodeTable& node, Column<std::uint8_t>& rebase,
@@ -43,6 +43,7 @@ struct DisplacementOutputs {
         return {.origin = binder.write(node.displacement_origin),
                 .rebase = binder.write(rebase),
                 .frame = binder.write(body.frame),
+                .frame_speed = binder.write(body.frame_speed),
                 .displacement = binder.write(body.displacement),
                 .travel = binder.write(body.travel)};
     }
@@ -56,8 +57,8 @@ Real block_displacement_squared(std::span<const Vec3> position, std::span<const 
 /// its origin, which goes with the frame; travel grows by the change of displacement, so that a body that only trembles
 /// does not travel, nor one that flies. When the displacement exceeds a small part of the mean edge, or on request, the
 /// origins move to where the nodes are and the frame takes their mean velocity: displacement is zero again, travel
-/// stays. In its frame no node is ever further from where it was at an earlier time than travel - (travel then) + 2
-/// (displacement then). Parallel over bodies.
+/// stays; frame_speed (m/s) becomes that of the nodes in the new frame. In its frame no node is ever further from where
+/// it was at an earlier time than travel - (travel then) + 2 (displacement then). Parallel over bodies.
 void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
                           const DisplacementOutputs& out);
 

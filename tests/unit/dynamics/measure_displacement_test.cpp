@@ -13,7 +13,7 @@ namespace {
 /// One body of some nodes in blocks of its own.
 struct Cloud {
     std::vector<Range> node_blocks{{0, 2}}, nodes{{0, 300}};
-    std::vector<Real> mean_edge{1}, squared = std::vector<Real>(2), displacement{0}, travel{0};
+    std::vector<Real> mean_edge{1}, squared = std::vector<Real>(2), frame_speed{0}, displacement{0}, travel{0};
     std::vector<std::uint8_t> rebase{0};
     std::vector<Vec3> position = std::vector<Vec3>(300, Vec3::Zero()), origin = position;
 
@@ -29,7 +29,7 @@ struct Cloud {
         squared = {block_displacement_squared(part(position, 0, 256), part(origin, 0, 256), offset),
                    block_displacement_squared(part(position, 256, 44), part(origin, 256, 44), offset)};
         measure_displacement(*executor, {squared, node_blocks, nodes, mean_edge, position, velocity}, seconds,
-                             {origin, rebase, frame, displacement, travel});
+                             {origin, rebase, frame, frame_speed, displacement, travel});
     }
 };
 
@@ -136,4 +136,17 @@ TEST_CASE("a request sets the displacement to zero and is taken back", "[unit]")
     CHECK(cloud.travel[0] == Approx(0.02));
     CHECK(cloud.rebase[0] == 0);
     CHECK(cloud.origin[5] == cloud.position[5]);
+}
+
+TEST_CASE("the speed in a new frame is that of the nodes in it", "[unit]") {
+    Cloud cloud;
+    cloud.velocity[7].x() = 2;
+    cloud.frame[0].velocity.x() = 1;  // halfway: no node is faster than 1 m/s in it
+    cloud.frame_speed[0] = 1;
+    cloud.measure(1e-3);
+    CHECK(cloud.frame_speed[0] == 1);  // that of the step
+    cloud.rebase[0] = 1;
+    cloud.measure(1e-3);
+    REQUIRE(cloud.frame[0].velocity.x() == Approx(2.0 / 300));
+    CHECK(cloud.frame_speed[0] == Approx(2 - 2.0 / 300));
 }
