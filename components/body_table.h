@@ -75,6 +75,9 @@ struct BodyTable {
     // node has come since it was at its still_position, m: in this half of sleep_time and in the one before
     Column<Real> still_time;
     Column<Real> drift, drift_before;
+    // m, how far its shape has come from that at the still_position in this half; and in the one before, where it went
+    // one way, else 0
+    Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // m/s, of this step's motion
     Column<MovingFrame> frame;
     // In the frame:
@@ -126,6 +129,8 @@ struct BodyTable {
         visit("still_time", still_time, ColumnRole::state);
         visit("drift", drift, ColumnRole::state);
         visit("drift_before", drift_before, ColumnRole::state);
+        visit("shape_drift", shape_drift, ColumnRole::state);
+        visit("creep_before", creep_before, ColumnRole::state);
         visit("max_speed", max_speed, ColumnRole::state);
         visit("frame", frame, ColumnRole::memory);
         visit("frame_speed", frame_speed, ColumnRole::memory);

@@ -222,6 +222,65 @@ TEST_CASE("a slab that should slide is never put to rest, one that has come to a
     CHECK(slab.world.asleep(slab.block));
 }
 
+namespace {
+
+/// Something heavy that sinks under its weight.
+struct Sinking {
+    World world;
+    Mesh mesh;
+    BodyHandle body;
+
+    /// A cantilever whose first frequency is about 3 rad/s under a thousandth of gravity, or a block on a plane.
+    Sinking(bool held, Real damping, bool sleep) : world(settings(held, sleep)) {
+        mesh = held ? mesh::box({1, 0.05, 0.1}, {20, 1, 2}) : mesh::box({0.2, 0.2, 0.2}, {4, 4, 4});
+        const auto soft = world.add_material({.young_modulus = held ? 1e6 : 5e4,
+                                              .poisson_ratio = 0,
+                                              .density = 1000,
+                                              .friction = 0.5,
+                                              .damping = damping});
+        if (!held) world.add_collider(Plane{});
+        body = world.add_body(
+            mesh, {.material = soft, .position = {0, 0, held ? 0 : 0.1011}, .contact_distance = held ? 0 : 0.001});
+        if (held) world.attach(body, nodes_at(0, -0.5));
+    }
+    static Settings settings(bool held, bool sleep) {
+        Settings settings;
+        if (held) settings.gravity.z() *= 1e-3;
+        settings.sleep = sleep;
+        return settings;
+    }
+    std::vector<Index> nodes_at(int axis, Real place) const {
+        std::vector<Index> rows;
+        for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+            if (std::abs(mesh.nodes[n][axis] - place) < 1e-9) rows.push_back(static_cast<Index>(n));
+        return rows;
+    }
+    Real mean_height(const std::vector<Index>& rows) const {
+        Real sum = 0;
+        for (const Index n : rows) sum += world.positions(body)[static_cast<std::size_t>(n)].z();
+        return sum / static_cast<Real>(rows.size());
+    }
+};
+
+}  // namespace
+
+TEST_CASE("what sinks or swings under its own weight rests half a percent of its deflection from its place at most",
+          "[scene]") {
+    const bool held = GENERATE(true, false);
+    const Real damping = held ? GENERATE(6.0, 2.0) : GENERATE(8.0, 30.0);  // 1/s
+    CAPTURE(held, damping);
+    Sinking sleepy(held, damping, true), awake(held, damping, false);
+    while (!sleepy.world.asleep(sleepy.body) && sleepy.world.time() < 20) REQUIRE(sleepy.world.advance(0.1).ok());
+    REQUIRE(sleepy.world.asleep(sleepy.body));
+    REQUIRE(awake.world.advance(sleepy.world.time() + 3).ok());
+    const auto deflection = [&](const Sinking& one) {
+        const auto end = held ? one.nodes_at(0, 0.5) : one.nodes_at(2, 0.1);
+        return held ? -one.mean_height(end) : 0.2 - (one.mean_height(end) - one.mean_height(one.nodes_at(2, -0.1)));
+    };
+    CAPTURE(sleepy.world.time(), deflection(awake));
+    CHECK(deflection(sleepy) == Approx(deflection(awake)).epsilon(5e-3));
+}
+
 TEST_CASE("a block that begins to tip over is never put to rest", "[scene]") {
     for (const Real degrees : {14.2, 14.5, 15.5}) {  // a stiff one stands up to 14.04
         World world(Slab::settings(degrees));

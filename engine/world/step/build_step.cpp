@@ -223,8 +223,9 @@ void list_commit(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c, w.model.joints),
-                        inputs<RestInputs>(a, b, n, r), value(p.sleep), value(p.h), make(w.scratch.sleep_memory),
-                        outputs<RestOutputs>(b, n, r, w.model.implicit_nodes), if_taken, if_sleepy);
+                        inputs<RestInputs>(a, b, w.model.materials, n, r), value(p.sleep), value(p.h),
+                        make(w.scratch.sleep_memory), outputs<RestOutputs>(b, n, r, w.model.implicit_nodes), if_taken,
+                        if_sleepy);
     g.stage("dynamics/store_joints", store_joints, read(w.scratch.joints), value(p.h),
             outputs<JointMemory>(w.model.joints), if_taken);
     g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse), value(p.h),

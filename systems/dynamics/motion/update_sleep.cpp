@@ -1,9 +1,7 @@
 #include "systems/dynamics/motion/update_sleep.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "components/check.h"
+#include "systems/dynamics/motion/stillness.h"
 #include "systems/dynamics/rigid/rigid_motion.h"
 
 namespace skerry {
@@ -65,71 +63,6 @@ void put_to_rest(const RestInputs& bodies, std::size_t body, const RestOutputs& 
     ++taken.bodies;
 }
 
-/// How many of the looks in a half are due at this part of it. They are not evenly spread: an oscillation that is back
-/// at each of them would look still.
-int looks_due(Real part) {
-    constexpr int looks = own_sleep_limits::looks;
-    constexpr Real golden = 0.6180339887498949;
-    const int slot = static_cast<int>(part * looks);
-    const Real place = slot * golden;
-    return slot + (part * looks - slot >= place - std::floor(place));
-}
-
-/// How long one body has been still, by the engine's own limits.
-class Stillness {
-public:
-    Stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, const RestOutputs& state)
-        : bodies_(bodies), settings_(settings), body_(body), state_(state) {}
-
-    void go_on(Real h) const {
-        Real& still = state_.still_time[body_];
-        const Real edge = bodies_.mean_edge[body_];
-        if (!(bodies_.max_speed[body_] < own_sleep_limits::speed * std::sqrt(settings_.gravity * edge))) {
-            still = 0;
-            return;
-        }
-        if (still == 0) {
-            begin_half();
-            state_.drift_before[body_] = 0;
-        }
-        const Real half = std::max(settings_.time / 2, h), before = still;
-        still += h;
-        const auto halves = [&](Real time) { return std::floor(time / half); };
-        const auto part = [&](Real time) { return time / half - halves(time); };
-        const bool ends = halves(still) > halves(before);
-        if (!ends && looks_due(part(still)) == looks_due(part(before))) return;
-        Real& drift = state_.drift[body_];
-        drift = std::max(drift, drift_now());
-        if (drift > own_sleep_limits::drift * edge) {
-            still = 0;
-        } else if (ends) {
-            const Real least = std::max(state_.drift_before[body_], own_sleep_limits::noise * edge);
-            const bool grows = before >= half && drift > own_sleep_limits::growth * least;
-            if (grows) still = 0;
-            state_.drift_before[body_] = drift;
-            begin_half();
-        }
-    }
-
-private:
-    void begin_half() const {
-        state_.drift[body_] = 0;
-        for (Index n = bodies_.nodes[body_].begin; n < bodies_.nodes[body_].end; ++n)
-            state_.still_position[n] = bodies_.position[n];
-    }
-    Real drift_now() const {
-        Real squared = 0;
-        for (Index n = bodies_.nodes[body_].begin; n < bodies_.nodes[body_].end; ++n)
-            squared = std::max(squared, (bodies_.position[n] - state_.still_position[n]).squaredNorm());
-        return std::sqrt(squared);
-    }
-
-    const RestInputs& bodies_;
-    const SleepSettings& settings_;
-    std::size_t body_;
-    const RestOutputs& state_;
-};
-
 }  // namespace
 
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed) {
@@ -182,7 +115,7 @@ TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, co
     for (std::size_t b = 0; b < count; ++b) {
         if (state.asleep[b] || bodies.kind[b] == BodyKind::kinematic) continue;
         if (settings.own_limits)
-            Stillness(bodies, settings, b, state).go_on(h);
+            watch_stillness(bodies, settings, b, h, state);
         else
             state.still_time[b] = bodies.max_speed[b] < settings.speed ? state.still_time[b] + h : 0;
         ready |= is_ready(b);

@@ -12,6 +12,7 @@
 #include "components/contact_table.h"
 #include "components/implicit_node_table.h"
 #include "components/joint_table.h"
+#include "components/material_table.h"
 #include "components/node_table.h"
 #include "components/options.h"
 #include "components/rigid_body_table.h"
@@ -22,26 +23,12 @@ namespace skerry {
 
 struct SleepSettings {
     Real speed = 0;           // m/s: a body is still while no node of it is as fast
-    bool own_limits = false;  // or by own_sleep_limits
+    bool own_limits = false;  // or by own_sleep_limits (stillness.h)
     Real time = 0.5;          // s: so long a body has to be still, and all that it touches
     Real gravity = 0;         // m/s^2
 
     bool on() const { return speed > 0 || (own_limits && gravity > 0); }
 };
-
-/// What makes a body still where the user gives no speed (docs/methods/skipping.md 3.1).
-namespace own_sleep_limits {
-/// No node is as fast as this times sqrt(gravity times the mean edge),
-inline constexpr Real speed = 0.01;
-/// none comes further in half of the time than this part of the mean edge,
-inline constexpr Real drift = 3e-3;
-/// and none this times as far as in the half before: what begins to slide, to fall or to buckle does.
-inline constexpr Real growth = 2;
-/// Of the mean edge: less is not compared.
-inline constexpr Real noise = 2e-5;
-/// Looks at the drift in each half.
-inline constexpr int looks = 8;
-}  // namespace own_sleep_limits
 
 /// The contacts of this step, after the solve.
 struct TouchInputs {
@@ -93,11 +80,15 @@ struct RestInputs {
     std::span<const RigidMotion> attached_motion;
     std::span<const BodyKind> kind;
     std::span<const Range> nodes;
-    std::span<const Real> mean_edge;     // m
-    std::span<const Real> max_speed;     // m/s, of this step
-    std::span<const Vec3> position;      // m, by node, at the end of the step
-    std::span<const Real> mass;          // kg, by node
-    std::span<const Real> inverse_mass;  // 1/kg, by node
+    std::span<const Real> mean_edge;  // m
+    std::span<const Real> max_speed;  // m/s, of this step
+    std::span<const Index> material;  // row of MaterialTable or no_index
+    std::span<const Index> pinned_count;
+    std::span<const Real> material_damping;  // 1/s
+    std::span<const Vec3> position;          // m, by node, at the end of the step
+    std::span<const Vec3> rest_position;     // m, by node
+    std::span<const Real> mass;              // kg, by node
+    std::span<const Real> inverse_mass;      // 1/kg, by node
     // BodyTable, RigidBodyTable
     std::span<const Range> body_rigid = {};     // empty: none is
     std::span<const Range> body_implicit = {};  // of ImplicitNodeTable
@@ -107,14 +98,18 @@ struct RestInputs {
     std::span<const Mat3> rigid_rotation = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
-                           const NodeTable& node, const RigidBodyTable& rigid) {
+                           const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid) {
         return {.attached_body = binder.read(attachment.body),
                 .attached_motion = binder.read(attachment.motion),
                 .kind = binder.read(body.kind),
                 .nodes = binder.read(body.nodes),
                 .mean_edge = binder.read(body.mean_edge),
                 .max_speed = binder.read(body.max_speed),
+                .material = binder.read(body.material),
+                .pinned_count = binder.read(body.pinned_count),
+                .material_damping = binder.read(material.damping),
                 .position = binder.read(node.position),
+                .rest_position = binder.read(node.rest_position),
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass),
                 .body_rigid = binder.read(body.rigid),
@@ -135,6 +130,7 @@ struct RestOutputs {
     std::span<std::uint8_t> asleep;                        // by body
     std::span<Real> still_time;                            // s, by body
     std::span<Real> drift, drift_before;                   // m, by body
+    std::span<Real> shape_drift, creep_before;             // m, by body
     std::span<Vec3> still_position;                        // m, by node
     std::span<Vec3> velocity, velocity_next;               // m/s, by node
     std::span<Vec3> momentum = {}, angular_momentum = {};  // of rigid bodies
@@ -146,6 +142,8 @@ struct RestOutputs {
                 .still_time = binder.write(body.still_time),
                 .drift = binder.write(body.drift),
                 .drift_before = binder.write(body.drift_before),
+                .shape_drift = binder.write(body.shape_drift),
+                .creep_before = binder.write(body.creep_before),
                 .still_position = binder.write(node.still_position),
                 .velocity = binder.write(node.velocity),
                 .velocity_next = binder.write(node.velocity_next),

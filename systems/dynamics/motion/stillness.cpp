@@ -1,0 +1,146 @@
+#include "systems/dynamics/motion/stillness.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "systems/material/extract_rotation.h"
+
+namespace skerry {
+
+namespace {
+
+namespace limits = own_sleep_limits;
+
+/// How many of the looks in a half are due at this part of it. They are not evenly spread: an oscillation that is back
+/// at each of them would look still.
+int looks_due(Real part) {
+    constexpr Real golden = 0.6180339887498949;
+    const int slot = static_cast<int>(part * limits::looks);
+    const Real place = slot * golden;
+    return slot + (part * limits::looks - slot >= place - std::floor(place));
+}
+
+Vec3 mean_of(std::span<const Vec3> points) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& point : points) sum += point - points[0];  // small numbers far from the origin
+    return points[0] + sum / static_cast<Real>(points.size());
+}
+
+/// One body.
+class Stillness {
+public:
+    Stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, const RestOutputs& state)
+        : bodies_(bodies), settings_(settings), body_(body), state_(state) {}
+
+    void go_on(Real h) const {
+        Real& still = state_.still_time[body_];
+        const Real edge = bodies_.mean_edge[body_];
+        if (!(bodies_.max_speed[body_] < limits::speed * std::sqrt(settings_.gravity * edge))) {
+            still = 0;
+            return;
+        }
+        if (still == 0) {
+            begin_half();
+            state_.drift_before[body_] = state_.creep_before[body_] = 0;
+        }
+        const Real half = std::max(settings_.time / 2, h), before = still;
+        still += h;
+        const auto halves = [&](Real time) { return std::floor(time / half); };
+        const auto part = [&](Real time) { return time / half - halves(time); };
+        const bool ends = halves(still) > halves(before);
+        if (!ends && looks_due(part(still)) == looks_due(part(before))) return;
+        Real &drift = state_.drift[body_], &shape_drift = state_.shape_drift[body_];
+        const Real shape_now = shape_distance(positions(), part_of_body(state_.still_position));
+        const bool goes_one_way = shape_now >= shape_drift;
+        drift = std::max(drift, drift_now());
+        shape_drift = std::max(shape_drift, shape_now);
+        if (drift > limits::drift * edge) {
+            still = 0;
+        } else if (ends) {
+            const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
+            const bool first = before < half;
+            if (!first && drift > limits::growth * least)
+                still = 0;
+            else if (!first && !(is_balanced(half) && has_its_shape(goes_one_way)))
+                still = half;  // the next half is compared with this one
+            state_.drift_before[body_] = drift;
+            state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
+            begin_half();
+        }
+    }
+
+private:
+    /// Whether forces but for damping, which what rests does without, are in balance, in the mean over both halves. The
+    /// mean acceleration of a node, weighted by a triangle, is the difference of its ways in both over the square of a
+    /// half; the sum of the drifts bounds it.
+    bool is_balanced(Real half) const {
+        const bool held = bodies_.pinned_count[body_] > 0;  // damped towards rest, not towards its rigid motion
+        const Real damped = held ? state_.drift[body_] : state_.shape_drift[body_];
+        const Real acceleration = (state_.drift[body_] + state_.drift_before[body_]) / (half * half);
+        return acceleration + damping() * damped / half <= limits::imbalance * settings_.gravity;
+    }
+
+    /// Whether the shape swings about one that it hardly leaves, and does not creep towards one that is still away: by
+    /// a factor q from half to half, `shape_drift q/(1 - q)` is left.
+    bool has_its_shape(bool goes_one_way) const {
+        const Real now = state_.shape_drift[body_], before = state_.creep_before[body_];
+        if (now <= limits::noise * bodies_.mean_edge[body_]) return true;
+        const Real shape = shape_distance(positions(), part_of_body(bodies_.rest_position));
+        if (now > std::max(limits::shape_change * shape, limits::shape_noise * bodies_.mean_edge[body_])) return false;
+        const bool creeps = goes_one_way && before > 0;
+        return !creeps || (now < before && now * now <= limits::creep * shape * (before - now));
+    }
+
+    Real damping() const {
+        const Index material = bodies_.material[body_];
+        return material == no_index ? 0 : bodies_.material_damping[static_cast<std::size_t>(material)];
+    }
+
+    template <class T>
+    std::span<T> part_of_body(std::span<T> column) const {
+        const Range nodes = bodies_.nodes[body_];
+        return column.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
+    }
+    std::span<const Vec3> positions() const { return part_of_body(bodies_.position); }
+
+    void begin_half() const {
+        state_.drift[body_] = state_.shape_drift[body_] = 0;
+        std::ranges::copy(positions(), part_of_body(state_.still_position).begin());
+    }
+    Real drift_now() const {
+        Real squared = 0;
+        for (Index n = bodies_.nodes[body_].begin; n < bodies_.nodes[body_].end; ++n)
+            squared = std::max(squared, (bodies_.position[n] - state_.still_position[n]).squaredNorm());
+        return std::sqrt(squared);
+    }
+
+    const RestInputs& bodies_;
+    const SleepSettings& settings_;
+    std::size_t body_;
+    const RestOutputs& state_;
+};
+
+}  // namespace
+
+Real shape_distance(std::span<const Vec3> points, std::span<const Vec3> others) {
+    if (points.size() < 2) return 0;
+    const Vec3 center = mean_of(points), other_center = mean_of(others);
+    Mat3 covariance = Mat3::Zero();
+    for (std::size_t n = 0; n < points.size(); ++n)
+        covariance += (points[n] - center) * (others[n] - other_center).transpose();
+    const std::array<Real, 4> turn = nearest_rotation(covariance, {1, 0, 0, 0});
+    const Mat3 rotation = Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
+    Real squared = 0;
+    for (std::size_t n = 0; n < points.size(); ++n)
+        squared = std::max(squared, (points[n] - center - rotation * (others[n] - other_center)).squaredNorm());
+    return std::sqrt(squared);
+}
+
+void watch_stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, Real h,
+                     const RestOutputs& state) {
+    Stillness(bodies, settings, body, state).go_on(h);
+}
+
+}  // namespace skerry
