@@ -135,6 +135,41 @@ TEST_CASE("an implicit cube becomes the rigid one as it stiffens", "[scene][accu
                      .kind = Tolerance::absolute});
 }
 
+TEST_CASE("a heavy implicit block on a light one presses on the floor with both weights", "[scene][accuracy]") {
+    constexpr Real h = 1e-3;
+    World world = with_step({0, 0, -g}, 1e-8, h);
+    const auto of = [&](Real density) {
+        return world.add_material({.young_modulus = 1e9, .poisson_ratio = 0.3, .density = density});
+    };
+    const auto stand = [&](MaterialHandle material, Real height) {
+        world.add_body(cube, {.material = material,
+                              .position = {0, 0, height},
+                              .contact_distance = 0,
+                              .dynamics = BodyDynamics::implicit_elastic});
+    };
+    stand(of(10), 0.05);
+    stand(of(1e5), 0.15);
+    world.add_collider(Plane{});
+    const StepReport report = world.advance(0.2);
+    REQUIRE(report.ok());
+    REQUIRE(report.unconverged == 0);
+    Real floor = 0;
+    for (const Contact& contact : world.contacts())
+        if (contact.second == BodyHandle{}) floor += contact.impulse.z() / h;
+    accuracy::check({.item = 45,
+                     .name = "implicit cubes of 100 kg on 0.01 kg, E = 1e9, force of the floor (N), h = 1/1000 s",
+                     .formula = "(M + m) g",
+                     .expected = (100 + 0.01) * g,
+                     .found = floor,
+                     .tolerance = 1e-3});
+    accuracy::check({.item = 45,
+                     .name = "the same, largest overlap of 200 steps (m)",
+                     .formula = "0",
+                     .found = report.max_penetration,
+                     .tolerance = 1e-8,
+                     .kind = Tolerance::absolute});
+}
+
 TEST_CASE("three implicit balls in a row pass the first one's speed on", "[scene][accuracy]") {
     constexpr Real radius = 0.05, modulus = 1e7, density = 1000;
     // omega h = 0.1 for the lowest mode of a ball, omega = 2.65 sqrt(mu / rho) / R
