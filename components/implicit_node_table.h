@@ -10,7 +10,7 @@ namespace skerry {
 
 struct ImplicitNodeTable {
     Column<Vec3> displacement;  // m, u
-    Column<Vec3> velocity;      // m/s, w
+    Column<Vec3> velocity;      // m/s, w; of a held body the whole velocity
     // Of this step, by kick_implicit_bodies:
     Column<Vec3> elastic_force;  // N, K u, by place in the factor
     Column<Vec3> impulse;        // N s, by place; afterwards what is made of it

@@ -25,7 +25,8 @@ struct RigidBodyTable {
     Column<Mat3> rotation;          // principal frame to world
     Column<Vec3> momentum;          // kg m/s
     Column<Vec3> angular_momentum;  // kg m^2/s, about the centre
-    // The attachment that holds it as a whole, and where the frame of the mesh is in that of the attachment:
+    // The attachment that holds it as a whole, or the frame of what deforms in it, and where the frame of the mesh is
+    // in that of the attachment:
     Column<Index> holder;        // row of AttachmentTable, or no_index
     Column<Vec3> held_position;  // m
     Column<Mat3> held_rotation;
@@ -38,6 +39,8 @@ struct RigidBodyTable {
     // by turn_rigid_bodies:
     Column<Vec3> center_next;
     Column<Mat3> rotation_next;
+    // by strain_implicit_bodies: N m s, what keeps the frame of a held body on its way against what deforms in it
+    Column<Vec3> hold_moment;
 
     std::size_t size() const { return mass.size(); }
 
@@ -64,6 +67,7 @@ struct RigidBodyTable {
         visit("push_spin", push_spin, ColumnRole::scratch);
         visit("center_next", center_next, ColumnRole::scratch);
         visit("rotation_next", rotation_next, ColumnRole::scratch);
+        visit("hold_moment", hold_moment, ColumnRole::scratch);
     }
 };
 

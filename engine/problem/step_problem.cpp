@@ -58,7 +58,7 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     std::vector<RigidPoints> bodies;
     for (const auto& [row, nodes] : touched) {
         const auto r = static_cast<std::size_t>(row);
-        RigidPoints points{{nodes.begin(), nodes.end()}, {}, 1 / rigid.mass[r], rigid.inverse_inertia[r]};
+        RigidPoints points{{nodes.begin(), nodes.end()}, {}, rigid.inverse_mass(r), rigid.inverse_inertia[r]};
         for (const Index node : nodes)
             points.arm.push_back(rigid.position[static_cast<std::size_t>(node)] - rigid.center[r]);
         bodies.push_back(std::move(points));

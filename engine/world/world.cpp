@@ -219,14 +219,6 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     Model& model = state_->model;
     const Index row = model.row(body, "attach");
     const auto b = static_cast<std::size_t>(row);
-    if (model.dynamics_of(b) == BodyDynamics::implicit_elastic)
-        Complaint{.file = {},
-                  .object = "attach",
-                  .field = "body",
-                  .found = "the implicit body '" + model.body_records[b].name + "'",
-                  .expected = "one that is not implicit",
-                  .hint = "what stands still or follows a script is a collider: one can have the same mesh"}
-            .raise();
     validate(motion, pivot);
     const Index count = model.bodies.nodes[b].size();
     for (Index node : nodes)
@@ -238,13 +230,15 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
-    const bool rigid = model.is_rigid(b);
-    if (rigid && !hold_whole(model, b, nodes))
+    const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
+    if (model.has_frame(b) && !hold_whole(model, b, nodes))
         Complaint{.file = {},
                   .object = "attach",
                   .field = "nodes",
-                  .found = std::to_string(nodes.size()) + " of the rigid body '" + model.body_records[b].name + "'",
-                  .expected = "three or more that are not on one line: they hold it as a whole",
+                  .found = std::to_string(nodes.size()) + " of the " + (rigid ? "rigid" : "implicit") + " body '" +
+                           model.body_records[b].name + "'",
+                  .expected = std::string("three or more that are not on one line: they hold ") +
+                              (rigid ? "it as a whole" : "the frame in which it deforms"),
                   .hint = {}}
             .raise();
     state_->require_between_steps("attach");
@@ -256,6 +250,10 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     }
     const AttachmentHandle handle = model.attachment_map.insert(static_cast<Index>(model.attachments.slot.size()));
     append_attachment(model, handle.slot, row, held, {pivot, Mat3::Identity()}, motion, state_->clock.time);
+    if (implicit) {
+        find_holders(model);
+        follow_attachments(model, b);
+    }
     model.wake(b);
     state_->cache.forget_body(model, b);  // its nodes have stopped
     state_->edits.rows = state_->edits.elements = true;
@@ -301,9 +299,15 @@ void World::remove(AttachmentHandle attachment) {
     state_->require_between_steps("remove");
     const Index row = state_->model.row(attachment, "remove");
     state_->record.forces.forget_attachment(attachment.slot);
-    state_->model.wake(static_cast<std::size_t>(state_->model.attachments.body[static_cast<std::size_t>(row)]));
-    state_->model.attachment_map.forget(attachment);
-    erase_attachment(state_->model, row);
+    Model& model = state_->model;
+    const auto body = static_cast<std::size_t>(model.attachments.body[static_cast<std::size_t>(row)]);
+    model.wake(body);
+    model.attachment_map.forget(attachment);
+    erase_attachment(model, row);
+    if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) {
+        find_holders(model);
+        follow_attachments(model, body);
+    }
     state_->edits.rows = state_->edits.elements = true;
 }
 

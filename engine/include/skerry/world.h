@@ -63,7 +63,7 @@ public:
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion from now
     /// on. Constant velocities turn them about `pivot`; keys are poses at absolute times, and the nodes are attached to
-    /// the pose that the keys have now. Of a rigid body three or more that are not on one line hold all of it.
+    /// the pose that the keys have now. Three or more not on one line hold a rigid body, or an implicit one's frame.
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero());
     void remove(BodyHandle body);
@@ -151,7 +151,7 @@ public:
     void move_to(AttachmentHandle attachment, const Pose& pose, Real duration);
     /// Is there at once and touches nothing on the way: what is in between is neither pushed nor noticed. Constant
     /// velocities go on from there, keys and targets are forgotten. What it then overlaps is treated as at a start
-    /// (Settings::start_overlaps). What an attachment holds is deformed by it; refused where that inverts elements.
+    /// (Settings::start_overlaps). What an attachment holds is deformed by it, or goes along as its frame does.
     void set_pose(ColliderHandle collider, const Pose& pose);
     void set_pose(AttachmentHandle attachment, const Pose& pose);
     /// Puts the nodes of a body somewhere else (m, world frame). Velocities stay, nodes that are held are held where

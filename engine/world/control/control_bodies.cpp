@@ -120,11 +120,15 @@ void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
     }
     require_upright(model, row, position, title_of_body(model, row), "position");
     place_nodes(*state_, row, position);
-    if (model.has_frame(row)) {
+    const bool held = model.is_held(row);
+    if (model.has_frame(row) && !held) {
         set_deformed_shape(model, row, position);
         return;
     }
     hold_here(model, row, time());
+    if (!held) return;
+    find_holders(model);
+    follow_attachments(model, row);
 }
 
 void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {

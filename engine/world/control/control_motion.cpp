@@ -144,13 +144,21 @@ void for_each_script(Model& model, Index collider, auto&& change) {
         change(Scripted{model.attachments, static_cast<std::size_t>(a)});
 }
 
-/// Where the nodes of a body are once an attachment is at a pose.
-std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& pose) {
+/// Where the nodes of a body are once an attachment is at a pose. What deforms in the frame of that attachment goes
+/// with it, but for what others hold.
+std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& from,
+                                const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;
     const Range nodes = model.bodies.nodes[static_cast<std::size_t>(table.body[attachment])];
     const std::span<const Vec3> now = model.nodes.position.span().subspan(static_cast<std::size_t>(nodes.begin),
                                                                           static_cast<std::size_t>(nodes.size()));
     std::vector<Vec3> position(now.begin(), now.end());
+    const Range frame = model.bodies.rigid[static_cast<std::size_t>(table.body[attachment])];
+    if (frame.size() > 0 &&
+        model.rigid_bodies.holder[static_cast<std::size_t>(frame.begin)] == static_cast<Index>(attachment))
+        for (std::size_t n = 0; n < position.size(); ++n)
+            if (model.nodes.inverse_mass[static_cast<std::size_t>(nodes.begin) + n] > 0)
+                position[n] = pose.position + pose.rotation * (from.rotation.transpose() * (now[n] - from.position));
     for (Index i = table.nodes[attachment].begin; i < table.nodes[attachment].end; ++i) {
         const auto at = static_cast<std::size_t>(i);
         position[static_cast<std::size_t>(table.node[at] - nodes.begin)] =
@@ -230,7 +238,8 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     if (const Index a = attachment_of(model, row); a != no_index) {
         const auto of_mesh = static_cast<std::size_t>(a);
         skerry::set_pose(Scripted{model.attachments, of_mesh}, pose, time());
-        place_nodes(*state_, static_cast<std::size_t>(model.colliders.body[c]), carried_nodes(model, of_mesh, there));
+        place_nodes(*state_, static_cast<std::size_t>(model.colliders.body[c]),
+                    carried_nodes(model, of_mesh, there, there));
     }
     model.colliders.motion[c] = {there.position, there.rotation, Vec3::Zero(), Vec3::Zero()};
     model.collider_records[c].settled = model.settled = false;
@@ -247,13 +256,16 @@ void World::set_pose(AttachmentHandle attachment, const Pose& pose) {
     const Scripted scripted{model.attachments, a};
     if (is_at(scripted.pose(time()), pose)) return;
     const auto body = static_cast<std::size_t>(model.attachments.body[a]);
-    const std::vector<Vec3> position = carried_nodes(model, a, {pose.position, rotation_matrix(pose.rotation)});
+    const std::vector<Vec3> position =
+        carried_nodes(model, a, scripted.pose(time()), {pose.position, rotation_matrix(pose.rotation)});
     require_upright(model, body, position, object(), "pose");
     skerry::set_pose(scripted, pose, time());
     place_nodes(*state_, body, position);
     if (model.is_rigid(body)) {
         const RigidFit fit = fit_rigid_body(model, body, position);
         set_rigid_pose(model, body, fit.center, fit.rotation);
+    } else if (model.has_frame(body)) {
+        follow_attachments(model, body);
     }
 }
 

@@ -179,6 +179,56 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
     return false;
 }
 
+namespace {
+
+/// `position`: of what an attachment holds, in its order.
+NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span<const Vec3> position) {
+    std::vector<Vec3> rest;
+    for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment]))
+        rest.push_back(model.nodes.rest_position[static_cast<std::size_t>(node)]);
+    return nearest_frame(rest, position, [](std::size_t) { return Real(1); });
+}
+
+/// What deforms in the frame of a held body, from its nodes.
+void write_held_shape(Model& model, std::size_t body) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const auto a = static_cast<std::size_t>(table.holder[r]);
+    std::vector<Vec3> held;
+    for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[a]))
+        held.push_back(model.nodes.position[static_cast<std::size_t>(node)]);
+    const NearestFrame frame = frame_of_held(model, a, held);
+    table.rotation[r] = frame.rotation * table.axes[r];
+    table.center[r] = frame.center + frame.rotation * (table.rest_center[r] - frame.rest_center);
+    table.momentum[r] = table.angular_momentum[r] = Vec3::Zero();
+    const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
+    const Deformation deformation(model, body);
+    auto n = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+    for (std::size_t k = 0; k < deformation.displacement.size(); ++k, ++n) {
+        deformation.displacement[k] =
+            table.rest_center[r] + to_mesh * (model.nodes.position[n] - table.center[r]) - model.nodes.rest_position[n];
+        deformation.velocity[k] = to_mesh * model.nodes.velocity[n];
+    }
+}
+
+}  // namespace
+
+void follow_attachments(Model& model, std::size_t body) {
+    model.stiff_bodies[rigid_row(model, body)].hold(rows_of(model.nodes.inverse_mass, model.bodies.nodes[body]));
+    if (model.is_held(body)) {
+        write_held_shape(model, body);
+        return;
+    }
+    const auto copy_of = [&](auto& column) {
+        const auto rows = rows_of(column, model.bodies.nodes[body]);
+        return std::vector<Vec3>(rows.begin(), rows.end());
+    };
+    const std::vector<Vec3> position = copy_of(model.nodes.position), velocity = copy_of(model.nodes.velocity);
+    set_deformed_shape(model, body, position);
+    std::ranges::copy(velocity, rows_of(model.nodes.velocity, model.bodies.nodes[body]).begin());
+    follow_node_velocities(model, body);
+}
+
 void find_holders(Model& model) {
     RigidBodyTable& table = model.rigid_bodies;
     if (table.size() == 0) return;
@@ -186,15 +236,14 @@ void find_holders(Model& model) {
     std::ranges::fill(table.holder, no_index);
     for (std::size_t a = 0; a < attachments.slot.size(); ++a) {
         const auto body = static_cast<std::size_t>(attachments.body[a]);
-        if (model.is_rigid(body) && attachments.nodes[a].size() == model.bodies.nodes[body].size())
+        const bool frame = model.dynamics_of(body) == BodyDynamics::implicit_elastic;
+        if (frame || (model.is_rigid(body) && attachments.nodes[a].size() == model.bodies.nodes[body].size()))
             table.holder[rigid_row(model, body)] = static_cast<Index>(a);
     }
     for (std::size_t r = 0; r < table.size(); ++r) {
         if (table.holder[r] == no_index) continue;
-        const auto body = static_cast<std::size_t>(table.body[r]), a = static_cast<std::size_t>(table.holder[r]);
-        const NearestFrame frame =
-            nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]),
-                          rows_of(attachments.anchor, attachments.nodes[a]), [](std::size_t) { return Real(1); });
+        const auto a = static_cast<std::size_t>(table.holder[r]);
+        const NearestFrame frame = frame_of_held(model, a, rows_of(attachments.anchor, attachments.nodes[a]));
         table.held_rotation[r] = frame.rotation;
         table.held_position[r] = frame.center - frame.rotation * frame.rest_center;
     }
@@ -265,6 +314,10 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
 }
 
 void follow_node_velocities(Model& model, std::size_t body) {
+    if (model.is_held(body)) {
+        write_held_shape(model, body);
+        return;
+    }
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
     Vec3 momentum = Vec3::Zero(), turning = Vec3::Zero();
@@ -290,8 +343,46 @@ void follow_node_velocities(Model& model, std::size_t body) {
     give_nodes_velocity(model, body);
 }
 
+namespace {
+
+/// In the frame of a held body nodes have momenta of their own.
+RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
+    RigidSums sums;
+    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {
+        if (!counts(n)) continue;
+        const Vec3 momentum = model.nodes.mass[n] * model.nodes.velocity[n];
+        sums.kinetic += momentum.dot(model.nodes.velocity[n]) / 2;
+        sums.momentum += momentum;
+        sums.angular_momentum += model.nodes.position[n].cross(momentum);
+    }
+    sums.elastic = model.stiff_bodies[rigid_row(model, body)].elastic_energy(
+        rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]));
+    return sums;
+}
+
+}  // namespace
+
+RigidSums moving_sums(const Model& model, std::size_t body) {
+    return sums_of_nodes(model, body, [&](Index n) { return model.nodes.inverse_mass[n] > 0; });
+}
+
+std::vector<Vec3> elastic_forces(const Model& model, std::size_t body) {
+    const std::size_t r = rigid_row(model, body);
+    const StiffBody& stiff = model.stiff_bodies[r];
+    const std::span<const Vec3> displacement = rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]);
+    std::vector<Vec3> by_place(displacement.size()), force(displacement.size());
+    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.place(n)); };
+    for (std::size_t n = 0; n < displacement.size(); ++n) by_place[place(n)] = displacement[n];
+    stiff.elastic_forces(by_place, force);
+    std::vector<Vec3> by_node(displacement.size());
+    const Mat3 from_mesh = frame_of_mesh(model.rigid_bodies, r);
+    for (std::size_t n = 0; n < by_node.size(); ++n) by_node[n] = -(from_mesh * force[place(n)]);
+    return by_node;
+}
+
 RigidSums rigid_sums(const Model& model, std::size_t body) {
     if (!model.has_frame(body)) return {};
+    if (model.is_held(body) && !model.is_rigid(body)) return sums_of_nodes(model, body, [](Index) { return true; });
     const RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
     const Vec3 &momentum = table.momentum[r], &angular = table.angular_momentum[r];

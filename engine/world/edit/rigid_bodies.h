@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/world/edit/edit_model.h"
 
@@ -26,10 +27,14 @@ RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Ve
 /// Where the frame of its mesh is, of a body that deforms the nearest.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
-/// Whether nodes (local numbers) hold a rigid body as a whole: three of them that are not on one line.
+/// Whether nodes (local numbers) hold a rigid body as a whole, or the frame of an implicit one: three of them that are
+/// not on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
-/// Which attachments hold whole bodies, and where: what is derived of the rows of attachments.
+/// Which attachments hold whole bodies or their frames, and where: what is derived of the rows of attachments.
 void find_holders(Model& model);
+/// After an implicit body was attached or let go, or its held nodes put elsewhere: its frame is that of its attachment
+/// or its own, and what deforms in it is what leaves nodes where they are, with the velocities that they have.
+void follow_attachments(Model& model, std::size_t body);
 
 /// Takes its momenta.
 void stop_rigid_body(Model& model, std::size_t body);
@@ -47,5 +52,9 @@ struct RigidSums {
     Vec3 angular_momentum = Vec3::Zero();  // kg m^2/s, about the origin
 };
 RigidSums rigid_sums(const Model& model, std::size_t body);
+/// The same of the nodes that move in the frame of a held implicit body.
+RigidSums moving_sums(const Model& model, std::size_t body);
+/// N, what elasticity does to the nodes of an implicit body, by node of it, world.
+std::vector<Vec3> elastic_forces(const Model& model, std::size_t body);
 
 }  // namespace skerry

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
@@ -35,6 +36,24 @@ PairKey key_of(const Model& model, const ContactPartners& partners) {
 
 bool rests(const Model& model, Index body) {
     return model.bodies.asleep[static_cast<std::size_t>(body)] != 0;
+}
+
+/// N and N m: by an attachment on what deforms in an implicit body, through the nodes that count for it, and on the
+/// frame where that is its own.
+ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
+                                  const Vec3& moment_point) {
+    const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
+    const std::vector<Vec3> force = elastic_forces(model, body);
+    const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+    const auto turning = [&](std::size_t n) {
+        return Vec3((model.nodes.position[n] - moment_point).cross(force[n - first]));
+    };
+    ImpulseAndMoment hold;
+    for (const std::size_t n : held) hold += {-force[n - first], -turning(n)};
+    const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
+    if (model.rigid_bodies.holder[r] == static_cast<Index>(attachment))
+        for (std::size_t n = first; n < first + force.size(); ++n) hold.moment += turning(n);
+    return hold;
 }
 
 bool is_zero(const ContactSums& sums) {
@@ -100,6 +119,10 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
         for (const std::size_t n : held) {
             const Vec3 others = nodes.mass[n] * model.settings.gravity + nodes.load[n] + contact_force[n];
             row.still += {-others, (moment_point_ - nodes.position[n]).cross(others)};
+        }
+        if (model.is_held(static_cast<std::size_t>(body)) && !model.is_rigid(static_cast<std::size_t>(body))) {
+            row.still += hold_of_implicit(model, a, held, moment_point_);
+            continue;
         }
         const auto power = [&](auto&& motion_of) {
             for (const std::size_t n : held) motion[n] = motion_of(nodes.position[n]);
@@ -236,7 +259,7 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
     // From the last attachment back, as in measure_reactions.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        if (model.has_frame(static_cast<std::size_t>(model.attachments.body[a]))) continue;  // has momenta of its own
+        if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;  // has momenta of its own
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);
             const Vec3 impulse = model.nodes.mass[n] * (model.nodes.velocity[n] - scratch.forces.held_velocity[n]);

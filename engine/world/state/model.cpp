@@ -112,9 +112,10 @@ ElementList Model::elements_of_implicit(std::size_t body) const {
 
 void Model::stiffen(std::size_t body) {
     const Range of_body = bodies.nodes[body];
-    stiff_bodies[static_cast<std::size_t>(bodies.rigid[body].begin)] =
-        StiffBody(elements_of_implicit(body), materials.constants, rows_of(nodes.mass, of_body),
-                  rows_of(nodes.rest_position, of_body));
+    StiffBody& stiff = stiff_bodies[static_cast<std::size_t>(bodies.rigid[body].begin)];
+    stiff = StiffBody(elements_of_implicit(body), materials.constants, rows_of(nodes.mass, of_body),
+                      rows_of(nodes.rest_position, of_body));
+    stiff.hold(rows_of(nodes.inverse_mass, of_body));
 }
 
 void Model::extend_derived() {

@@ -29,25 +29,28 @@ Present measure(const Model& model, Real lag) {
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
     }
-    Real implicit = 0;  // J
+    Real implicit = 0;           // J
+    Vec3 kicked = now.momentum;  // kg m/s, of what is kicked; nodes in led frames take their steps at theta
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
-        if (model.is_held(b)) continue;
-        const RigidSums sums = rigid_sums(model, b);
+        if (model.is_held(b) && model.is_rigid(b)) continue;
+        const RigidSums sums = model.is_held(b) ? moving_sums(model, b) : rigid_sums(model, b);
         now.kinetic += sums.kinetic;
         implicit += sums.elastic;
         now.momentum += sums.momentum;
         now.momentum_size += sums.momentum.norm();
+        if (!model.is_held(b)) kicked += sums.momentum;
     }
     now.kinetic += added_energy(model);
     // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies
     // keep m v.v' / 2 and their elastic energy together, as leapfrog does.
     if (lag > 0) {
         Real power = -kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
-        power += now.momentum.dot(model.settings.gravity);
+        power += kicked.dot(model.settings.gravity);
         if (model.loaded)
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
-                if (nodes.inverse_mass[n] > 0) power += nodes.load[n].dot(nodes.velocity[n]);
+                if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
+                    power += nodes.load[n].dot(nodes.velocity[n]);
         now.kinetic += lag * power;
     }
     now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position) + implicit;
@@ -56,7 +59,7 @@ Present measure(const Model& model, Real lag) {
 
 bool damps_held_body(const Model& model) {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        if (model.bodies.pinned_count[b] > 0 && !model.has_frame(b) && model.bodies.material[b] != no_index &&
+        if (model.bodies.pinned_count[b] > 0 && !model.is_rigid(b) && model.bodies.material[b] != no_index &&
             model.materials.damping[static_cast<std::size_t>(model.bodies.material[b])] > 0)
             return true;
     return false;

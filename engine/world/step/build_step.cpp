@@ -51,7 +51,8 @@ void list_watch(WorldState& w, TaskGraph& g) {
 }
 
 auto implicit_bodies(const Model& m) {
-    return inputs<ImplicitBodies>(m.rigid_bodies, m.bodies, m.materials, m.implicit_nodes, m.any_asleep);
+    return inputs<ImplicitBodies>(m.rigid_bodies, m.bodies, m.materials, m.implicit_nodes, m.nodes, m.attachments,
+                                  m.any_asleep);
 }
 
 void list_force_branch(WorldState& w, TaskGraph& g) {
@@ -77,7 +78,7 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h),
             outputs<RigidKicks>(m.rigid_bodies, n));
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
-            inputs<ImplicitLoads>(n, m.loaded), value(p.h), value(p.theta), make(m.stiff_bodies),
+            inputs<ImplicitLoads>(n, p.gravity, m.loaded), value(p.h), value(p.theta), make(m.stiff_bodies),
             outputs<ImplicitKicks>(m.implicit_nodes, n));
 }
 
@@ -145,13 +146,19 @@ void list_forces(WorldState& w, TaskGraph& g) {
             value(p.h), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 
+/// What implicit bodies deform by, and how that pulls at what holds them.
+void list_strains(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
+                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded), read(m.stiff_bodies),
+                        value(p.h), value(p.theta), outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
+                        make(w.scratch.strain_parts));
+}
+
 /// From here on velocity_next of a rigid body is that of the straight way to where it will be.
 void list_turns(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
-    g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
-                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, m.loaded), read(m.stiff_bodies),
-                        value(w.scratch.parameters.h), value(w.scratch.parameters.theta),
-                        outputs<ImplicitStrains>(m.implicit_nodes), make(w.scratch.strain_parts));
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
             inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep),
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidImpulses>(m.rigid_bodies),
@@ -243,6 +250,7 @@ void build_step(WorldState& world) {
     list_force_branch(world, world.graph);
     list_contact_branch(world, world.graph);
     list_solve(world, world.graph);
+    list_strains(world, world.graph);
     list_forces(world, world.graph);
     list_turns(world, world.graph);
     list_checks(world, world.graph);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/world/step/step.h"
+#include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/motion/advance_positions.h"
 #include "systems/dynamics/motion/measure_displacement.h"
 #include "systems/dynamics/motion/move_colliders.h"
@@ -27,14 +28,6 @@ void forget_impulses(RigidBodyTable& rigid) {
         std::ranges::fill(*column, Vec3::Zero());
 }
 
-/// What deforms goes on with the velocity that it has.
-void drift_displacements(ImplicitNodeTable& implicit, Real seconds) {
-    for (std::size_t row = 0; row < implicit.size(); ++row) {
-        implicit.displacement_next[row] = implicit.displacement[row] + seconds * implicit.velocity[row];
-        implicit.velocity_next[row] = implicit.velocity[row];
-    }
-}
-
 }  // namespace
 
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search) {
@@ -51,7 +44,8 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     RigidBodyTable& r = model.rigid_bodies;
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
-    drift_displacements(i, seconds);
+    drift_implicit_bodies(ImplicitBodies::bind({}, r, model.bodies, model.materials, i, n, a, model.any_asleep),
+                          seconds, i.displacement_next, i.velocity_next);
     turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep), RigidHolds::bind({}, r, a),
                       RigidImpulses::bind({}, r), ElasticMotion::bind({}, i), n.position, seconds,
                       {r.center_next, r.rotation_next, n.velocity});

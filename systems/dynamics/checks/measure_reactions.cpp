@@ -17,15 +17,20 @@ bool is_awake(const ReactionInputs& inputs, Index body) {
 
 /// Whether its nodes are held one by one.
 bool counts(const ReactionInputs& inputs, Index body) {
-    return is_awake(inputs, body) && inputs.body_rigid[static_cast<std::size_t>(body)].size() == 0;
+    const auto b = static_cast<std::size_t>(body);
+    return is_awake(inputs, body) && (inputs.body_rigid[b].size() == 0 || inputs.body_implicit[b].size() > 0);
 }
 
-/// What takes a rigid body along, against its weight, loads and contacts.
+/// What takes a rigid body along, against its weight, loads and contacts, or keeps the frame of an implicit one.
 void add_rigid_body(const ReactionInputs& inputs, Real h, const Vec3& moment_point, std::size_t a,
                     ImpulseAndMoment& reaction) {
     const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
     if (rows.size() == 0 || inputs.holder[static_cast<std::size_t>(rows.begin)] != static_cast<Index>(a)) return;
     const auto r = static_cast<std::size_t>(rows.begin);
+    if (inputs.body_implicit[static_cast<std::size_t>(inputs.attached_body[a])].size() > 0) {
+        reaction += {Vec3::Zero(), inputs.hold_moment[r]};
+        return;
+    }
     reaction += {inputs.kick[r], inputs.moment_kick[r] + (inputs.center[r] - moment_point).cross(inputs.kick[r])};
     for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
          i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {

@@ -50,9 +50,9 @@ struct ReactionInputs {
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> gradient;
     // by row of RigidBodyTable
-    std::span<const Range> body_rigid;  // BodyTable
+    std::span<const Range> body_rigid, body_implicit;  // BodyTable
     std::span<const Index> holder;
-    std::span<const Vec3> center, kick, moment_kick;
+    std::span<const Vec3> center, kick, moment_kick, hold_moment;
 
     static ReactionInputs bind(const Binder& binder, const AttachmentTable& attachment, const NodeTable& node,
                                const BodyTable& body, const MaterialTable& material, const ElementBlockTable& element,
@@ -82,10 +82,12 @@ struct ReactionInputs {
                 .element_node = binder.read(nodes.node),
                 .gradient = binder.read(nodes.gradient),
                 .body_rigid = binder.read(body.rigid),
+                .body_implicit = binder.read(body.implicit),
                 .holder = binder.read(rigid.holder),
                 .center = binder.read(rigid.center),
                 .kick = binder.read(rigid.kick),
-                .moment_kick = binder.read(rigid.moment_kick)};
+                .moment_kick = binder.read(rigid.moment_kick),
+                .hold_moment = binder.read(rigid.hold_moment)};
     }
 };
 

@@ -6,28 +6,12 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
+#include "systems/dynamics/implicit/held_implicit_body.h"
+#include "systems/dynamics/implicit/of_body.h"
 
 namespace skerry {
 
 namespace {
-
-/// The rows of one body, by node and by place.
-struct OfBody {
-    const StiffBody& stiff;
-    std::size_t first_node, first_row, count;
-
-    OfBody(const ImplicitBodies& bodies, const StiffBody& of, std::size_t r)
-        : stiff(of),
-          first_node(static_cast<std::size_t>(bodies.nodes(r).begin)),
-          first_row(static_cast<std::size_t>(bodies.rows(r).begin)),
-          count(static_cast<std::size_t>(bodies.rows(r).size())) {}
-
-    template <class T>
-    std::span<T> rows(std::span<T> column) const {
-        return column.subspan(first_row, count);
-    }
-    std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
-};
 
 void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& visit) {
     parallel_for(executor, bodies.body.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -57,6 +41,11 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
         std::ranges::fill(of.rows(out.contact_impulse), Vec3::Zero());
         std::ranges::fill(next, Vec3::Zero());
         if (bodies.asleep(r)) return;
+        if (bodies.holds.hold(r)) {
+            const bool sound = make_factor(bodies, r, h, theta, stiff[r]);
+            kick_held_body(bodies, loads, r, h, theta, stiff[r], sound, out);
+            return;
+        }
         const std::span<Vec3> impulse = of.rows(out.impulse), force = of.rows(out.elastic_force);
         const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
         for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement[n];
@@ -119,7 +108,7 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
         if (nodes.empty()) return;
         const bool sound = make_factor(bodies, r, h, theta, stiff[r]);
         const OfBody of(bodies, stiff[r], r);
-        const Mat3 turn = bodies.turn(r);
+        const Mat3 turn = bodies.holds.hold(r) ? LedFrame(bodies, r, h).turn : bodies.turn(r);
         const std::span<PaddedMat3> block =
             coupling.block.span().subspan(coupling.first_block[r], nodes.size() * nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -142,6 +131,10 @@ Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, co
     if (!bodies.any()) return 0;
     damped.assign(bodies.body.size(), 0);
     for_each_implicit(executor, bodies, [&](std::size_t r) {
+        if (bodies.holds.hold(r)) {
+            damped[r] = strain_held_body(bodies, r, h, theta, stiff[r], out);
+            return;
+        }
         const OfBody of(bodies, stiff[r], r);
         const std::span<Vec3> impulse = of.rows(out.impulse), rate = of.rows(out.force_rate),
                               next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
@@ -178,6 +171,21 @@ Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, co
     Real sum = 0;
     for (const Real of_body : damped) sum += of_body;
     return sum;
+}
+
+void drift_implicit_bodies(const ImplicitBodies& bodies, Real seconds, std::span<Vec3> displacement_next,
+                           std::span<Vec3> velocity_next) {
+    for (std::size_t r = 0; r < bodies.body.size(); ++r) {
+        const Range rows = bodies.rows(r);
+        if (rows.size() > 0 && bodies.holds.hold(r)) {
+            drift_held_body(bodies, r, seconds, displacement_next, velocity_next);
+            continue;
+        }
+        for (auto row = static_cast<std::size_t>(rows.begin); row < static_cast<std::size_t>(rows.end); ++row) {
+            displacement_next[row] = bodies.displacement[row] + seconds * bodies.velocity[row];
+            velocity_next[row] = bodies.velocity[row];
+        }
+    }
 }
 
 }  // namespace skerry

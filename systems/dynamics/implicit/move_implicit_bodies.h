@@ -16,6 +16,7 @@
 #include "jobs/access.h"
 #include "jobs/executor.h"
 #include "systems/dynamics/implicit/stiff_body.h"
+#include "systems/dynamics/rigid/held_bodies.h"
 
 namespace skerry {
 
@@ -32,9 +33,15 @@ struct ImplicitBodies {
     std::span<const Real> material_damping;     // 1/s
     std::span<const Vec3> displacement;         // m
     std::span<const Vec3> velocity;             // m/s
+    // Of those that attachments hold:
+    RigidHolds holds;
+    std::span<const Vec3> center, rest_center;           // RigidBodyTable
+    std::span<const Vec3> rest_position, node_velocity;  // NodeTable: held nodes have what leads them
+    std::span<const Real> inverse_mass;                  // NodeTable
 
     static ImplicitBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
-                               const MaterialTable& material, const ImplicitNodeTable& node, const bool& any_asleep) {
+                               const MaterialTable& material, const ImplicitNodeTable& node, const NodeTable& all_nodes,
+                               const AttachmentTable& attachment, const bool& any_asleep) {
         return {.body = binder.read(rigid.body),
                 .axes = binder.read(rigid.axes),
                 .rotation = binder.read(rigid.rotation),
@@ -44,7 +51,13 @@ struct ImplicitBodies {
                 .body_asleep = binder.read_if(binder.value(any_asleep), of_body.asleep),
                 .material_damping = binder.read(material.damping),
                 .displacement = binder.read(node.displacement),
-                .velocity = binder.read(node.velocity)};
+                .velocity = binder.read(node.velocity),
+                .holds = RigidHolds::bind(binder, rigid, attachment),
+                .center = binder.read(rigid.center),
+                .rest_center = binder.read(rigid.rest_center),
+                .rest_position = binder.read(all_nodes.rest_position),
+                .node_velocity = binder.read(all_nodes.velocity),
+                .inverse_mass = binder.read(all_nodes.inverse_mass)};
     }
 
     bool any() const { return !displacement.empty(); }
@@ -64,9 +77,10 @@ struct ImplicitBodies {
 
 struct ImplicitLoads {
     std::span<const Vec3> load;  // N, by node; empty: none
+    Vec3 gravity;                // m/s^2: of bodies that are held; others fall with their frames
 
-    static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const bool& loaded) {
-        return {.load = binder.read_if(binder.value(loaded), node.load)};
+    static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded) {
+        return {.load = binder.read_if(binder.value(loaded), node.load), .gravity = binder.value(gravity)};
     }
 };
 
@@ -85,7 +99,9 @@ struct ImplicitKicks {
 
 /// velocity_next = A^-1 P (M w + theta h (Q^T f - K u)), the velocity of the step's displacement, to which
 /// kick_rigid_bodies has come first: nodes get what is added to their motion with the frame. Factors of this step's
-/// length are made where they are not there. Parallel over bodies. Returns false where there is none (skipped).
+/// length are made where they are not there. Of a body that is held velocities are those in the world, and turned into
+/// the frame of its start; its held nodes have theirs already. Parallel over bodies. Returns false where there is none
+/// (skipped).
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
                           Real theta, StiffBodies& stiff, const ImplicitKicks& out);
 
@@ -98,21 +114,31 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
 struct ImplicitStrains {
     std::span<const Vec3> elastic_force, contact_impulse;                   // ImplicitNodeTable
     std::span<Vec3> impulse, force_rate, velocity_next, displacement_next;  // ImplicitNodeTable
+    std::span<Vec3> hold_moment;                                            // RigidBodyTable
+    std::span<Vec3> force;                                                  // N, by node: of held ones
 
-    static ImplicitStrains bind(const Binder& binder, ImplicitNodeTable& implicit) {
+    static ImplicitStrains bind(const Binder& binder, ImplicitNodeTable& implicit, RigidBodyTable& rigid,
+                                NodeTable& node) {
         return {.elastic_force = binder.read(implicit.elastic_force),
                 .contact_impulse = binder.read(implicit.contact_impulse),
                 .impulse = binder.write(implicit.impulse),
                 .force_rate = binder.write(implicit.force_rate),
                 .velocity_next = binder.write(implicit.velocity_next),
-                .displacement_next = binder.write(implicit.displacement_next)};
+                .displacement_next = binder.write(implicit.displacement_next),
+                .hold_moment = binder.write(rigid.hold_moment),
+                .force = binder.write(node.force)};
     }
 };
 
-/// The velocities and displacements at the end of the step. Returns what the step damped, J; `damped` is memory, by row
-/// of RigidBodyTable. Parallel over bodies.
+/// The velocities and displacements at the end of the step, and what elasticity does to held nodes and frames, added to
+/// `force` and written to `hold_moment`. Returns what the step damped, less what holds by their moments gave, J;
+/// `damped` is memory, by row of RigidBodyTable. Parallel over bodies.
 Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                             const StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
                             Column<Real>& damped);
+
+/// What deforms goes on for `seconds` with the velocity that it has.
+void drift_implicit_bodies(const ImplicitBodies& bodies, Real seconds, std::span<Vec3> displacement_next,
+                           std::span<Vec3> velocity_next);
 
 }  // namespace skerry

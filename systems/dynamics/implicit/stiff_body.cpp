@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <utility>
 
 namespace skerry {
 
@@ -59,6 +60,17 @@ Mat3& block_at(BlockRows& rows, Index row, Index column) {
     return rows.block[static_cast<std::size_t>(std::lower_bound(first, last, column) - rows.column.begin())];
 }
 
+/// The matrix of the free nodes, and beside it the diagonal of those that are held.
+void leave_out_held(std::span<const std::uint8_t> held, std::span<const Real> mass, Real inertia, BlockRows& matrix) {
+    for (std::size_t k = 0; k < matrix.size(); ++k)
+        for (auto i = static_cast<std::size_t>(matrix.offset[k]); i < static_cast<std::size_t>(matrix.offset[k + 1]);
+             ++i) {
+            const auto column = static_cast<std::size_t>(matrix.column[i]);
+            if (!held[k] && !held[column]) continue;
+            matrix.block[i] = column == k ? Mat3(inertia * mass[k] * Mat3::Identity()) : Mat3(Mat3::Zero());
+        }
+}
+
 }  // namespace
 
 Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec3& gradient_k, const Vec3& gradient_l) {
@@ -108,6 +120,22 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     slot_of_.assign(mass.size(), no_index);
 }
 
+void StiffBody::hold(std::span<const Real> inverse_mass) {
+    std::vector<std::uint8_t> held;
+    if (std::ranges::any_of(inverse_mass, [](Real inverse) { return !(inverse > 0); })) {
+        held.resize(size());
+        for (std::size_t n = 0; n < inverse_mass.size(); ++n)
+            held[static_cast<std::size_t>(place_[n])] = !(inverse_mass[n] > 0);
+    }
+    if (held == held_) return;
+    held_ = std::move(held);
+    forget_factor();
+}
+
+void StiffBody::forget_factor() {
+    inertia_factor_ = stiffness_factor_ = 0;
+}
+
 Real StiffBody::elastic_energy(std::span<const Vec3> displacement) const {
     const auto at = [&](Index place) -> const Vec3& {
         return displacement[static_cast<std::size_t>(node_[static_cast<std::size_t>(place)])];
@@ -142,11 +170,12 @@ bool StiffBody::prepare(Real inertia, Real stiffness) {
     for (std::size_t i = 0; i < matrix_.block.size(); ++i) matrix_.block[i] = stiffness * stiffness_.block[i];
     for (std::size_t k = 0; k < size(); ++k)
         matrix_.block[static_cast<std::size_t>(matrix_.offset[k + 1]) - 1].diagonal().array() += inertia * mass_[k];
+    if (is_held()) leave_out_held(held_, mass_, inertia, matrix_);
     std::ranges::fill(slot_of_, no_index);
     std::ranges::fill(node_in_, no_index);
     std::ranges::fill(used_at_, 0);
     if (factor_.factor(matrix_)) return true;
-    inertia_factor_ = stiffness_factor_ = 0;
+    forget_factor();
     return false;
 }
 
@@ -163,6 +192,12 @@ void StiffBody::take_rigid_part(std::span<X> impulse) const {
 
 template <class X>
 void StiffBody::respond_to(std::span<X> impulse) const {
+    if (is_held()) {
+        for (std::size_t k = 0; k < impulse.size(); ++k)
+            if (held_[k]) impulse[k].setZero();
+        factor_.solve(impulse);
+        return;
+    }
     take_rigid_part(impulse);
     factor_.solve(impulse);
     // rounding alone, but of stiff bodies, whose rigid response is far above the elastic one

@@ -24,6 +24,11 @@ public:
     StiffBody(const ElementList& elements, std::span<const MaterialConstants> constants, std::span<const Real> mass,
               std::span<const Vec3> rest_position);
 
+    /// From now on nodes whose `inverse_mass` (by node of the body) is zero are held: impulses on them do nothing, and
+    /// others move against them. Where none is the body is free. A factor that is there is kept where nothing changes.
+    void hold(std::span<const Real> inverse_mass);
+    bool is_held() const { return !held_.empty(); }
+
     bool empty() const { return place_.empty(); }
     std::size_t size() const { return place_.size(); }
     Index place(std::size_t node) const { return place_[node]; }
@@ -38,13 +43,14 @@ public:
     /// Takes the motion as a whole out of velocities (m/s), by node of the body.
     void take_rigid_motion(std::span<Vec3> velocity) const;
     /// Makes A = inertia M + stiffness K the matrix of respond(). A factor that is there is kept. Returns false where
-    /// A is not positive definite.
+    /// A is not positive definite. Of nodes that are held it has the diagonal alone.
     bool prepare(Real inertia, Real stiffness);
-    /// Impulses (N s) to the velocities (m/s) that they give by A^-1, without what moves the body as a whole: that part
-    /// of the impulses is left out, and velocities have none.
+    /// Impulses (N s) to the velocities (m/s) that they give by A^-1. Where the body is free without what moves it as a
+    /// whole: that part of the impulses is left out, and velocities have none. Where it is held that of held nodes is
+    /// left out, and these have no velocity.
     void respond(std::span<Vec3> impulse) const;
 
-    /// What an impulse on a node gives to others, 1/kg: column `node` of A^-1 without rigid motion, by place.
+    /// What an impulse on a node gives to others by respond(), 1/kg: a column, by place.
     /// Calculated once for a factor, kept while there is room.
     std::span<const Mat3> column(std::size_t node);
     /// Columns that are kept, at most.
@@ -57,11 +63,13 @@ private:
     void take_rigid_part(std::span<X> impulse) const;
     template <class X>
     void respond_to(std::span<X> impulse) const;
+    void forget_factor();
 
-    std::vector<Index> place_;  // by node
-    std::vector<Index> node_;   // by place
-    std::vector<Real> mass_;    // kg, by place
-    std::vector<Vec3> arm_;     // m, from the centre of mass, by place
+    std::vector<Index> place_;        // by node
+    std::vector<Index> node_;         // by place
+    std::vector<Real> mass_;          // kg, by place
+    std::vector<Vec3> arm_;           // m, from the centre of mass, by place
+    std::vector<std::uint8_t> held_;  // by place; empty: none is
     Real total_mass_ = 0;
     Mat3 inverse_inertia_ = Mat3::Zero();  // 1/(kg m^2)
     BlockRows stiffness_, matrix_;

@@ -27,8 +27,7 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
 
 void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
     const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
-    const Index first_node = bodies.nodes[bodies.rigid_body[r]].begin;
-    if (bodies.inverse_mass[first_node] > 0) {  // else it is held, and what it has is not its own
+    if (!bodies.held(static_cast<Index>(r))) {  // else what it has is not its own
         taken.energy +=
             (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
         taken.momentum += state.momentum[r];
@@ -39,9 +38,13 @@ void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& stat
 /// What deforms in the frame of a body.
 void stop_deforming(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
     const Range rows = bodies.body_implicit[body];
+    const bool held = bodies.held(bodies.rigid(body));
     for (Index row = rows.begin; row < rows.end; ++row) {
         const Index n = bodies.nodes[body].begin + row - rows.begin;
-        taken.energy += bodies.mass[n] * state.deforming[row].squaredNorm() / 2;
+        if (bodies.inverse_mass[n] > 0) {
+            taken.energy += bodies.mass[n] * state.deforming[row].squaredNorm() / 2;
+            if (held) taken.momentum += bodies.mass[n] * state.velocity[n];
+        }
         state.deforming[row] = Vec3::Zero();
     }
 }

@@ -96,6 +96,7 @@ struct RestInputs {
     std::span<const Real> rigid_mass = {};
     std::span<const Vec3> rigid_moments = {};
     std::span<const Mat3> rigid_rotation = {};
+    std::span<const Index> rigid_holder = {};  // empty: none is held
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
                            const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid) {
@@ -117,12 +118,17 @@ struct RestInputs {
                 .rigid_body = binder.read(rigid.body),
                 .rigid_mass = binder.read(rigid.mass),
                 .rigid_moments = binder.read(rigid.moments),
-                .rigid_rotation = binder.read(rigid.rotation)};
+                .rigid_rotation = binder.read(rigid.rotation),
+                .rigid_holder = binder.read(rigid.holder)};
     }
 
     /// Row of RigidBodyTable, or no_index.
     Index rigid(std::size_t b) const {
         return body_rigid.empty() || body_rigid[b].size() == 0 ? no_index : body_rigid[b].begin;
+    }
+    /// Whether an attachment leads what has this row of RigidBodyTable.
+    bool held(Index rigid) const {
+        return !rigid_holder.empty() && rigid_holder[static_cast<std::size_t>(rigid)] != no_index;
     }
 };
 

@@ -78,6 +78,10 @@ bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         out.contact_impulse[r] = out.contact_moment[r] = out.push_velocity[r] = out.push_spin[r] = Vec3::Zero();
         out.inverse_inertia[r] = inverse_inertia_of(bodies.rotation[r], bodies.moments[r]);
         out.kick[r] = out.moment_kick[r] = Vec3::Zero();
+        if (bodies.is_led_frame(r)) {
+            out.inverse_inertia[r] = Mat3::Zero();
+            return;
+        }
         if (bodies.asleep(r)) return;
         if (holds.hold(r)) {
             const HeldPose end(holds, r, h, bodies.rest_center[r], bodies.axes[r]);
@@ -141,17 +145,24 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
                                spin_of(rotation_next[r], bodies.moments[r], angular_momentum)};
         out.center[r] = center_next[r];
         out.rotation[r] = rotation_next[r];
-        out.momentum[r] = momentum;
-        out.angular_momentum[r] = angular_momentum;
+        const bool led = bodies.is_led_frame(r);
+        out.momentum[r] = led ? Vec3(Vec3::Zero()) : momentum;
+        out.angular_momentum[r] = led ? Vec3(Vec3::Zero()) : angular_momentum;
         const ShapeNext shape(bodies, elastic, r);
         for_each_node(bodies.nodes(r), [&](std::size_t n) {
             out.position[n] = place.of(shape.at(n));
-            out.velocity[n] = field.at(out.position[n]);
-            if (!shape.deforms()) return;
+            if (!shape.deforms()) {
+                out.velocity[n] = field.at(out.position[n]);
+                return;
+            }
             const std::size_t row = shape.row(n);
             out.displacement[row] = elastic.displacement[row];
             out.displacement_velocity[row] = elastic.velocity[row];
-            out.velocity[n] += place.from_mesh * elastic.velocity[row];
+            const Vec3 deforming = place.from_mesh * elastic.velocity[row];
+            if (!led)
+                out.velocity[n] = field.at(out.position[n]) + deforming;
+            else if (bodies.inverse_mass[n] > 0)  // else what leads it has given it its velocity
+                out.velocity[n] = deforming;
         });
     });
     return true;

@@ -27,6 +27,8 @@ struct RigidBodies {
     std::span<const Mat3> axes, rotation;
     std::span<const Vec3> momentum, angular_momentum;
     std::span<const Vec3> rest_position;  // m, by node
+    std::span<const Real> inverse_mass;   // 1/kg, by node
+    std::span<const Index> holder;        // AttachmentTable, or no_index
 
     static RigidBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
                             const NodeTable& node, const bool& any_asleep) {
@@ -42,7 +44,9 @@ struct RigidBodies {
                 .rotation = binder.read(rigid.rotation),
                 .momentum = binder.read(rigid.momentum),
                 .angular_momentum = binder.read(rigid.angular_momentum),
-                .rest_position = binder.read(node.rest_position)};
+                .rest_position = binder.read(node.rest_position),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .holder = binder.read(rigid.holder)};
     }
 
     std::size_t size() const { return mass.size(); }
@@ -52,6 +56,8 @@ struct RigidBodies {
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
     /// Rows of ImplicitNodeTable.
     Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
+    /// Whether it is a frame that an attachment leads, in which nodes have momenta of their own.
+    bool is_led_frame(std::size_t r) const { return holder[r] != no_index && implicit(r).size() > 0; }
 };
 
 /// How implicit bodies are deformed at the end of the step, in the frames of their meshes: by row of ImplicitNodeTable.
@@ -96,8 +102,8 @@ struct RigidKicks {
 };
 
 /// The impulse and moment of gravity and loads, and the velocities with them, as contacts see them. Those at rest get
-/// none, those that are held what takes them along: their nodes have their velocities already. Parallel over bodies.
-/// Returns false where there is none (skipped).
+/// none, those that are held what takes them along: their nodes have their velocities already. Frames that are held
+/// have neither momentum nor freedom. Parallel over bodies. Returns false where there is none (skipped).
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, const RigidKicks& out);
 

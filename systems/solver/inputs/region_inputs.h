@@ -24,8 +24,13 @@ struct RigidInputs {
     std::span<const Real> mass{};
     std::span<const Mat3> inverse_inertia{};  // 1/(kg m^2), world
     std::span<const Vec3> momentum{}, angular_momentum{}, kick{}, moment_kick{};
+    // AttachmentTable, or no_index; empty: none is held. What deforms in a frame that is held has rows that stand still
+    // for that, and its nodes all of their velocity (docs/methods/implicit_bodies.md 7)
+    std::span<const Index> holder{};
 
     bool any() const { return nodes.any(); }
+    /// 1/kg
+    Real inverse_mass(std::size_t r) const { return holder.empty() || holder[r] == no_index ? 1 / mass[r] : 0; }
     Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
     Vec3 spin(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
 
@@ -39,7 +44,8 @@ struct RigidInputs {
                 .momentum = binder.read(rigid.momentum),
                 .angular_momentum = binder.read(rigid.angular_momentum),
                 .kick = binder.read(rigid.kick),
-                .moment_kick = binder.read(rigid.moment_kick)};
+                .moment_kick = binder.read(rigid.moment_kick),
+                .holder = binder.read(rigid.holder)};
     }
 };
 

@@ -74,8 +74,8 @@ public:
         const std::size_t r = body_of(m);
         const Mat3 turned = rigid_->inverse_inertia[r] * cross_matrix(arm(m));
         const std::span<const PaddedMat3> row = implicit_->coupling->row(r, deforming_place(m));
-        return row[static_cast<std::size_t>(deforming_place(n))].topRows<3>() + Mat3::Identity() / rigid_->mass[r] -
-               cross_matrix(arm(n)) * turned;
+        return row[static_cast<std::size_t>(deforming_place(n))].topRows<3>() +
+               rigid_->inverse_mass(r) * Mat3::Identity() - cross_matrix(arm(n)) * turned;
     }
     /// Nodes that an impulse on one moves.
     std::size_t moved_by(Index n) const {

@@ -162,7 +162,7 @@ private:
         for (Index k = 0; k < part.term_count; ++k) {
             RigidTerm& term = part.term[static_cast<std::size_t>(k)];
             const auto r = static_cast<std::size_t>(term.row);
-            term.step = term.weight / stage_.inputs.rigid.mass[r];
+            term.step = stage_.inputs.rigid.inverse_mass(r) > 0 ? term.weight / stage_.inputs.rigid.mass[r] : 0;
             term.spin_step = columns_of(stage_.inputs.rigid.inverse_inertia[r] * cross_matrix(term.arm.head<3>()));
         }
         const Mat3 rigid = rigid_coupling(part, part);

@@ -142,6 +142,37 @@ TEST_CASE("columns are answers to unit impulses, kept or calculated again", "[dy
     CHECK((there - back.transpose()).norm() < 1e-12 * there.norm());
 }
 
+TEST_CASE("an implicit body that is held responds as the matrix of its free nodes alone", "[dynamics][implicit]") {
+    const ElasticBody body(jittered_box({2, 1, 2}, 0.1, 0.2, 3), stiff_rubber());
+    StiffBody stiff = stiff_body_of(body);
+    std::vector<Real> inverse_mass(stiff.size(), 1);
+    for (const std::size_t node : {2u, 5u, 6u, 11u}) inverse_mass[node] = 0;
+    REQUIRE(stiff.prepare(1, 1e-4));
+    stiff.hold(inverse_mass);
+    CHECK(stiff.is_held());
+    REQUIRE(stiff.prepare(1, 1e-4));
+    const Eigen::MatrixXd matrix = dense_matrix(stiff, 1, 1e-4);
+    std::vector<Eigen::Index> free;
+    for (std::size_t n = 0; n < inverse_mass.size(); ++n)
+        for (Eigen::Index i = 0; i < 3 && inverse_mass[n] > 0; ++i) free.push_back(3 * stiff.place(n) + i);
+    std::vector<Vec3> impulse = in_places(stiff, random_vectors(stiff.size(), 1, 4));
+    const Eigen::VectorXd given = Eigen::Map<const Eigen::VectorXd>(impulse.data()->data(), matrix.rows());
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(matrix.rows());
+    const Eigen::MatrixXd of_free = matrix(free, free);
+    const Eigen::VectorXd on_free = given(free), response = of_free.ldlt().solve(on_free);
+    expected(free) = response;
+    stiff.respond(impulse);
+    const Eigen::VectorXd found = Eigen::Map<const Eigen::VectorXd>(impulse.data()->data(), matrix.rows());
+    CHECK((found - expected).norm() < 1e-12 * expected.norm());
+    CHECK(std::ranges::all_of(stiff.column(5), [](const Mat3& of_node) { return of_node.isZero(0); }));
+    // let go it is what it was
+    stiff.hold(std::vector<Real>(stiff.size(), 1));
+    REQUIRE(stiff.prepare(1, 1e-4));
+    StiffBody never = stiff_body_of(body);
+    REQUIRE(never.prepare(1, 1e-4));
+    CHECK(std::ranges::equal(stiff.column(7), never.column(7)));
+}
+
 TEST_CASE("a matrix that is not positive definite has no factor", "[dynamics][implicit]") {
     const ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), stiff_rubber());
     StiffBody stiff = stiff_body_of(body);

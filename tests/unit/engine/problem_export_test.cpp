@@ -126,6 +126,18 @@ TEST_CASE("the impulses of a step of rigid or implicit bodies solve the problem 
     }
 }
 
+TEST_CASE("the impulses of a step of a held implicit body solve the problem that it shows", "[unit][problem]") {
+    Settings settings = Stack::exact();
+    settings.step_size = 2e-3;
+    Stack stack(settings, {.young_modulus = 1e6, .density = 500}, BodyDynamics::implicit_elastic);
+    stack.world.attach(stack.world.bodies()[0], std::vector<Index>{0, 1, 2, 3});
+    stack.watch();
+    stack.world.advance(0.2);
+    REQUIRE(stack.problems.size() > 20);
+    REQUIRE(stack.any_coupled());
+    for (const StepProblem& step : stack.problems) CHECK(independent_error(step.problem, step.impulse) < 1e-6);
+}
+
 TEST_CASE("the lumped form of a step and its blocks give the same velocities", "[unit][problem]") {
     Stack stack;
     stack.watch(5);

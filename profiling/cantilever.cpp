@@ -1,0 +1,107 @@
+// profile_cantilever: the period of a stiff cantilever that is let go under gravity, what implicit steps leave of its
+// amplitude, and what they cost, for several theta and lengths of the step.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "profiling/measure.h"
+#include "skerry/world.h"
+
+using namespace skerry;
+using namespace skerry::profiling;
+
+namespace {
+
+struct Case {
+    ElementKind element;
+    BodyDynamics dynamics;
+    Real modulus, theta, step;  // Pa, -, s
+};
+
+struct Swing {
+    Real period = 0, peak = 0;  // s, m
+    Real left = 0;              // peak-to-peak amplitude of the fifth period over the first peak
+    double cpu = 0;             // s, of a simulated second
+};
+
+/// Steps from one time that half of the peak is passed downwards to the next, the mean of four; `about` where what is
+/// left is too little to tell.
+Real period_of(const std::vector<Real>& sag, Real peak, Real about) {
+    std::vector<Real> passed;
+    bool high = false;
+    for (std::size_t k = 1; k < sag.size(); ++k) {
+        if (sag[k] < 0.35 * peak) high = false;
+        if (high || sag[k] < 0.5 * peak) continue;
+        high = true;
+        passed.push_back(static_cast<Real>(k) - (sag[k] - 0.5 * peak) / (sag[k] - sag[k - 1]));
+    }
+    return passed.size() < 5 ? about : (passed[4] - passed[0]) / 4;
+}
+
+Swing measure(const Case& one) {
+    const Mesh mesh = mesh::box({1, 0.1, 0.1}, {20, 2, 2});
+    Settings settings;
+    settings.backend = Backend::serial;
+    settings.step_size = one.step;
+    settings.theta = one.theta;
+    World world(settings);
+    const auto material =
+        world.add_material({.young_modulus = one.modulus, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0});
+    const auto body = world.add_body(mesh, {.material = material, .dynamics = one.dynamics, .element = one.element});
+    std::vector<Index> held;
+    std::size_t tip = 0;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+        if (mesh.nodes[n].x() < -0.5 + 1e-9) held.push_back(static_cast<Index>(n));
+        if ((mesh.nodes[n] - Vec3(0.5, 0, 0)).norm() < 1e-9) tip = n;
+    }
+    world.attach(body, held);
+    world.advance(one.step);  // its factor, once
+    std::vector<Real> sag{0, -world.positions(body)[tip].z()};
+    const Real beam = 0.619 * std::sqrt(1e7 / one.modulus);  // s, the period by the theory of beams
+    const auto steps = static_cast<std::size_t>(5.2 * beam / one.step);
+    const double start = cpu_seconds();
+    while (sag.size() < steps) {
+        world.advance(one.step);
+        sag.push_back(-world.positions(body)[tip].z());
+    }
+    Swing swing;
+    swing.cpu = (cpu_seconds() - start) / (one.step * static_cast<Real>(steps - 2));
+    const auto first = std::max_element(sag.begin(), sag.begin() + static_cast<std::ptrdiff_t>(0.65 * beam / one.step));
+    swing.peak = *first;
+    swing.period = period_of(sag, swing.peak, static_cast<Real>(2 * (first - sag.begin()))) * one.step;
+    const auto at = [&](Real periods) {
+        return sag.begin() + static_cast<std::ptrdiff_t>(std::lround(periods * swing.period / one.step));
+    };
+    const auto [low, high] = std::minmax_element(at(4), at(5) + 1);
+    swing.left = (*high - *low) / swing.peak;
+    return swing;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"A cantilever of 20 x 2 x 2 cells, implicit and explicit, let go under gravity; one thread."};
+    CLI11_PARSE(app, argc, argv);
+    std::printf(
+        "| E (Pa) | elements | bodies | theta | step (ms) | T1 (s) | peak (mm) | left | CPU s a simulated s |\n"
+        "|---|---|---|---|---|---|---|---|---|\n");
+    const auto print = [](const Case& one) {
+        const Swing swing = measure(one);
+        const bool implicit = one.dynamics == BodyDynamics::implicit_elastic;
+        std::printf("| %.0e | %s | %s | %g | %.3g | %.5f | %.4g | %.3f | %.2f |\n", one.modulus,
+                    one.element == ElementKind::linear ? "linear" : "smoothed", implicit ? "implicit" : "explicit",
+                    one.theta, 1e3 * one.step, swing.period, 1e3 * swing.peak, swing.left, swing.cpu);
+        std::fflush(stdout);
+    };
+    for (const Real modulus : {1e7, 1e9}) {
+        const Real h = 0.01 * std::sqrt(1e7 / modulus);
+        for (const ElementKind element : {ElementKind::linear, ElementKind::smoothed}) {
+            for (const Real theta : {0.5, 0.51, 0.55, 1.0})
+                print({element, BodyDynamics::implicit_elastic, modulus, theta, h});
+            print({element, BodyDynamics::implicit_elastic, modulus, 0.55, h / 5});
+            print({element, BodyDynamics::explicit_elastic, modulus, 1, h});
+        }
+    }
+}

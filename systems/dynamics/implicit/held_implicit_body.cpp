@@ -1,0 +1,159 @@
+#include "systems/dynamics/implicit/held_implicit_body.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+namespace skerry {
+
+namespace {
+
+/// What is asked of a node of the body.
+struct HeldNodes {
+    const ImplicitBodies& bodies;
+    const LedFrame& frame;
+    Vec3 rest_center;
+    std::size_t first_node;
+
+    HeldNodes(const ImplicitBodies& of, const LedFrame& led, std::size_t r)
+        : bodies(of),
+          frame(led),
+          rest_center(of.rest_center[r]),
+          first_node(static_cast<std::size_t>(of.nodes(r).begin)) {}
+
+    bool held(std::size_t n) const { return !(bodies.inverse_mass[first_node + n] > 0); }
+    Vec3 arm(std::size_t n) const { return bodies.rest_position[first_node + n] - rest_center; }
+    /// m/s, of a held node, in the frame of the end.
+    Vec3 led(std::size_t n) const { return frame.turn.transpose() * bodies.node_velocity[first_node + n]; }
+};
+
+}  // namespace
+
+LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : stands(true), shift(Vec3::Zero()) {
+    turn_start = turn = bodies.turn(r);
+    across = Mat3::Identity();
+    if (bodies.asleep(r)) return;
+    const HeldPose end(bodies.holds, r, h, bodies.rest_center[r], bodies.axes[r]);
+    const Mat3 rotation = without_strain(end.rotation);
+    if (end.center == bodies.center[r] && rotation == bodies.rotation[r]) return;
+    stands = false;
+    turn = rotation * bodies.axes[r].transpose();
+    across = turn.transpose() * turn_start;
+    shift = turn.transpose() * (bodies.center[r] - end.center);
+}
+
+void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real h, Real theta,
+                    const StiffBody& stiff, bool sound, const ImplicitKicks& out) {
+    const OfBody of(bodies, stiff, r);
+    const LedFrame frame(bodies, r, h);
+    const HeldNodes nodes(bodies, frame, r);
+    const std::span<Vec3> impulse = of.rows(out.impulse), force = of.rows(out.elastic_force),
+                          next = of.rows(out.velocity_next);
+    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
+    // The force of the step, but for what free nodes move in it: of its start by 1 - theta, of its end by theta.
+    bool carried = !frame.stands;
+    for (std::size_t n = 0; n < of.count; ++n) {
+        impulse[of.place(n)] = displacement[n];
+        carried |= nodes.held(n) && !bodies.node_velocity[of.first_node + n].isZero(0);
+    }
+    stiff.elastic_forces(impulse, force);
+    if (carried) {
+        for (std::size_t n = 0; n < of.count; ++n) {
+            Vec3& at_end = impulse[of.place(n)];
+            at_end = frame.carried(nodes.arm(n), displacement[n]);
+            if (nodes.held(n)) at_end += h * nodes.led(n);
+        }
+        stiff.elastic_forces(impulse, next);  // by place, for now
+        for (std::size_t k = 0; k < of.count; ++k) force[k] = (1 - theta) * (frame.across * force[k]) + theta * next[k];
+    }
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        Vec3 outer = stiff.mass(k) * loads.gravity;
+        if (!loads.load.empty()) outer += loads.load[of.first_node + n];
+        impulse[k] =
+            stiff.mass(k) * (frame.across * velocity[n]) + theta * h * (frame.turn.transpose() * outer - force[k]);
+    }
+    if (sound)
+        stiff.respond(impulse);
+    else
+        std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
+    for (std::size_t n = 0; n < of.count; ++n) {
+        if (nodes.held(n)) {
+            next[n] = frame.turn_start.transpose() * bodies.node_velocity[of.first_node + n];
+            continue;
+        }
+        const Vec3& in_end = impulse[of.place(n)];
+        next[n] = frame.across.transpose() * in_end;
+        out.node_velocity_next[of.first_node + n] = frame.turn * in_end;
+    }
+}
+
+Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, const StiffBody& stiff,
+                      const ImplicitStrains& out) {
+    const OfBody of(bodies, stiff, r);
+    const LedFrame frame(bodies, r, h);
+    const HeldNodes nodes(bodies, frame, r);
+    const std::span<Vec3> impulse = of.rows(out.impulse), rate = of.rows(out.force_rate),
+                          next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
+    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
+                                force = of.rows(out.elastic_force), contact = of.rows(out.contact_impulse);
+    const Mat3 to_mesh = frame.turn.transpose();
+    out.hold_moment[r] = Vec3::Zero();
+    // velocities of the step, in the frame of its end
+    const bool touched = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
+    if (touched) {
+        for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = theta * (to_mesh * contact[n]);
+        stiff.respond(impulse);
+    }
+    for (std::size_t n = 0; n < of.count; ++n) {
+        next[n] = nodes.held(n) && !bodies.asleep(r) ? nodes.led(n) : Vec3(frame.across * next[n]);
+        if (touched) next[n] += impulse[of.place(n)];
+        displacement_next[n] = frame.carried(nodes.arm(n), displacement[n]) + h * next[n];
+    }
+    if (bodies.asleep(r)) return 0;
+    // what deforms pulls at held nodes; that its forces turn by their arms as they are deformed turns the frame back
+    for (std::size_t n = 0; n < of.count; ++n)
+        impulse[of.place(n)] = nodes.held(n) ? Vec3(Vec3::Zero()) : Vec3(next[n]);
+    stiff.elastic_forces(impulse, rate);
+    Vec3 moment = Vec3::Zero();
+    Real taken = 0;  // J
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        const Vec3 of_mesh = force[k] + theta * h * rate[k], pull = frame.turn * of_mesh;
+        const Vec3 place = nodes.arm(n) + displacement[n];
+        moment += (frame.turn_start * place).cross(pull);
+        // less what the hold gives as it turns places against these forces, which add up to zero
+        if (!frame.stands) taken += of_mesh.dot(place - frame.across * place);
+        if (nodes.held(n)) out.force[of.first_node + n] -= pull;
+    }
+    out.hold_moment[r] = -h * moment;
+    // (theta - 1/2)( dw M dw + du K du ), and the damping of the material
+    for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement_next[n] - displacement[n];
+    stiff.elastic_forces(impulse, rate);
+    const Real lossy = theta - 0.5, damping = bodies.damping(r);
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        taken += lossy * impulse[k].dot(rate[k]);
+        if (nodes.held(n)) continue;
+        const Vec3 before = frame.across * velocity[n], during = next[n], change = (during - before) / theta;
+        taken += stiff.mass(k) * (lossy * change.squaredNorm() + h * damping * during.squaredNorm());
+        // contacts are said to have worked at the mean of both velocities
+        taken += (to_mesh * contact[n]).dot(before - during) / 2;
+        next[n] = before + change;
+    }
+    return taken;
+}
+
+void drift_held_body(const ImplicitBodies& bodies, std::size_t r, Real seconds, std::span<Vec3> displacement_next,
+                     std::span<Vec3> velocity_next) {
+    const LedFrame frame(bodies, r, seconds);
+    const HeldNodes nodes(bodies, frame, r);
+    const auto first = static_cast<std::size_t>(bodies.rows(r).begin);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(bodies.rows(r).size()); ++n) {
+        velocity_next[first + n] = nodes.held(n) ? nodes.led(n) : Vec3(frame.across * bodies.velocity[first + n]);
+        displacement_next[first + n] =
+            frame.carried(nodes.arm(n), bodies.displacement[first + n]) + seconds * velocity_next[first + n];
+    }
+}
+
+}  // namespace skerry

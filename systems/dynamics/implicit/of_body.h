@@ -1,0 +1,27 @@
+// The rows of one implicit body, by node and by place in its factor.
+#pragma once
+
+#include <span>
+
+#include "systems/dynamics/implicit/move_implicit_bodies.h"
+
+namespace skerry {
+
+struct OfBody {
+    const StiffBody& stiff;
+    std::size_t first_node, first_row, count;
+
+    OfBody(const ImplicitBodies& bodies, const StiffBody& of, std::size_t r)
+        : stiff(of),
+          first_node(static_cast<std::size_t>(bodies.nodes(r).begin)),
+          first_row(static_cast<std::size_t>(bodies.rows(r).begin)),
+          count(static_cast<std::size_t>(bodies.rows(r).size())) {}
+
+    template <class T>
+    std::span<T> rows(std::span<T> column) const {
+        return column.subspan(first_row, count);
+    }
+    std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
+};
+
+}  // namespace skerry
