@@ -48,23 +48,6 @@ void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<s
     split_into_patches(group.subspan(half), centre, patch_size);
 }
 
-/// Orders elements of the same key so that neighbours in a run of them come to the same lane of blocks that follow each
-/// other: lanes of a block then seldom share a node, to which they would have to add one after the other.
-template <class Key>
-void spread_over_lanes(Order patch, Key&& key) {
-    std::vector<Index> run;
-    for (std::size_t first = 0; first < patch.size(); first += run.size()) {
-        std::size_t end = first;
-        while (end < patch.size() && key(patch[end]) == key(patch[first])) ++end;
-        const Order elements = patch.subspan(first, end - first);
-        run.assign(elements.begin(), elements.end());
-        const std::size_t rows = (run.size() + element_lanes - 1) / element_lanes;
-        std::size_t to = 0;
-        for (std::size_t row = 0; row < rows; ++row)
-            for (std::size_t e = row; e < run.size(); e += rows) elements[to++] = run[e];
-    }
-}
-
 /// Where the elements of a list go.
 struct Places {
     std::vector<Index> element;             // block by block; no_index in a lane that is left over
@@ -94,7 +77,6 @@ Places places_of(const ElementList& list, std::span<const Vec3> rest_position, s
     for (const std::size_t size : patch_size) {
         const Order patch = Order(order).subspan(first, size);
         std::ranges::stable_sort(patch, {}, key);
-        spread_over_lanes(patch, key);
         const std::size_t first_block = places.opens_patch.size();
         for (std::size_t i = 0; i < size; ++i) {
             if (i > 0 && kind(patch[i]) != kind(patch[i - 1]))

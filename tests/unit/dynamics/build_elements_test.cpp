@@ -1,9 +1,6 @@
 #include "systems/dynamics/elements/build_elements.h"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <iterator>
-#include <vector>
 
 #include "components/check.h"
 #include "tests/support/elastic_body.h"
@@ -34,34 +31,6 @@ TEST_CASE("volumes and masses add up to those of the box", "[unit]") {
     for (Real m : body.mass) mass += m;
     CHECK(volume == Approx(24e-3).epsilon(1e-13));
     CHECK(mass == Approx(24).epsilon(1e-13));
-}
-
-TEST_CASE("lanes of a block seldom share a node, and every element has one lane", "[unit]") {
-    const test::TetMesh mesh = jittered_box({4, 4, 4}, 0.1, 0, 1);
-    const ElementList list = elements_of({mesh.tetrahedra, mesh.nodes}, ElementKind::linear, 0);
-    ElementBlockTable elements;
-    ElementNodeTable nodes;
-    const std::vector<Index> lane = append_elements(list, mesh.nodes, {}, 0, 0, elements, nodes).element;
-    std::vector<Index> found;
-    std::copy_if(lane.begin(), lane.end(), std::back_inserter(found), [](Index e) { return e != no_index; });
-    std::sort(found.begin(), found.end());
-    REQUIRE(found.size() == mesh.tetrahedra.size());
-    for (std::size_t e = 0; e < found.size(); ++e) CHECK(found[e] == static_cast<Index>(e));
-
-    const auto share = [&](Index a, Index b) {
-        const auto &first = mesh.tetrahedra[static_cast<std::size_t>(a)],
-                   &second = mesh.tetrahedra[static_cast<std::size_t>(b)];
-        return std::find_first_of(first.begin(), first.end(), second.begin(), second.end()) != first.end();
-    };
-    const auto shared_pairs = [&](const std::vector<Index>& order) {
-        int pairs = 0;
-        for (std::size_t block = 0; block + element_lanes <= order.size(); block += element_lanes)
-            for (std::size_t a = block; a < block + element_lanes; ++a)
-                for (std::size_t b = a + 1; b < block + element_lanes; ++b)
-                    pairs += order[a] != no_index && order[b] != no_index && share(order[a], order[b]);
-        return pairs;
-    };
-    CHECK(shared_pairs(lane) * 3 < shared_pairs(found));
 }
 
 TEST_CASE("lanes that are left over have no volume, no gradient and a node of the body", "[unit]") {
