@@ -4,6 +4,7 @@
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
+#include <limits>
 
 #include "systems/material/with_law.h"
 
@@ -250,6 +251,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
     for (std::size_t part = 0; below && part < kernel_parts; ++part)
         below = all(is_below(A[part], lanes_in(volume, part), KernelReal{} + enough));
     if (below) return Real8{} + enough;
+    if (sharpness == Sharpness::compared) return Real8{} + std::numeric_limits<Real>::infinity();
     BlockReals volumes, bounds;
     for (std::size_t part = 0; part < kernel_parts; ++part) volumes[part] = lanes_in(volume, part);
     if (sharpness == Sharpness::bisected)

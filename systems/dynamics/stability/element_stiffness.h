@@ -21,8 +21,9 @@ struct ViscousPart {
 /// m_a. `q` starts the frame of an element whose law has one and is left at the frame found.
 /// Lanes without volume get 0. Where all eight are below `enough` (1/s^2) they get that, in a tenth of the time.
 enum class Sharpness {
-    trace,    // at most 15 % too large
-    bisected  // at most 0.3 %, in twice the time
+    trace,     // at most 15 % too large
+    bisected,  // at most 0.3 %, in twice the time
+    compared   // infinity where not all eight are below `enough`
 };
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,

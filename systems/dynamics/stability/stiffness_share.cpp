@@ -50,13 +50,22 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
     if (!material.relaxes() || elements.viscous_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
+    // A spring that relaxes by a step's end counts less, and the less the longer the step.
+    const auto count_in = [&](const Real8& step) {
+        viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
+        viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
+    };
+    // Most elements stand the step that others allow: no more has to be known of them. Counted in full next to none of
+    // them would be below, as all allow about the same at rest.
+    if (enough > 0) {
+        count_in(Real8{} + step_times_frequency / std::sqrt(enough));
+        const Real8 compared = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, Sharpness::compared);
+        if (all(compared <= enough)) return compared + nothing;
+        viscous.strain_share = viscous.volume_share = Real8{} + 1.0;
+    }
+    // the step by the springs in full is a safe guess of it
     const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness);
-    if (all(in_full <= enough)) return in_full + nothing;
-    // A spring that relaxes by a step's end counts less, and the less the longer the step: the step by the springs in
-    // full is a safe guess of it.
-    const Real8 step = step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0);
-    viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
-    viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
+    count_in(step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0));
     return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness) + nothing;
 }
 
