@@ -56,6 +56,9 @@ public:
         return row_[handle.slot];
     }
 
+    /// A live handle names another row from now on.
+    void rename(HandleType handle, Index row) { row_[handle.slot] = row; }
+
     /// Forgets a live handle. Its row stays where it is, without a name.
     void forget(HandleType handle) {
         row_[handle.slot] = no_index;

@@ -236,6 +236,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     model.body_records.push_back(
         {.name = {},
          .element = kind_of(implicit ? all_zones : zones),
+         .asked = body.element,
          .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
          .surface = outline(body),
          .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},

@@ -291,10 +291,15 @@ void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Ma
     give_nodes_velocity(model, body);
 }
 
-void stop_rigid_body(Model& model, std::size_t body) {
+void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum) {
     const std::size_t r = rigid_row(model, body);
-    model.rigid_bodies.momentum[r] = model.rigid_bodies.angular_momentum[r] = Vec3::Zero();
+    model.rigid_bodies.momentum[r] = momentum;
+    model.rigid_bodies.angular_momentum[r] = angular_momentum;
     give_nodes_velocity(model, body);
+}
+
+void stop_rigid_body(Model& model, std::size_t body) {
+    set_momenta(model, body, Vec3::Zero(), Vec3::Zero());
 }
 
 void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position) {

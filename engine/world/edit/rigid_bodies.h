@@ -36,6 +36,8 @@ void find_holders(Model& model);
 /// or its own, and what deforms in it is what leaves nodes where they are, with the velocities that they have.
 void follow_attachments(Model& model, std::size_t body);
 
+/// Gives it momentum (kg m/s) and angular momentum about its centre (kg m^2/s); what deforms it stays.
+void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum);
 /// Takes its momenta.
 void stop_rigid_body(Model& model, std::size_t body);
 /// The pose of a body, and its nodes where that has them. Angular momentum and velocity stay as they are.

@@ -39,6 +39,7 @@ void list_records(SavedRows& saved, auto&& archive) {
     list_ragged("/meshes/covered_item", saved.meshes.covered_item, archive);
     archive.value("/handles/world", saved.world);
     archive.column("/records/body_element", saved.body_element);
+    archive.column("/records/body_asked", saved.body_asked);
     archive.column("/records/body_settled", saved.body_settled);
     archive.column("/records/choice_reason", saved.choice_reason);
     archive.column("/records/choice_estimate", saved.choice_estimate);

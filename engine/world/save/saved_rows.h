@@ -35,7 +35,7 @@ struct SavedRows {
     Real step_size = 0;  // s, of the settings; 0: none
     SavedMeshes meshes;
     std::uint32_t world = 0;  // the number that handles bear
-    Column<ElementKind> body_element;
+    Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
     Column<DynamicsReason> choice_reason;           // of BodyRecord::choice, and
     Column<std::array<Real, 6>> choice_estimate;    // its members in their order

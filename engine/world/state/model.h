@@ -43,6 +43,7 @@ inline constexpr std::uint32_t no_slot = 0xffffffffu;
 struct BodyRecord {
     std::string name;
     ElementKind element;                           // never `smoothed`: one of the two that it stands for
+    ElementKind asked;                             // what it was added with, and has where its dynamics change
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
     std::vector<Index> tetrahedron_material;       // rows of MaterialTable; empty: all have that of the body

@@ -1,0 +1,183 @@
+// A body goes on as another kind: deformable, rigid or implicit.
+#include <Eigen/Dense>
+#include <vector>
+
+#include "engine/world/control/control.h"
+#include "engine/world/edit/edit_model.h"
+#include "engine/world/edit/erase_gone.h"
+#include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/step/step.h"
+#include "engine/world/validate.h"
+
+namespace skerry {
+
+namespace {
+
+[[noreturn]] void refuse(const Model& model, std::size_t body, const char* field, const std::string& found,
+                         const std::string& expected) {
+    Complaint{.file = {},
+              .object = "body '" + model.body_records[body].name + "'",
+              .field = field,
+              .found = found,
+              .expected = expected,
+              .hint = {}}
+        .raise();
+}
+
+void require_changeable(const Model& model, std::size_t body, BodyDynamics next) {
+    const auto row = static_cast<Index>(body);
+    if (next == BodyDynamics::automatic)
+        refuse(model, body, "dynamics", "automatic",
+               "explicit, implicit or rigid: who adds a body is helped to choose");
+    if (next != BodyDynamics::explicit_elastic && model.bodies.self_contact[body])
+        refuse(model, body, "self_contact", "true", "false, to become " + std::string(name_of(next)));
+    const auto is_of_body = [row](Index of) { return of == row; };
+    if (std::ranges::any_of(model.attachments.body, is_of_body))
+        refuse(model, body, "dynamics", "a change of what is attached", "one of a body that nothing holds");
+    if (std::ranges::any_of(model.joints.first, is_of_body) || std::ranges::any_of(model.joints.second, is_of_body))
+        refuse(model, body, "dynamics", "a change of what has a joint", "one of a body without joints");
+}
+
+/// Of a free body.
+struct WholeMotion {
+    Real mass = 0;                                                  // kg
+    Vec3 center = Vec3::Zero();                                     // m
+    Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // kg m/s, kg m^2/s about the centre
+    Mat3 inertia = Mat3::Zero();                                    // kg m^2, of its nodes about the centre
+};
+
+WholeMotion motion_of_nodes(const Model& model, std::size_t body) {
+    WholeMotion whole;
+    const NodeTable& nodes = model.nodes;
+    const Range range = model.bodies.nodes[body];
+    for (Index n = range.begin; n < range.end; ++n) {
+        whole.mass += nodes.mass[n];
+        whole.center += nodes.mass[n] * nodes.position[n];
+        whole.momentum += nodes.mass[n] * nodes.velocity[n];
+    }
+    whole.center /= whole.mass;
+    Mat3 second = Mat3::Zero();
+    for (Index n = range.begin; n < range.end; ++n) {
+        const Vec3 arm = nodes.position[n] - whole.center;
+        whole.angular_momentum += nodes.mass[n] * arm.cross(nodes.velocity[n]);
+        second += nodes.mass[n] * arm * arm.transpose();
+    }
+    whole.inertia = second.trace() * Mat3::Identity() - second;
+    return whole;
+}
+
+WholeMotion motion_of(const Model& model, std::size_t body) {
+    WholeMotion whole = motion_of_nodes(model, body);
+    if (!model.has_frame(body)) return whole;
+    const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
+    whole.center = model.rigid_bodies.center[r];
+    whole.momentum = model.rigid_bodies.momentum[r];
+    whole.angular_momentum = model.rigid_bodies.angular_momentum[r];
+    return whole;
+}
+
+/// Moves an explicit body as a whole, so that it has these momenta.
+void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wanted) {
+    const WholeMotion has = motion_of_nodes(model, body);
+    const Vec3 about_center = wanted.angular_momentum + (wanted.center - has.center).cross(wanted.momentum);
+    const Vec3 velocity = (wanted.momentum - has.momentum) / has.mass;
+    const Vec3 turn = has.inertia.inverse() * (about_center - has.angular_momentum);
+    const Range range = model.bodies.nodes[body];
+    for (Index n = range.begin; n < range.end; ++n)
+        model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - has.center);
+}
+
+/// Appends the body once more, as what it becomes: in the shape of its mesh, at rest. What gives it no stable step
+/// leaves no row.
+std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
+    Model& model = world.model;
+    const BodyTable& bodies = model.bodies;
+    const BodyRecord record = model.body_records[body];
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, bodies.nodes[body]);
+    const std::vector<Vec3> nodes(rest.begin(), rest.end());
+    const RigidPose pose = pose_of_body(model, body);
+    const Index row = append_body(model, world.scratch.stiffness_sum,
+                                  {.slot = bodies.slot[body],
+                                   .self_contact = bodies.self_contact[body] != 0,
+                                   .dynamics = next,
+                                   .filter = bodies.filter[body],
+                                   .element = record.asked,
+                                   .material = bodies.material[body],
+                                   .tetrahedron_material = record.tetrahedron_material,
+                                   .contact_distance = bodies.contact_distance[body],
+                                   .nodes = nodes,
+                                   .tetrahedra = record.tetrahedra,
+                                   .triangles = {},
+                                   .position = pose.position,
+                                   .rotation = pose.rotation,
+                                   .velocity = Vec3::Zero(),
+                                   .angular_velocity = Vec3::Zero()});
+    const auto after = static_cast<std::size_t>(row);
+    model.body_records[after].name = record.name;
+    try {
+        validate_step(model, row, record.name);
+    } catch (const SceneError&) {
+        std::vector<std::uint8_t> gone(after + 1, 0);
+        gone[after] = 1;
+        erase_gone(row_moves(model, gone, {}), model);
+        throw;
+    }
+    return after;
+}
+
+void copy_rows(Column<Vec3>& column, Range from, Range to) {
+    std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
+}
+
+/// Shape, motion and loads of `before`, of which `after` is all that its kind can have.
+void take_state(WorldState& world, std::size_t before, std::size_t after) {
+    Model& model = world.model;
+    const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];
+    const WholeMotion whole = motion_of(model, before);
+    model.bodies.surface[after] = model.bodies.surface[before];
+    copy_rows(model.nodes.load, from, to);
+    model.note_loads(after, false);
+    if (model.is_rigid(after)) {
+        set_momenta(model, after, whole.momentum, whole.angular_momentum);
+        return;  // its new shape may overlap something: looked at as at a start
+    }
+    model.body_records[after].settled = model.body_records[before].settled;
+    copy_rows(model.nodes.position, from, to);
+    copy_rows(model.nodes.displacement_origin, from, to);
+    copy_rows(model.nodes.velocity, from, to);
+    if (!model.has_frame(after)) {
+        give_nodes_momenta(model, after, whole);
+        model.bodies.stable_step[after] =
+            look_at_stable_step(model, after, model.nodes.position, world.scratch.stiffness_sum);
+        return;
+    }
+    const std::span<const Vec3> there = rows_of(model.nodes.position, from),
+                                moving = rows_of(model.nodes.velocity, from);
+    set_deformed_shape(model, after, there);
+    std::ranges::copy(moving, rows_of(model.nodes.velocity, to).begin());
+    follow_node_velocities(model, after);
+    set_momenta(model, after, whole.momentum, whole.angular_momentum);
+}
+
+}  // namespace
+
+void World::set_dynamics(BodyHandle body, BodyDynamics dynamics) {
+    state_->require_between_steps("set_dynamics");
+    state_->settle();
+    Model& model = state_->model;
+    const auto before = static_cast<std::size_t>(model.row(body, "set_dynamics"));
+    if (dynamics == model.dynamics_of(before)) return;
+    require_changeable(model, before, dynamics);
+    const std::size_t after = append_as(*state_, before, dynamics);
+    take_state(*state_, before, after);
+    OpenEdits& edits = state_->edits;
+    edits.places.add_body(model, before);
+    edits.places.add_body(model, after);
+    model.body_map.rename(body, static_cast<Index>(after));
+    edits.bodies_gone.resize(after + 1, 0);
+    edits.bodies_gone[before] = 1;
+    edits.rows = edits.elements = true;
+    state_->settle();
+}
+
+}  // namespace skerry

@@ -1,0 +1,240 @@
+// Bodies that go on as another kind (World::set_dynamics).
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/world_state.h"
+#include "skerry/joint.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+constexpr BodyDynamics deformable = BodyDynamics::explicit_elastic, implicit = BodyDynamics::implicit_elastic,
+                       rigid = BodyDynamics::rigid;
+constexpr Real density = 1000;  // kg/m^3
+
+/// A bar of one or two materials that spins and swings in free space, and a ball beside it that it never meets.
+struct Bar {
+    World world;
+    Mesh mesh = mesh::box({0.3, 0.1, 0.1}, {6, 2, 2});
+    std::vector<Real> mass;
+    BodyHandle body, ball;
+    std::array<MaterialHandle, 2> material;
+
+    enum Materials { one_material, two_materials };
+
+    explicit Bar(Materials materials = two_materials, int threads = 1, const Vec3& gravity = Vec3::Zero())
+        : world({.gravity = gravity, .backend = Backend::threads, .threads = threads}) {
+        material = {world.add_material(lossless({.young_modulus = 1e6, .poisson_ratio = 0.3, .density = density})),
+                    world.add_material(lossless({.young_modulus = 2e6, .poisson_ratio = 0.48, .density = density}))};
+        const int of_fifth = materials == two_materials ? 1 : 0;
+        for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) mesh.label.push_back(t % 5 == 0 ? of_fifth : 0);
+        body = world.add_body(mesh, {.material = material[0],
+                                     .materials = {{of_fifth, material[materials == two_materials ? 1 : 0]}},
+                                     .position = {1, 2, 3},
+                                     .rotation = {0.3, -0.2, 0.5},
+                                     .velocity = {2, 0, 1},
+                                     .angular_velocity = {3, 8, -5},
+                                     .name = "bar"});
+        ball = world.add_body(mesh::ball(0.05, 3), {.material = material[0], .position = {0, 0, 20}, .name = "ball"});
+        mass = node_masses(world, body, mesh, density);
+    }
+
+    /// Angular momentum of its nodes about the origin, kg m^2/s; of a rigid or implicit one what it carries itself.
+    Vec3 angular_momentum() const {
+        const Model& model = WorldAccess::state_of(world).model;
+        const auto row = static_cast<std::size_t>(model.row(body, "test"));
+        if (model.has_frame(row)) return rigid_sums(model, row).angular_momentum;
+        Vec3 sum = Vec3::Zero();
+        const auto x = world.positions(body), v = world.velocities(body);
+        for (std::size_t n = 0; n < x.size(); ++n) sum += mass[n] * x[n].cross(v[n]);
+        return sum;
+    }
+};
+
+/// A block on a block on a floor.
+struct Stack {
+    World world;
+    std::array<BodyHandle, 2> block;
+    Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+
+    Stack() : world(settings()) {
+        const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .friction = 0.5});
+        for (std::size_t b = 0; b < 2; ++b)
+            block[b] =
+                world.add_body(mesh, {.material = rubber, .position = {0, 0, 0.0525 + 0.1015 * static_cast<Real>(b)}});
+        world.add_collider(Plane{}, {.name = "floor"});
+    }
+    static Settings settings() {
+        Settings settings;
+        settings.start_overlaps = StartOverlaps::refuse;
+        return settings;
+    }
+    Real lowest(std::size_t b) const {
+        Real z = 1;
+        for (const Vec3& x : world.positions(block[b])) z = std::min(z, x.z());
+        return z;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a body that becomes another kind keeps centre of mass, momentum and angular momentum", "[scene]") {
+    Bar bar;
+    REQUIRE(bar.world.advance(0.01).ok());
+    for (const BodyDynamics next : {rigid, implicit, deformable, implicit, rigid, deformable, rigid}) {
+        const Vec3 center = bar.world.center_of_mass(bar.body), turning = bar.angular_momentum();
+        const Vec3 velocity = mean_velocity(bar.world, bar.body, bar.mass);
+        bar.world.set_dynamics(bar.body, next);
+        CAPTURE(name_of(next));
+        CHECK(bar.world.dynamics(bar.body) == next);
+        CHECK((bar.world.center_of_mass(bar.body) - center).norm() < 1e-14 * 10);
+        CHECK((mean_velocity(bar.world, bar.body, bar.mass) - velocity).norm() < 1e-13);
+        CHECK((bar.angular_momentum() - turning).norm() < 1e-12 * turning.norm());
+        REQUIRE(bar.world.advance(0.01).ok());
+    }
+    CHECK(bar.world.report().momentum_error < 1e-11);
+}
+
+TEST_CASE("deformable and implicit bodies take each other's shape, and velocities but for a rigid motion", "[scene]") {
+    Bar bar(Bar::one_material);
+    REQUIRE(bar.world.advance(0.02).ok());
+    for (const BodyDynamics next : {implicit, deformable}) {
+        const auto x = bar.world.positions(bar.body), v = bar.world.velocities(bar.body);
+        const std::vector<Vec3> position(x.begin(), x.end()), velocity(v.begin(), v.end());
+        const Real elastic = bar.world.energy().elastic;
+        REQUIRE(elastic > 0);
+        bar.world.set_dynamics(bar.body, next);
+        const auto now = bar.world.positions(bar.body), moving = bar.world.velocities(bar.body);
+        // nodes as points and the solid have moments of inertia that differ: so do spins of one angular momentum
+        const Vec3 center = bar.world.center_of_mass(bar.body);
+        Vec3 change = Vec3::Zero();
+        Mat3 arms = Mat3::Zero();
+        for (std::size_t n = 0; n < position.size(); ++n) {
+            CHECK((now[n] - position[n]).norm() < 1e-14);
+            const Vec3 arm = now[n] - center;
+            change += arm.cross(moving[n] - velocity[n]);
+            arms += arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose();
+        }
+        const Vec3 turn = arms.inverse() * change;
+        for (std::size_t n = 0; n < position.size(); ++n)
+            CHECK((moving[n] - velocity[n] - turn.cross(now[n] - center)).norm() < 1e-9);
+        CHECK(bar.world.energy().elastic == Approx(elastic).epsilon(0.02));
+    }
+}
+
+TEST_CASE("a rigid body has the shape of its mesh where the deformed one was", "[scene]") {
+    Bar bar;
+    REQUIRE(bar.world.advance(0.02).ok());
+    const MotionKey pose = bar.world.pose(bar.body);
+    bar.world.set_dynamics(bar.body, rigid);
+    const MotionKey now = bar.world.pose(bar.body);
+    CHECK((now.position - pose.position).norm() < 1e-13);
+    CHECK((now.rotation - pose.rotation).norm() < 1e-12);
+    const auto x = bar.world.positions(bar.body);
+    for (std::size_t n = 1; n < x.size(); ++n)
+        CHECK((x[n] - x[0]).norm() == Approx((bar.mesh.nodes[n] - bar.mesh.nodes[0]).norm()).epsilon(1e-12));
+}
+
+TEST_CASE("a body goes on under its handle with all that was set of it", "[scene]") {
+    Bar bar;
+    World& world = bar.world;
+    world.set_loads(bar.body, std::vector<Vec3>(bar.mesh.nodes.size(), Vec3(0, 0, 1)));
+    world.set_surface_properties(bar.body, {.friction = 0.9});
+    world.set_collision_groups(bar.body, 2, 4);
+    world.set_collision(bar.body, bar.ball, false);
+    const Real distance = world.contact_distance(bar.body);
+    const ElementKind element = world.element(bar.body);
+    const Real mass = world.mass(bar.body);
+    world.set_dynamics(bar.body, rigid);
+    world.set_dynamics(bar.body, deformable);
+    CHECK(world.name(bar.body) == "bar");
+    CHECK(world.name(bar.ball) == "ball");
+    CHECK(world.element(bar.body) == element);
+    CHECK(world.contact_distance(bar.body) == distance);
+    CHECK(world.mass(bar.body) == Approx(mass).epsilon(1e-14));
+    CHECK(world.bodies() == std::vector<BodyHandle>{bar.ball, bar.body});
+    world.set_collision_groups(bar.body, 1, 1);
+    CHECK_FALSE(world.may_collide(bar.body, bar.ball));
+    const Vec3 before = mean_velocity(world, bar.body, bar.mass);
+    REQUIRE(world.advance(0.01).ok());
+    const Vec3 gain = mean_velocity(world, bar.body, bar.mass) - before;
+    CHECK(gain.z() == Approx(0.01 * static_cast<Real>(bar.mesh.nodes.size()) / mass).epsilon(1e-9));
+
+    // its elements are those of one that was added so: each material has the kind that its Poisson's ratio asks for
+    Bar other;
+    CHECK(other.world.stable_step() == Approx(world.stable_step()).epsilon(0.02));
+}
+
+TEST_CASE("what a body cannot become is refused by name, and what it is already changes no bit", "[scene]") {
+    Bar bar;
+    World& world = bar.world;
+    REQUIRE(world.advance(0.01).ok());
+    std::uint64_t before = world.state_hash();
+    world.set_dynamics(bar.body, deformable);
+    CHECK(world.state_hash() == before);
+    using Catch::Contains;
+    CHECK_THROWS_WITH(world.set_dynamics(bar.body, BodyDynamics::automatic),
+                      Contains("'bar'") && Contains("automatic"));
+    const auto held = world.attach(bar.body, std::vector<Index>{0, 1, 2, 3, 4});
+    before = world.state_hash();
+    CHECK_THROWS_WITH(world.set_dynamics(bar.body, rigid), Contains("'bar'") && Contains("attached"));
+    CHECK(world.state_hash() == before);
+    world.remove(held);
+    world.set_dynamics(bar.body, rigid);
+    const auto joint = Joints(world).add({.kind = JointKind::ball, .first = bar.body, .point = {1, 2, 3}});
+    before = world.state_hash();
+    CHECK_THROWS_WITH(world.set_dynamics(bar.body, implicit), Contains("'bar'") && Contains("joint"));
+    CHECK(world.state_hash() == before);
+    Joints(world).remove(joint);
+    world.set_dynamics(bar.body, implicit);
+    const auto curled = world.add_body(bar.mesh, {.material = bar.material[0], .self_contact = true, .name = "curled"});
+    CHECK_THROWS_WITH(world.set_dynamics(curled, rigid), Contains("'curled'") && Contains("self_contact"));
+    world.remove(bar.body);
+    CHECK_THROWS_WITH(world.set_dynamics(bar.body, rigid), Contains("set_dynamics"));
+}
+
+TEST_CASE("what becomes rigid in a stack carries and is carried, without an overlap at any step", "[scene]") {
+    Stack stack;
+    World& world = stack.world;
+    REQUIRE(world.advance(0.5).ok());
+    for (const auto& [which, next] : {std::pair{0, rigid}, {1, implicit}, {0, deformable}, {1, rigid}, {0, implicit}}) {
+        world.set_dynamics(stack.block[static_cast<std::size_t>(which)], next);
+        REQUIRE(world.advance(0.3).ok());
+        CHECK(stack.lowest(0) > 0);
+        CHECK(stack.lowest(1) > 0.098);
+        CHECK(stack.lowest(1) < 0.104);
+        CHECK(world.center_of_mass(stack.block[1]).head<2>().norm() < 1e-3);
+    }
+}
+
+TEST_CASE("a world whose bodies have changed kind goes on bit by bit, on any number of threads and from a file",
+          "[determinism]") {
+    const auto course = [](int threads) {
+        Bar bar(Bar::two_materials, threads, {0, 0, -standard_gravity});
+        bar.world.add_collider(Plane{.point = {0, 0, 2.8}});
+        REQUIRE(bar.world.advance(0.05).ok());
+        bar.world.set_dynamics(bar.body, implicit);
+        REQUIRE(bar.world.advance(0.05).ok());
+        bar.world.set_dynamics(bar.body, deformable);
+        return bar;
+    };
+    Bar one = course(1), two = course(2);
+    CHECK(one.world.state_hash() == two.world.state_hash());
+    World copy = one.world.clone();
+    const TemporaryFolder folder;
+    one.world.save(folder.path() / "world.h5");
+    World loaded = World::load(folder.path() / "world.h5");
+    for (World* world : {&one.world, &two.world, &copy, &loaded}) {
+        const BodyHandle body = world->bodies().back();
+        world->set_dynamics(body, rigid);
+        REQUIRE(world->advance(0.05).ok());
+        world->set_dynamics(body, deformable);
+        REQUIRE(world->advance(0.05).ok());
+        CHECK(world->state_hash() == one.world.state_hash());
+    }
+}
