@@ -1,5 +1,7 @@
 // A body goes on as another kind: deformable, rigid or implicit.
 #include <Eigen/Dense>
+#include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "engine/world/control/control.h"
@@ -40,51 +42,43 @@ void require_changeable(const Model& model, std::size_t body, BodyDynamics next)
 
 /// Of a free body.
 struct WholeMotion {
-    Real mass = 0;                                                  // kg
-    Vec3 center = Vec3::Zero();                                     // m
-    Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // kg m/s, kg m^2/s about the centre
-    Mat3 inertia = Mat3::Zero();                                    // kg m^2, of its nodes about the centre
+    Vec3 center;                      // m, of mass
+    Vec3 momentum, angular_momentum;  // kg m/s, kg m^2/s about the centre
 };
 
-WholeMotion motion_of_nodes(const Model& model, std::size_t body) {
-    WholeMotion whole;
-    const NodeTable& nodes = model.nodes;
+Real mass_of_nodes(const Model& model, std::size_t body) {
+    const std::span<const Real> mass = rows_of(model.nodes.mass, model.bodies.nodes[body]);
+    return std::accumulate(mass.begin(), mass.end(), Real(0));
+}
+
+Vec3 center_of_nodes(const Model& model, std::size_t body) {
+    Vec3 center = Vec3::Zero();
     const Range range = model.bodies.nodes[body];
-    for (Index n = range.begin; n < range.end; ++n) {
-        whole.mass += nodes.mass[n];
-        whole.center += nodes.mass[n] * nodes.position[n];
-        whole.momentum += nodes.mass[n] * nodes.velocity[n];
-    }
-    whole.center /= whole.mass;
-    Mat3 second = Mat3::Zero();
-    for (Index n = range.begin; n < range.end; ++n) {
-        const Vec3 arm = nodes.position[n] - whole.center;
-        whole.angular_momentum += nodes.mass[n] * arm.cross(nodes.velocity[n]);
-        second += nodes.mass[n] * arm * arm.transpose();
-    }
-    whole.inertia = second.trace() * Mat3::Identity() - second;
-    return whole;
+    for (Index n = range.begin; n < range.end; ++n) center += model.nodes.mass[n] * model.nodes.position[n];
+    return center / mass_of_nodes(model, body);
 }
 
 WholeMotion motion_of(const Model& model, std::size_t body) {
-    WholeMotion whole = motion_of_nodes(model, body);
-    if (!model.has_frame(body)) return whole;
-    const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
-    whole.center = model.rigid_bodies.center[r];
-    whole.momentum = model.rigid_bodies.momentum[r];
-    whole.angular_momentum = model.rigid_bodies.angular_momentum[r];
-    return whole;
+    if (model.has_frame(body)) {
+        const auto r = static_cast<std::size_t>(model.bodies.rigid[body].begin);
+        const RigidBodyTable& table = model.rigid_bodies;
+        return {table.center[r], table.momentum[r], table.angular_momentum[r]};
+    }
+    const Vec3 center = center_of_nodes(model, body);
+    const NodeMotion nodes = motion_of_nodes(model, body, center);
+    return {center, nodes.momentum, nodes.angular_momentum};
 }
 
 /// Moves an explicit body as a whole, so that it has these momenta.
 void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wanted) {
-    const WholeMotion has = motion_of_nodes(model, body);
-    const Vec3 about_center = wanted.angular_momentum + (wanted.center - has.center).cross(wanted.momentum);
-    const Vec3 velocity = (wanted.momentum - has.momentum) / has.mass;
+    const Vec3 center = center_of_nodes(model, body);
+    const NodeMotion has = motion_of_nodes(model, body, center);
+    const Vec3 about_center = wanted.angular_momentum + (wanted.center - center).cross(wanted.momentum);
+    const Vec3 velocity = (wanted.momentum - has.momentum) / mass_of_nodes(model, body);
     const Vec3 turn = has.inertia.inverse() * (about_center - has.angular_momentum);
     const Range range = model.bodies.nodes[body];
     for (Index n = range.begin; n < range.end; ++n)
-        model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - has.center);
+        model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
 }
 
 /// Appends the body once more, as what it becomes: in the shape of its mesh, at rest. What gives it no stable step

@@ -291,6 +291,19 @@ void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Ma
     give_nodes_velocity(model, body);
 }
 
+NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& center) {
+    NodeMotion motion;
+    Mat3 second = Mat3::Zero();
+    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {
+        const Vec3 arm = model.nodes.position[n] - center;
+        motion.momentum += model.nodes.mass[n] * model.nodes.velocity[n];
+        motion.angular_momentum += model.nodes.mass[n] * arm.cross(model.nodes.velocity[n]);
+        second += model.nodes.mass[n] * arm * arm.transpose();
+    }
+    motion.inertia = second.trace() * Mat3::Identity() - second;
+    return motion;
+}
+
 void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum) {
     const std::size_t r = rigid_row(model, body);
     model.rigid_bodies.momentum[r] = momentum;
@@ -325,16 +338,8 @@ void follow_node_velocities(Model& model, std::size_t body) {
     }
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
-    Vec3 momentum = Vec3::Zero(), turning = Vec3::Zero();
-    Mat3 second = Mat3::Zero();
-    for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {
-        const Vec3 arm = model.nodes.position[n] - table.center[r];
-        momentum += model.nodes.mass[n] * model.nodes.velocity[n];
-        turning += model.nodes.mass[n] * arm.cross(model.nodes.velocity[n]);
-        second += model.nodes.mass[n] * arm * arm.transpose();
-    }
-    const Mat3 inertia = second.trace() * Mat3::Identity() - second;
-    const Vec3 velocity = momentum / table.mass[r], turn = inertia.inverse() * turning;
+    const NodeMotion motion = motion_of_nodes(model, body, table.center[r]);
+    const Vec3 velocity = motion.momentum / table.mass[r], turn = motion.inertia.inverse() * motion.angular_momentum;
     set_motion(table, r, velocity, turn);
     const Deformation deformation(model, body);
     if (deformation.any()) {

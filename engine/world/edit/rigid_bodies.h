@@ -36,6 +36,12 @@ void find_holders(Model& model);
 /// or its own, and what deforms in it is what leaves nodes where they are, with the velocities that they have.
 void follow_attachments(Model& model, std::size_t body);
 
+/// Of the nodes of a body as points, about a centre.
+struct NodeMotion {
+    Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // kg m/s, kg m^2/s
+    Mat3 inertia = Mat3::Zero();                                    // kg m^2
+};
+NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& center);
 /// Gives it momentum (kg m/s) and angular momentum about its centre (kg m^2/s); what deforms it stays.
 void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum);
 /// Takes its momenta.
