@@ -6,6 +6,7 @@
 
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
+#include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
@@ -27,7 +28,53 @@ struct Doomed {
     void overload() { world.set_loads(ball, std::vector<Vec3>(world.positions(ball).size(), Vec3(1e308, 1e308, 0))); }
 };
 
+/// A box with slivers, of what relaxes, shot at a held sheet: steps are tried again.
+World shot_at_sheet() {
+    World world({.gravity = Vec3::Zero(), .integrator = Integrator::symplectic_euler});
+    const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3});
+    const auto soft = world.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3});  // does not set the step
+    const Mesh thin = mesh::box({0.4, 0.4, 0.004}, {8, 8, 1});
+    const auto sheet = world.add_body(thin, {.material = soft, .position = {0, 0, -0.105}});
+    world.attach(sheet, std::vector<Index>{0, 8, 72, 80});
+    world.add_body(test::sliver_box(0.2, 8, 0.01, 0.005), {.material = rubber, .velocity = {0, 0, -40}});
+    REQUIRE(world.advance(0).ok());
+    return world;
+}
+
+std::uint64_t runs_of(const World& world, const std::string& name) {
+    const WorldReport report = world.report();
+    const auto stage = std::ranges::find(report.stages, name, &StageReport::name);
+    REQUIRE(stage != report.stages.end());
+    return stage->runs;
+}
+
 }  // namespace
+
+TEST_CASE("a try as long as the one before it has the same forces without a pass over the elements", "[scene]") {
+    World world = shot_at_sheet(), twin = shot_at_sheet();
+    WorldState &state = WorldAccess::state_of(world), &forgetful = WorldAccess::state_of(twin);
+    Tries tries, twin_tries;
+    std::uint64_t tried = 0, longer = 0, crossing = 0, shorter = 0;
+    for (int step = 0; step < 200; ++tried) {
+        const StepPlan plan = plan_step(state.model, state.clock.cycle, 1, tries.at_most());
+        REQUIRE(plan_step(forgetful.model, forgetful.clock.cycle, 1, twin_tries.at_most()).h == plan.h);
+        const StepOutcome outcome = try_step(state, plan, tries);
+        forgetful.scratch.parameters.h = 0;  // whatever was tried was not as long
+        REQUIRE(try_step(forgetful, plan, twin_tries) == outcome);
+        CHECK(state.scratch.findings.relaxed == forgetful.scratch.findings.relaxed);
+        longer += outcome == StepOutcome::again_with_longer_lists;
+        crossing += outcome == StepOutcome::again_with_crossings;
+        shorter += outcome == StepOutcome::again_shorter;
+        step += outcome == StepOutcome::committed;
+    }
+    CHECK(world.report().clusters > 0);
+    CHECK(longer + crossing > 0);
+    CHECK(shorter > 0);
+    CHECK(world.state_hash() == twin.state_hash());
+    CHECK(world.energy().dissipated == twin.energy().dissipated);
+    CHECK(runs_of(twin, "dynamics/compute_element_forces") == tried);
+    CHECK(runs_of(world, "dynamics/compute_element_forces") == tried - longer - crossing);
+}
 
 TEST_CASE("a refused step leaves every column of state as it was", "[scene]") {
     for (const Integrator integrator : {Integrator::leapfrog, Integrator::symplectic_euler}) {

@@ -41,6 +41,7 @@ struct StepParameters {
     Real theta = 1;
     SleepSettings sleep;
     bool let_invert = false;           // the last of the tries to avoid it
+    bool forces_known = false;         // the try before this one left them: of the same step, and as long
     bool problem_wanted = false;       // somebody wants to see the contact problem of this step
     bool forces_wanted = false;        // somebody wants to know what contacts and attachments give
     Vec3 moment_point = Vec3::Zero();  // m, that their moments are about

@@ -56,7 +56,9 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
 bool run_stages(WorldState& world) {
     StepScratch& scratch = world.scratch;
     Model& model = world.model;
+    const Real relaxed = scratch.parameters.forces_known ? scratch.findings.relaxed : 0;
     scratch.findings = {};
+    scratch.findings.relaxed = relaxed;
     scratch.awake_mass = model.note_rest();
     scratch.left_out = nothing_moves(world);
     if (!scratch.left_out) {
@@ -233,6 +235,8 @@ Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable) {
 
 StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     StepScratch& scratch = world.scratch;
+    const bool tried = tries.with_longer_lists > 0 || tries.with_crossings > 0;
+    scratch.parameters.forces_known = tried && scratch.parameters.h == plan.h;
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
     scratch.parameters.lag = scratch.parameters.integrator == Integrator::forward_euler ? 0 : plan.h / 2;

@@ -68,9 +68,17 @@ void add_rows_and_columns(const Real* matrix, std::size_t count, std::size_t pla
         }
 }
 
+/// sum = matrix kick.
+void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, const ByComponent& sum) {
+    std::size_t place = 0;
+    for (; place + rows_at_once <= count; place += rows_at_once)
+        add_rows_and_columns<rows_at_once>(matrix, count, place, kick, sum);
+    for (; place < count; ++place) add_rows_and_columns<1>(matrix, count, place, kick, sum);
+}
+
 }  // namespace
 
-bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity,
+bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next) {
     const NodeClusters& clusters = inputs.clusters;
     if (clusters.empty()) return false;
@@ -83,17 +91,15 @@ bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::spa
             const std::size_t count = nodes.size();
             const auto begin = static_cast<std::size_t>(clusters.nodes.offset[c]);
             const ByComponent kicks(work.data() + 6 * begin, count), sums(work.data() + 6 * begin + 3 * count, count);
-            for (std::size_t k = 0; k < count; ++k) {
-                const auto n = static_cast<std::size_t>(nodes[k]);
-                const Vec3 impulse = inputs.mass[n] * (velocity_next[n] - velocity[n]);
-                kick[begin + k] = impulse;
-                for (std::size_t i = 0; i < 3; ++i) kicks.component[i][k] = impulse[static_cast<Index>(i)];
+            if (!known) {
+                for (std::size_t k = 0; k < count; ++k) {
+                    const auto n = static_cast<std::size_t>(nodes[k]);
+                    const Vec3 impulse = inputs.mass[n] * (velocity_next[n] - velocity[n]);
+                    kick[begin + k] = impulse;
+                    for (std::size_t i = 0; i < 3; ++i) kicks.component[i][k] = impulse[static_cast<Index>(i)];
+                }
+                multiply(clusters.inverse.data() + clusters.first_entry[c], count, kicks, sums);
             }
-            const Real* const inverse = clusters.inverse.data() + clusters.first_entry[c];
-            std::size_t place = 0;
-            for (; place + rows_at_once <= count; place += rows_at_once)
-                add_rows_and_columns<rows_at_once>(inverse, count, place, kicks, sums);
-            for (; place < count; ++place) add_rows_and_columns<1>(inverse, count, place, kicks, sums);
             for (std::size_t k = 0; k < count; ++k) {
                 const auto n = static_cast<std::size_t>(nodes[k]);
                 velocity_next[n] = velocity[n] + sums.at(k);

@@ -25,9 +25,10 @@ struct ClusterKickInputs {
 };
 
 /// velocity_next = velocity + A^-1 m (velocity_next - velocity), cluster by cluster. `kick`: N s, what forces gave each
-/// node, by item of clusters.nodes; `work`: memory that is kept between steps. Parallel over clusters. Returns false
-/// where there is none (skipped).
-bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity,
+/// node, by item of clusters.nodes; `work`: memory that is kept between steps. `known`: both hold what the call before
+/// left there, of the same clusters, velocities and forces. Parallel over clusters. Returns false where there is none
+/// (skipped).
+bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 
 }  // namespace skerry
