@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "components/check.h"
+#include "components/lanes.h"
 #include "jobs/parallel_for.h"
 
 namespace skerry {
@@ -34,27 +35,41 @@ std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
 }
 
 /// Where a node was, relative to the body's first node, when it had its velocity.
-Vec3 earlier(const Vec3& x, const Vec3& velocity, Real lag) {
+template <class T>
+T earlier(const T& x, const T& velocity, Real lag) {
     return x - lag * velocity;
+}
+
+// The nodes are gone through one after the other, components side by side: every sum is that of the nodes in order.
+Real4 load(const Vec3& v) {
+    return Real4{v[0], v[1], v[2], 0};
+}
+Vec3 vec3(const Real4& v) {
+    return {v[0], v[1], v[2]};
+}
+Real4 cross(const Real4& a, const Real4& b) {
+    return __builtin_shufflevector(a, a, 1, 2, 0, 3) * __builtin_shufflevector(b, b, 2, 0, 1, 3) -
+           __builtin_shufflevector(a, a, 2, 0, 1, 3) * __builtin_shufflevector(b, b, 1, 2, 0, 3);
 }
 
 /// Sums over a block; positions and velocities relative to those of the body's first node.
 NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::span<const Vec3> velocity) {
     const std::size_t origin = first_node(bodies, static_cast<std::size_t>(bodies.block_body[block]));
-    NodeBlockSums sums{0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Zero(), 0};
+    const Real4 x_origin = load(bodies.position[origin]), v_origin = load(velocity[origin]), one{0, 0, 0, 1};
+    Real4 momentum_and_mass{}, first{}, angular{}, second[3]{};
     for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]);
          n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
         if (!(bodies.inverse_mass[n] > 0)) continue;
         const Real m = bodies.mass[n];
-        const Vec3 x = bodies.position[n] - bodies.position[origin];
-        const Vec3 v = velocity[n] - velocity[origin];
-        const Vec3 p = m * v;
-        sums.mass += m;
-        sums.momentum += p;
-        sums.first_moment += m * x;
-        sums.angular_momentum += x.cross(p);
-        sums.second_moment += (m * earlier(x, v, bodies.lag)) * x.transpose();
+        const Real4 x = load(bodies.position[n]) - x_origin, v = load(velocity[n]) - v_origin;
+        const Real4 p = m * (v + one), moment = m * earlier(x, v, bodies.lag);
+        momentum_and_mass += p;
+        first += m * x;
+        angular += cross(x, p);
+        for (int i = 0; i < 3; ++i) second[i] += moment * x[i];
     }
+    NodeBlockSums sums{momentum_and_mass[3], vec3(momentum_and_mass), vec3(first), vec3(angular), Mat3::Zero(), 0};
+    for (int i = 0; i < 3; ++i) sums.second_moment.col(i) = vec3(second[i]);
     return sums;
 }
 
@@ -104,20 +119,20 @@ Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, c
     const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);
     const bool rigid = keeps_rigid_motion(bodies, body);
     if (rigid && !(total.mass > 0)) return 0;
-    const Vec3 linear = rigid ? Vec3(total.momentum / total.mass) : Vec3::Zero();
-    const Vec3 angular = rigid ? angular_velocity_of(total) : Vec3::Zero();
-    const std::size_t origin = first_node(bodies, body);
-    const Vec3 centre = rigid ? Vec3(total.first_moment / total.mass) : Vec3::Zero();
+    const Real4 linear = load(rigid ? Vec3(total.momentum / total.mass) : Vec3::Zero());
+    const Real4 angular = load(rigid ? angular_velocity_of(total) : Vec3::Zero());
+    const Real4 origin = load(bodies.position[first_node(bodies, body)]);
+    const Real4 centre = load(rigid ? Vec3(total.first_moment / total.mass) : Vec3::Zero());
     Real taken = 0;  // J
     for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]);
          n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
         if (!(bodies.inverse_mass[n] > 0)) continue;
-        const Vec3 v = velocity[n] - linear;
-        const Vec3 excess =
-            v - angular.cross(earlier(bodies.position[n] - bodies.position[origin] - centre, v, bodies.lag));
-        velocity_next[n] -= fraction * excess;
+        const Real4 v = load(velocity[n]) - linear;
+        const Real4 excess = v - cross(angular, earlier(load(bodies.position[n]) - origin - centre, v, bodies.lag));
+        velocity_next[n] = vec3(load(velocity_next[n]) - fraction * excess);
         // Half of v^2 before less after. Where places move the excess is not quite at right angles to the rigid motion.
-        taken += bodies.mass[n] * fraction * excess.dot(v - fraction / 2 * excess);
+        const Real4 work = excess * (v - fraction / 2 * excess);
+        taken += bodies.mass[n] * fraction * (work[0] + (work[1] + work[2]));
     }
     return taken;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 
 #include "tests/support/jittered_box.h"
@@ -106,6 +107,42 @@ TEST_CASE("damping keeps momentum and angular momentum and takes energy", "[unit
     CHECK((after.linear - before.linear).norm() <= 1e-13 * before.size);
     CHECK((after.angular - before.angular).norm() <= 1e-13 * before.turn);
     CHECK(after.kinetic < 0.9 * before.kinetic);
+}
+
+TEST_CASE("damping has the bits of one sum after the other", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    Cloud cloud;
+    cloud.lag = 0.02;  // s
+    cloud.add(random_vectors(200, 0.5, Vec3(10, -20, 5), 1), random_vectors(200, 2, Vec3(3, 1, 0), 2), 1);
+    const std::vector<Vec3> x = cloud.position, v = cloud.velocity;
+    // about the first node, then about the centre of mass
+    Real mass = 0;
+    Vec3 momentum = Vec3::Zero(), first = Vec3::Zero(), angular = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+    for (std::size_t n = 0; n < x.size(); ++n) {
+        const Real m = cloud.mass[n];
+        const Vec3 from = x[n] - x[0], slip = v[n] - v[0], p = m * slip;
+        mass += m;
+        momentum += p;
+        first += m * from;
+        angular += from.cross(p);
+        second += (m * (from - cloud.lag * slip)) * from.transpose();
+    }
+    angular -= first.cross(momentum) / mass;
+    second -= (first - cloud.lag * momentum) * first.transpose() / mass;
+    momentum += mass * v[0];
+    const Vec3 omega = (second.trace() * Mat3::Identity() - second).inverse() * angular;
+    const Vec3 linear = momentum / mass, centre = first / mass;
+    const Real h = 1e-3, fraction = -std::expm1(-cloud.damping[1] * h);
+    REQUIRE(cloud.damp(*executor, h));
+    Real taken = 0;
+    for (std::size_t n = 0; n < x.size(); ++n) {
+        const Vec3 relative = v[n] - linear, from = x[n] - x[0] - centre;
+        const Vec3 excess = relative - omega.cross(from - cloud.lag * relative);
+        CHECK(cloud.velocity[n] == v[n] - fraction * excess);
+        taken += cloud.mass[n] * fraction * excess.dot(relative - fraction / 2 * excess);
+    }
+    CHECK(cloud.dissipated == taken);
 }
 
 TEST_CASE("a body at rest under load does not feel its damping", "[unit]") {
