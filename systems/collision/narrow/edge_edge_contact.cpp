@@ -14,9 +14,11 @@ namespace {
 constexpr Real min_bend = 0.01;
 
 // rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that
-// border exactly. To this comes what the step may turn: where a point is stopped, the edge behind it goes on and can
-// cross another within the same step.
-constexpr Real border_angle = 0.002;
+// border exactly; one that lies on two edges of it is beyond, since the flatter of the two lets it come nearer: by a
+// hundredth of the width of the face where they are equally long. Would the other then count no more, it would fall
+// onto the face, count again and be pushed out, for ever (docs/methods/collision.md 4.5). To this comes what the step
+// may turn: where a point is stopped, the edge behind it goes on and can cross another within the same step.
+constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
     for (Index n : triangle)
@@ -67,10 +69,10 @@ public:
 
     bool convex() const { return convex_; }
 
-    /// m: how much nearer than the contact distance another edge may come, so that an edge that bends by min_bend
-    /// starts to count where its points have left the other, not with a gap below zero: blocks that lie on each other
-    /// would tremble for ever.
-    Real slack() const { return slack_; }
+    /// m: how much nearer than the contact distance another edge may come that crosses this one at a fraction of its
+    /// length, so that an edge that bends by min_bend starts to count where its points have left the other, not with a
+    /// gap below zero: blocks that lie on each other would tremble for ever. Towards its ends the faces are narrower.
+    Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
     /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
@@ -90,7 +92,7 @@ private:
     std::array<Real, 2> border_;  // m, how far the end of a face may stand out beyond the direction
     Vec3 outward_;                // sum of the unit normals of both
     bool convex_;
-    Real slack_ = 0;
+    Real slack_ = 0;  // m, half way along the edge
 };
 
 }  // namespace
@@ -125,7 +127,8 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
         return contact;
     }
     contact.touching = true;
-    contact.slack = std::min(wedge_a.slack() + wedge_b.slack(), scale.contact_distance / 2);
+    contact.slack =
+        std::min(wedge_a.slack(contact.closest.s) + wedge_b.slack(contact.closest.t), scale.contact_distance / 2);
     return contact;
 }
 

@@ -378,3 +378,60 @@ TEST_CASE("two ridges that have passed each other are pushed back, however flat 
             }
         }
 }
+
+TEST_CASE("an edge that lies on two edges of a face is held by the sharper, though the flatter lets it come nearer",
+          "[unit]") {
+    const PairScale scale{0.02, 1, 0.25, 0.03, 0.25};
+    constexpr Real near = 0.0201;
+    const Vec3 a(0, 0, 0), common(1, 0, 0), b(0.4, 0.9, 0);
+    // What is beyond an edge of the face falls away by the bend.
+    const auto beyond = [](const Vec3& from, const Vec3& to, Real bend) {
+        const Vec3 outward = (to - from).cross(Vec3::UnitZ());
+        return Vec3((from + to) / 2 + outward * std::cos(bend) - Vec3::UnitZ() * std::sin(bend) * outward.norm());
+    };
+    for (Real flat_bend : {0.0101, 0.012, 0.016, 0.0199})
+        for (Real sharp_bend : {0.021, 0.1, 1.0})
+            for (Real on_flat : {0.05, 0.3, 0.5, 0.7, 0.95})  // from the common corner
+                for (Real on_sharp : {0.05, 0.5, 0.95}) {
+                    INFO("bends " << flat_bend << ", " << sharp_bend << ", at " << on_flat << ", " << on_sharp);
+                    const Vec3 first = common + on_flat * (a - common), second = common + on_sharp * (b - common);
+                    // A sharp ridge over both, each end far beyond the face.
+                    const auto contacts = [&](Real height, Real other_height) {
+                        const Vec3 p = first + height * Vec3::UnitZ(), q = second + other_height * Vec3::UnitZ();
+                        const Vec3 along = (q - p).normalized(), side = along.cross(Vec3::UnitZ());
+                        const Vec3 begin = p - 2 * along, end = q + 2 * along;
+                        const std::vector<Vec3> x{a,
+                                                  common,
+                                                  b,
+                                                  beyond(a, common, flat_bend),
+                                                  beyond(common, b, sharp_bend),
+                                                  begin,
+                                                  end,
+                                                  (begin + end) / 2 + side + 0.3 * Vec3::UnitZ(),
+                                                  (begin + end) / 2 - side + 0.3 * Vec3::UnitZ()};
+                        SurfaceTables surface;
+                        append_surface(
+                            std::vector<BoundaryTriangle>{
+                                {{0, 1, 2}, no_index}, {{1, 0, 3}, no_index}, {{2, 1, 4}, no_index}},
+                            0, no_index, surface);
+                        append_surface(std::vector<BoundaryTriangle>{{{0, 1, 2}, no_index}, {{1, 0, 3}, no_index}}, 5,
+                                       no_index, surface);
+                        const auto edge = [&](Index m, Index n) {
+                            Index e = 0;
+                            while (surface.edges.node[e] != std::array<Index, 2>{m, n}) ++e;
+                            return e;
+                        };
+                        const auto with = [&](Index e) {
+                            return edge_edge_contact(surface, x, edge(5, 6), e, scale, near, Surfaces::apart);
+                        };
+                        return std::pair{with(edge(0, 1)), with(edge(1, 2))};
+                    };
+                    const auto even = contacts(scale.contact_distance, scale.contact_distance);
+                    REQUIRE(even.first.touching);
+                    REQUIRE(even.second.touching);
+                    CHECK(even.first.slack > 0);
+                    CHECK(even.second.slack < 1e-12);
+                    const auto held = contacts(scale.contact_distance - even.first.slack, scale.contact_distance);
+                    CHECK(held.second.touching);
+                }
+}
