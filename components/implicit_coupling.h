@@ -10,20 +10,32 @@
 
 namespace skerry {
 
-using PaddedMat3 = Eigen::Matrix<Real, 4, 3>;  // the fourth row is zero
-
 /// Made by couple_implicit_bodies.
 struct ImplicitCoupling {
-    Ragged<Index> nodes;              // by row of RigidBodyTable: rows of NodeTable that contacts touch, ascending
-    Column<std::size_t> first_block;  // by row of RigidBodyTable
-    Column<PaddedMat3> block;         // 1/kg, world: row by row for each body, by places among its touched nodes
+    Ragged<Index> nodes;  // by row of RigidBodyTable: rows of NodeTable that contacts touch, ascending
+    // By row of RigidBodyTable:
+    // 1/kg, what impulses on its touched nodes give them, in the frame of the mesh: a symmetric matrix, column by column,
+    // three numbers a node. Kept by the bodies themselves
+    Column<std::span<const Real>> response;
+    Column<Mat3> turn, impulse_turn;  // velocities from the frame of the mesh to the world; impulses back, times theta
     Column<Index> place;              // by row of ImplicitNodeTable: among the touched nodes of the body, or no_index
 
-    /// By what an impulse on one touched node moves all of them.
-    std::span<const PaddedMat3> row(std::size_t body, Index at) const {
-        const std::size_t count = nodes[body].size();
-        return block.span().subspan(first_block[body] + static_cast<std::size_t>(at) * count, count);
+    std::size_t numbers(std::size_t body) const { return 3 * nodes[body].size(); }
+    /// Three columns of `response`, one after the other.
+    std::span<const Real> columns(std::size_t body, Index at) const {
+        return response[body].subspan(3 * static_cast<std::size_t>(at) * numbers(body), 3 * numbers(body));
     }
+    /// What an impulse on the touched node `from` gives the touched node `to`, in the frame of the mesh.
+    Mat3 block_in_frame(std::size_t body, Index to, Index from) const {
+        const std::span<const Real> of = columns(body, from);
+        Mat3 block;
+        for (Index c = 0; c < 3; ++c)
+            for (Index r = 0; r < 3; ++r)
+                block(r, c) = of[static_cast<std::size_t>(c) * numbers(body) + static_cast<std::size_t>(3 * to + r)];
+        return block;
+    }
+    Mat3 to_world(std::size_t body, const Mat3& in_frame) const { return turn[body] * in_frame * impulse_turn[body]; }
+    Mat3 block(std::size_t body, Index to, Index from) const { return to_world(body, block_in_frame(body, to, from)); }
 };
 
 }  // namespace skerry

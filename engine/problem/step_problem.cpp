@@ -76,8 +76,8 @@ std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
         if (nodes.empty()) continue;
         StrainedPoints points{{nodes.begin(), nodes.end()}, {}};
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            for (const PaddedMat3& block : coupling.row(r, static_cast<Index>(i)))
-                points.response.push_back(block.topRows<3>().transpose());
+            for (std::size_t k = 0; k < nodes.size(); ++k)
+                points.response.push_back(coupling.block(r, static_cast<Index>(i), static_cast<Index>(k)));
         bodies.push_back(std::move(points));
     }
     return bodies;

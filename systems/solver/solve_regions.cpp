@@ -98,6 +98,7 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
     if (contacts.rigid.any()) {
         data.make_room_for_rigid(data.rows, region_nodes, settings.method);
         data.newton.make_room(static_cast<std::size_t>(executor.worker_count()));
+        data.runs.make_room(static_cast<std::size_t>(executor.worker_count()));
     }
     make_room(data.joint_law, data.rows - data.contact_rows);
     schedule_regions(settings, executor.worker_count(), data, regions);

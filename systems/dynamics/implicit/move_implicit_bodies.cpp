@@ -88,8 +88,6 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
         }
     if (!any) return false;
     coupling.nodes.offset.push_back(0);
-    coupling.first_block.resize(bodies.body.size());
-    std::size_t blocks = 0;
     for (std::size_t r = 0; r < bodies.body.size(); ++r) {
         Index count = 0;
         for (Index row = bodies.rows(r).begin; row < bodies.rows(r).end; ++row) {
@@ -99,28 +97,17 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
             coupling.nodes.item.push_back(bodies.nodes(r).begin + row - bodies.rows(r).begin);
         }
         coupling.nodes.offset.push_back(static_cast<Index>(coupling.nodes.item.size()));
-        coupling.first_block[r] = blocks;
-        blocks += static_cast<std::size_t>(count) * static_cast<std::size_t>(count);
     }
-    coupling.block.resize(blocks);
+    coupling.response.resize(bodies.body.size());
+    coupling.turn.resize(bodies.body.size());
+    coupling.impulse_turn.resize(bodies.body.size());
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const std::span<const Index> nodes = coupling.nodes[r];
         if (nodes.empty()) return;
-        const bool sound = make_factor(bodies, r, h, theta, stiff[r]);
-        const OfBody of(bodies, stiff[r], r);
-        const Mat3 turn = bodies.holds.hold(r) ? LedFrame(bodies, r, h).turn : bodies.turn(r);
-        const std::span<PaddedMat3> block =
-            coupling.block.span().subspan(coupling.first_block[r], nodes.size() * nodes.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            if (!sound) break;
-            const std::span<const Mat3> column = stiff[r].column(static_cast<std::size_t>(nodes[i]) - of.first_node);
-            for (std::size_t j = i; j < nodes.size(); ++j) {
-                const std::size_t place = of.place(static_cast<std::size_t>(nodes[j]) - of.first_node);
-                const Mat3 there = theta * turn * column[place] * turn.transpose();
-                block[i * nodes.size() + j] << there, Eigen::RowVector3d::Zero();
-                block[j * nodes.size() + i] << there.transpose(), Eigen::RowVector3d::Zero();
-            }
-        }
+        make_factor(bodies, r, h, theta, stiff[r]);
+        coupling.turn[r] = bodies.holds.hold(r) ? LedFrame(bodies, r, h).turn : bodies.turn(r);
+        coupling.impulse_turn[r] = theta * coupling.turn[r].transpose();
+        coupling.response[r] = stiff[r].responses(nodes, bodies.nodes(r).begin);
     });
     return true;
 }

@@ -174,6 +174,7 @@ bool StiffBody::prepare(Real inertia, Real stiffness) {
     std::ranges::fill(slot_of_, no_index);
     std::ranges::fill(node_in_, no_index);
     std::ranges::fill(used_at_, 0);
+    touched_.clear();
     if (factor_.factor(matrix_)) return true;
     forget_factor();
     return false;
@@ -233,6 +234,32 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     }
     used_at_[static_cast<std::size_t>(slot)] = uses_;
     return std::span<const Mat3>(columns_).subspan(static_cast<std::size_t>(slot) * size(), size());
+}
+
+std::span<const Real> StiffBody::responses(std::span<const Index> nodes, Index first) {
+    const auto same = [first](Index kept, Index asked) { return kept == asked - first; };
+    const std::size_t count = nodes.size(), numbers = 3 * count;
+    const auto of_nodes = std::span<const Real>(responses_).first(std::min(responses_.size(), numbers * numbers));
+    if (std::ranges::equal(touched_, nodes, same)) return of_nodes;
+    touched_.resize(count);
+    std::ranges::transform(nodes, touched_.begin(), [first](Index node) { return node - first; });
+    if (responses_.size() < numbers * numbers) responses_.resize(numbers * numbers);
+    const bool has_factor = inertia_factor_ != 0;
+    if (!has_factor) std::ranges::fill(responses_, 0);
+    for (std::size_t i = 0; i < count && has_factor; ++i) {
+        const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
+        // both ways from one column: symmetric to the last bit
+        for (std::size_t j = i; j < count; ++j) {
+            const Mat3& block = from[static_cast<std::size_t>(place(static_cast<std::size_t>(touched_[j])))];
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t r = 0; r < 3; ++r) {
+                    const Real number = block(static_cast<Index>(r), static_cast<Index>(c));
+                    responses_[(3 * i + c) * numbers + 3 * j + r] = number;
+                    responses_[(3 * j + r) * numbers + 3 * i + c] = number;
+                }
+        }
+    }
+    return std::span<const Real>(responses_).first(numbers * numbers);
 }
 
 }  // namespace skerry

@@ -53,6 +53,10 @@ public:
     /// What an impulse on a node gives to others by respond(), 1/kg: a column, by place.
     /// Calculated once for a factor, kept while there is room.
     std::span<const Mat3> column(std::size_t node);
+    /// What impulses on some nodes give to them by respond(), 1/kg: a symmetric matrix, column by column, three numbers a
+    /// node. `nodes` ascend, and begin with `first` for the first of the body. Kept while the same are asked for; zero
+    /// without a factor.
+    std::span<const Real> responses(std::span<const Index> nodes, Index first);
     /// Columns that are kept, at most.
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // bytes
 
@@ -81,6 +85,9 @@ private:
     std::vector<std::uint64_t> used_at_;  // by slot
     std::uint64_t uses_ = 0;
     std::vector<Mat3> columns_;  // size() a slot
+    // of responses(); nodes of the body
+    std::vector<Index> touched_;
+    std::vector<Real> responses_;
 };
 
 }  // namespace skerry

@@ -249,22 +249,6 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
 
 }  // namespace
 
-/// refresh(), where what impulses do to bodies that deform is summed up by node first: each of them moves all touched
-/// nodes of its body, and several contacts name it.
-void FreedomOperator::refresh_by_nodes(BodyEquations& equations) {
-    const std::span<Vec4> sum = memory_.scratch;
-    std::ranges::copy(memory_.free_velocity, memory_.velocity.begin());
-    std::ranges::fill(sum, Vec4::Zero());
-    for (Index i = 0; i < size(); ++i) {
-        const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
-        if (impulse.isZero(0)) continue;
-        walk_.collect(contact(i), impulse, sum.data(), memory_.velocity.data());
-        apply_to_rigid(part(i), impulse, memory_.velocity.data());
-    }
-    for (const Unknown& of : equations.unknown())
-        if (deforms(of)) walk_.spread(of.row, sum[static_cast<std::size_t>(of.row)], memory_.velocity.data());
-}
-
 /// Impulses answer to the present motion, P( start - u / (softness D) ), and the velocities of the region and
 /// `answered` are those that they make. Returns ( answered - present ) K ( answered - present ), J, and leaves that
 /// right-hand side, with the matrix where it is asked for.
@@ -279,7 +263,7 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
         memory_.impulse[at] = padded(answer.impulse);
         if (with_matrix && !answer.open) equations.add(i, answer.derivative / soft);
     }
-    refresh_by_nodes(equations);
+    refresh();
     gather(equations, equations.answered);
     for (std::size_t k = 0; k < equations.change.size(); ++k)
         equations.change[k] = equations.answered[k] - equations.present[k];

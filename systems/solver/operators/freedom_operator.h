@@ -8,10 +8,12 @@
 #include <span>
 
 #include "components/options.h"
-#include "systems/solver/equations/newton_pool.h"
+#include "systems/solver/equations/body_equations.h"
+#include "systems/solver/equations/pool.h"
 #include "systems/solver/local/joint_law.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/contact_operator.h"
+#include "systems/solver/operators/contact_runs.h"
 #include "systems/solver/operators/through_groups.h"
 
 namespace skerry {
@@ -29,14 +31,21 @@ struct FreedomMemory {
     std::array<std::span<Vec4>, workspace_limit> workspace;
 };
 
+using NewtonPool = Pool<BodyEquations>;
+using RunPool = Pool<ContactRuns>;
+
 class FreedomOperator {
 public:
     using Number = Real;
 
     /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse. `pool`: for Newton steps.
     FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughGroups& walk,
-                    NewtonPool& pool)
-        : memory_(memory), friction_(friction), scale_(scale), walk_(walk), pool_(&pool) {}
+                    NewtonPool& pool, RunPool& runs)
+        : memory_(memory), friction_(friction), scale_(scale), walk_(walk), pool_(&pool) {
+        if (!walk.any_deforms()) return;
+        runs_ = runs.lease();
+        runs_->start();
+    }
 
     Index size() const { return static_cast<Index>(memory_.contact.size()); }
     std::span<Vec4> impulse() { return memory_.impulse; }
@@ -85,10 +94,6 @@ public:
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
-    void apply(Index i, const Vec4& impulse, Vec4* velocity) const {
-        walk_.apply(contact(i), impulse, velocity);
-        apply_to_rigid(part(i), impulse, velocity);
-    }
 
     /// null: a contact
     const JointLaw* joint(Index i) const {
@@ -104,7 +109,6 @@ private:
     void assemble(BodyEquations& equations) const;
     /// What impulses do to the unknowns, from the velocities of the region.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
-    void refresh_by_nodes(BodyEquations& equations);
     Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix);
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
     void list_unknowns(BodyEquations& equations) const;
@@ -122,7 +126,15 @@ private:
     Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
     /// Returns change . W_ii change.
     Real step(Index i, Real relaxation);
+    /// Calls `of` for all contacts, in their order.
+    void for_each_in_sweep(auto&& of);
+    void list_runs() const;
+    /// In a sweep: of nodes that deform bodies those of its run.
+    void apply(Index i, const Vec4& impulse);
     void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
+    /// Adds what impulses do. Of several contacts that name a node of a body that deforms they are summed up first:
+    /// each moves all touched nodes of its body.
+    void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     FreedomMemory memory_;
     Friction friction_;
@@ -130,6 +142,7 @@ private:
     ThroughGroups walk_;
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
+    RunPool::Lease runs_;  // where something deforms
     bool inertia_is_known_ = false;  // to the equations, from the first steps on
 };
 

@@ -20,17 +20,9 @@ public:
                   std::span<const Index> node)
         : clusters_(clusters, node), implicit_(&implicit), rigid_(&rigid), node_(node) {}
 
-    void apply(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
-        for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
-            const Index place = deforming_place(contact.node[a]);
-            if (place == no_index) {
-                clusters_.apply_to_node(contact, a, impulse, velocity);
-                continue;
-            }
-            move_nodes_of(contact.node[a], place, contact.weight[a] * impulse.head<3>(), velocity);
-        }
-    }
-    /// The same, but what falls to nodes that deform a body is added to `sum`, by node of the region, for spread().
+    bool any_deforms() const { return implicit_->any(); }
+    /// What an impulse of a contact does but for nodes that deform a body, whose shares are added to `sum`, by node of the
+    /// region, for SpreadImpulses.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
             if (deforming_place(contact.node[a]) == no_index)
@@ -39,11 +31,11 @@ public:
                 sum[contact.node[a]] += contact.weight[a] * impulse;
         }
     }
-    /// An impulse on a node that deforms a body.
-    void spread(Index n, const Vec4& impulse, Vec4* velocity) const {
-        move_nodes_of(n, deforming_place(n), impulse.head<3>(), velocity);
+    /// The share of one node, which deforms no body.
+    void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
+        clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// The same where bodies do not deform: for what moves positions alone.
+    /// Where bodies do not deform: for what moves positions alone.
     void apply_undeformed(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
             if (deforming_place(contact.node[a]) == no_index) clusters_.apply_to_node(contact, a, impulse, velocity);
@@ -73,46 +65,38 @@ public:
     Mat3 response(Index n, Index m) const {
         const std::size_t r = body_of(m);
         const Mat3 turned = rigid_->inverse_inertia[r] * cross_matrix(arm(m));
-        const std::span<const PaddedMat3> row = implicit_->coupling->row(r, deforming_place(m));
-        return row[static_cast<std::size_t>(deforming_place(n))].topRows<3>() +
+        return implicit_->coupling->block(r, deforming_place(n), deforming_place(m)) +
                rigid_->inverse_mass(r) * Mat3::Identity() - cross_matrix(arm(n)) * turned;
     }
-    /// Nodes that an impulse on one moves.
-    std::size_t moved_by(Index n) const {
-        const Index place = deforming_place(n);
-        return place == no_index ? 1 : implicit_->coupling->row(body_of(n), place).size();
+    const ImplicitCoupling& deforming() const { return *implicit_->coupling; }
+    /// Of a node of the region among the touched ones of an implicit body, or no_index.
+    Index deforming_place(Index n) const {
+        const Index row = node_[static_cast<std::size_t>(n)] == no_index
+                              ? no_index
+                              : implicit_->row(node_[static_cast<std::size_t>(n)], rigid_->nodes);
+        return row == no_index ? no_index : implicit_->coupling->place[static_cast<std::size_t>(row)];
     }
-
-private:
-    /// By an impulse on node `n` of the region, in its place among the touched ones of its body.
-    void move_nodes_of(Index n, Index place, const Vec3& impulse, Vec4* velocity) const {
-        Vec4* const first = velocity + (n - place);
-        const std::span<const PaddedMat3> row = implicit_->coupling->row(body_of(n), place);
-        for (std::size_t k = 0; k < row.size(); ++k) first[k].noalias() += row[k] * impulse;
-    }
+    /// Row of RigidBodyTable of a node of a rigid body.
     std::size_t body_of(Index n) const {
         return static_cast<std::size_t>(rigid_->nodes.row(node_[static_cast<std::size_t>(n)]));
     }
-    /// Of a node of the region among the touched ones of an implicit body, or no_index.
-    Index deforming_place(Index n) const {
-        const Index row = implicit_->row(node_[static_cast<std::size_t>(n)], rigid_->nodes);
-        return row == no_index ? no_index : implicit_->coupling->place[static_cast<std::size_t>(row)];
-    }
+
+private:
     Mat3 coupling_of(const LumpedContact& a, const LumpedContact& b, bool deformed) const {
         Mat3 sum = Mat3::Zero();
         Real lumped = 0;
         for (std::size_t k = 0; k < static_cast<std::size_t>(a.node_count); ++k) {
             const Index place = deforming_place(a.node[k]);
+            Mat3 in_frame = Mat3::Zero();
             for (std::size_t l = 0; l < static_cast<std::size_t>(b.node_count); ++l) {
                 const Index other = deforming_place(b.node[l]);
-                if (place == no_index && other == no_index) {
+                if (place == no_index && other == no_index)
                     lumped += clusters_.coupling_of_nodes(a, k, b, l);
-                } else if (deformed && place != no_index && other != no_index &&
-                           body_of(a.node[k]) == body_of(b.node[l])) {
-                    const std::span<const PaddedMat3> row = implicit_->coupling->row(body_of(b.node[l]), other);
-                    sum += a.weight[k] * b.weight[l] * row[static_cast<std::size_t>(place)].topRows<3>();
-                }
+                else if (deformed && place != no_index && other != no_index && body_of(a.node[k]) == body_of(b.node[l]))
+                    in_frame += b.weight[l] * implicit_->coupling->block_in_frame(body_of(b.node[l]), place, other);
             }
+            if (deformed && place != no_index)
+                sum += a.weight[k] * implicit_->coupling->to_world(body_of(a.node[k]), in_frame);
         }
         return sum + lumped * Mat3::Identity();
     }

@@ -11,10 +11,12 @@
 #include "components/ragged.h"
 #include "components/region_table.h"
 #include "systems/solver/coloured/order_region.h"
-#include "systems/solver/equations/newton_pool.h"
+#include "systems/solver/equations/body_equations.h"
+#include "systems/solver/equations/pool.h"
 #include "systems/solver/inputs/solver_settings.h"
 #include "systems/solver/local/joint_law.h"
 #include "systems/solver/local/rigid_part.h"
+#include "systems/solver/operators/contact_runs.h"
 #include "systems/solver/operators/lumped_operator.h"
 
 namespace skerry {
@@ -93,7 +95,9 @@ struct RegionMemory {
     // by task
     Column<RegionTask> task;
     LargeRegions large;
-    NewtonPool newton;                 // of regions that touch rigid bodies
+    // of regions that touch rigid bodies
+    Pool<BodyEquations> newton;
+    Pool<ContactRuns> runs;
     std::atomic<bool> pushed = false;  // some region wrote push_out in this step
 
     /// Of the columns by contact and by node.

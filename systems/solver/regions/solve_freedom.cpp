@@ -27,7 +27,7 @@ struct FreedomRegion {
     Index base;
 
     FreedomOperator operator_for(const RegionStage& stage) const {
-        return {memory, stage.settings.friction, scale, walk, stage.memory.newton};
+        return {memory, stage.settings.friction, scale, walk, stage.memory.newton, stage.memory.runs};
     }
 };
 

@@ -1,4 +1,4 @@
-// Memory for Newton steps of regions that are solved at the same time.
+// Memory of regions that are solved at the same time.
 #pragma once
 
 #include <atomic>
@@ -6,19 +6,18 @@
 #include <utility>
 #include <vector>
 
-#include "systems/solver/equations/body_equations.h"
-
 namespace skerry {
 
 /// As many as there are workers. Which one a region gets changes nothing of what it comes to.
-class NewtonPool {
+template <class Memory>
+class Pool {
     struct Slot {
         std::atomic<bool> taken = false;
-        BodyEquations equations;
+        Memory memory;
     };
 
 public:
-    /// Gives its equations back.
+    /// Gives its memory back.
     class Lease {
     public:
         Lease() = default;
@@ -32,13 +31,14 @@ public:
             if (slot_ != nullptr) slot_->taken.store(false, std::memory_order_release);
         }
         explicit operator bool() const { return slot_ != nullptr; }
-        BodyEquations& operator*() const { return slot_->equations; }
+        Memory& operator*() const { return slot_->memory; }
+        Memory* operator->() const { return &slot_->memory; }
 
     private:
         Slot* slot_ = nullptr;
     };
 
-    /// For this many workers. Not while equations are lent.
+    /// For this many workers. Not while memory is lent.
     void make_room(std::size_t workers) {
         while (slots_.size() < workers) slots_.push_back(std::make_unique<Slot>());
     }
