@@ -26,7 +26,7 @@ struct LumpedContact {
 };
 
 /// start + sum of weight times velocity of the moving nodes.
-inline Vec4 add_node_velocities(const LumpedContact& contact, const Vec4* velocity, Vec4 start) {
+[[gnu::always_inline]] inline Vec4 add_node_velocities(const LumpedContact& contact, const Vec4* velocity, Vec4 start) {
     for (Index a = 0; a < contact.node_count; ++a) start += contact.weight[a] * velocity[contact.node[a]];
     return start;
 }

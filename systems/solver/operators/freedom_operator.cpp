@@ -55,14 +55,16 @@ void FreedomOperator::list_runs() const {
 }
 
 void FreedomOperator::for_each_in_sweep(auto&& of) {
-    if (!runs_) {
-        for (Index i = 0; i < size(); ++i) of(i);
-        return;
+    // one loop for both: a second copy of a step is too much for the compiler to put in place
+    const ContactRuns::Run all{0, size(), 0, 0};
+    std::span<const ContactRuns::Run> runs(&all, 1);
+    if (runs_) {
+        list_runs();
+        runs = runs_->runs();
     }
-    list_runs();
-    for (const ContactRuns::Run& run : runs_->runs()) {
+    for (const ContactRuns::Run& run : runs) {
         for (Index i = run.begin; i < run.end; ++i) of(i);
-        runs_->spread(run, walk_, memory_.velocity.data());
+        if (runs_) runs_->spread(run, walk_, memory_.velocity.data());
     }
 }
 
