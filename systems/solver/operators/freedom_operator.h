@@ -86,11 +86,11 @@ public:
     Real sweep_cost() const;                                    // ns, of the order of
 
     /// The split impulse of a contact (push_contact.h): along its normal.
-    Vec4 velocity_at(Index i, const Vec4* velocity) const {
+    [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
     }
     /// The same impulse on what does not deform, nor does what it pushes.
-    void push(Index i, const Vec4& impulse, Vec4* velocity) const {
+    [[gnu::always_inline]] void push(Index i, const Vec4& impulse, Vec4* velocity) const {
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
