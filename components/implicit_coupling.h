@@ -14,8 +14,8 @@ namespace skerry {
 struct ImplicitCoupling {
     Ragged<Index> nodes;  // by row of RigidBodyTable: rows of NodeTable that contacts touch, ascending
     // By row of RigidBodyTable:
-    // 1/kg, what impulses on its touched nodes give them, in the frame of the mesh: a symmetric matrix, column by column,
-    // three numbers a node. Kept by the bodies themselves
+    // 1/kg, what impulses on its touched nodes give them, in the frame of the mesh: a symmetric matrix, column by
+    // column, three numbers a node. Kept by the bodies themselves
     Column<std::span<const Real>> response;
     Column<Mat3> turn, impulse_turn;  // velocities from the frame of the mesh to the world; impulses back, times theta
     Column<Index> place;              // by row of ImplicitNodeTable: among the touched nodes of the body, or no_index

@@ -53,9 +53,9 @@ public:
     /// What an impulse on a node gives to others by respond(), 1/kg: a column, by place.
     /// Calculated once for a factor, kept while there is room.
     std::span<const Mat3> column(std::size_t node);
-    /// What impulses on some nodes give to them by respond(), 1/kg: a symmetric matrix, column by column, three numbers a
-    /// node. `nodes` ascend, and begin with `first` for the first of the body. Kept while the same are asked for; zero
-    /// without a factor.
+    /// What impulses on some nodes give to them by respond(), 1/kg: a symmetric matrix, column by column, three numbers
+    /// a node. `nodes` ascend, and begin with `first` for the first of the body. Kept while the same are asked for;
+    /// zero without a factor.
     std::span<const Real> responses(std::span<const Index> nodes, Index first);
     /// Columns that are kept, at most.
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // bytes

@@ -53,8 +53,8 @@ std::span<const Real> SpreadImpulses::velocities(std::size_t numbers) {
     return sum_;
 }
 
-void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows) {
-    constexpr std::size_t most_nodes = 24;  // of a run: fewer are spread more often, more move each other more often
+void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows,
+                       std::size_t most_nodes) {
     run_.clear();
     patch_.clear();
     node_.clear();
@@ -97,8 +97,7 @@ void ContactRuns::list_patches(std::span<const LumpedContact> contact, const Thr
         std::size_t end = begin;
         for (; end < node_.size() && walk.body_of(node_[end]) == body; ++end)
             entry_[static_cast<std::size_t>(node_[end])] = static_cast<Index>(end);
-        patch_.push_back(
-            {begin, end - begin, block_.size(), body, node_[begin] - walk.deforming_place(node_[begin])});
+        patch_.push_back({begin, end - begin, block_.size(), body, node_[begin] - walk.deforming_place(node_[begin])});
         add_blocks(walk, patch_.back());
         begin = end;
     }

@@ -1,7 +1,7 @@
 // Sweeps over contacts on bodies that deform: an impulse on a node moves all touched nodes of its body, but only those
 // that the next contacts name have to move at once (docs/methods/implicit_bodies.md 4). Runs are consecutive contacts
-// that name few nodes. What the contacts of a run do to other nodes is summed up by node, and done when the run is over:
-// the same sweep, to rounding.
+// that name few nodes. What the contacts of a run do to other nodes is summed up by node, and done when the run is
+// over: the same sweep, to rounding.
 #pragma once
 
 #include <array>
@@ -47,7 +47,9 @@ public:
     /// Of another region: nothing is listed.
     void start() { run_.clear(); }
     bool listed() const { return !run_.empty(); }
-    void list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows);
+    /// `most_nodes`: of a run. Fewer are spread more often, more move each other more often.
+    void list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows,
+              std::size_t most_nodes = 24);
     std::span<const Run> runs() const { return run_; }
     /// An impulse of contact `i` in its run, but for rigid bodies.
     void apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& walk, const Vec4& impulse,
@@ -83,11 +85,11 @@ private:
 
     Column<Run> run_;
     Column<Patch> patch_;
-    Column<Index> node_;                 // rows of the region, ascending in a patch
-    Column<Vec4> pending_;               // N s, by node_
-    Column<std::array<Near, 4>> near_;   // by contact
-    Column<PaddedMat3> block_;           // 1/kg, world
-    Column<Index> entry_;                // by row of the region: in node_, if that agrees
+    Column<Index> node_;                // rows of the region, ascending in a patch
+    Column<Vec4> pending_;              // N s, by node_
+    Column<std::array<Near, 4>> near_;  // by contact
+    Column<PaddedMat3> block_;          // 1/kg, world
+    Column<Index> entry_;               // by row of the region: in node_, if that agrees
     Column<Vec4> sum_;
     SpreadImpulses impulses_;
     Real moved_ = 0;

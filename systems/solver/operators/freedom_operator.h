@@ -142,7 +142,7 @@ private:
     ThroughGroups walk_;
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
-    RunPool::Lease runs_;  // where something deforms
+    RunPool::Lease runs_;            // where something deforms
     bool inertia_is_known_ = false;  // to the equations, from the first steps on
 };
 

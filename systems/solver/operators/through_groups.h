@@ -21,8 +21,8 @@ public:
         : clusters_(clusters, node), implicit_(&implicit), rigid_(&rigid), node_(node) {}
 
     bool any_deforms() const { return implicit_->any(); }
-    /// What an impulse of a contact does but for nodes that deform a body, whose shares are added to `sum`, by node of the
-    /// region, for SpreadImpulses.
+    /// What an impulse of a contact does but for nodes that deform a body, whose shares are added to `sum`, by node of
+    /// the region, for SpreadImpulses.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
             if (deforming_place(contact.node[a]) == no_index)
