@@ -173,6 +173,44 @@ TEST_CASE("an implicit body that is held responds as the matrix of its free node
     CHECK(std::ranges::equal(stiff.column(7), never.column(7)));
 }
 
+TEST_CASE("responses of touched nodes are the columns of those nodes, whatever was asked for before",
+          "[dynamics][implicit]") {
+    const ElasticBody body(jittered_box({2, 2, 2}, 0.1, 0.2, 2), stiff_rubber());
+    StiffBody stiff = stiff_body_of(body);
+    constexpr Index first = 100;  // row of the body's first node
+    const auto check = [&](const std::vector<Index>& nodes) {
+        const std::span<const Real> found = stiff.responses(nodes, first);
+        const std::size_t numbers = 3 * nodes.size();
+        REQUIRE(found.size() == numbers * numbers);
+        for (std::size_t from = 0; from < nodes.size(); ++from) {
+            const std::span<const Mat3> column = stiff.column(static_cast<std::size_t>(nodes[from] - first));
+            for (std::size_t to = 0; to < nodes.size(); ++to) {
+                const Mat3& block =
+                    column[static_cast<std::size_t>(stiff.place(static_cast<std::size_t>(nodes[to] - first)))];
+                for (std::size_t c = 0; c < 3; ++c)
+                    for (std::size_t r = 0; r < 3; ++r) {
+                        const std::size_t at = (3 * from + c) * numbers + 3 * to + r,
+                                          back = (3 * to + r) * numbers + 3 * from + c;
+                        CHECK(std::abs(found[at] - block(static_cast<Index>(r), static_cast<Index>(c))) <=
+                              1e-12 * block.norm());
+                        CHECK(found[at] == found[back]);
+                    }
+            }
+        }
+    };
+    REQUIRE(stiff.prepare(1, 1e-4));
+    const std::vector<Index> some{first + 1, first + 7, first + 20}, others{first, first + 7},
+        more{first, first + 1, first + 7, first + 26};
+    for (const std::vector<Index>* nodes : {&some, &some, &others, &more, &some}) check(*nodes);
+    REQUIRE(stiff.prepare(1, 1e-6));  // another factor: nothing of the old one
+    check(some);
+    std::vector<Real> inverse_mass(stiff.size(), 1);
+    for (const std::size_t node : {2u, 5u, 7u}) inverse_mass[node] = 0;
+    stiff.hold(inverse_mass);
+    REQUIRE(stiff.prepare(1, 1e-6));
+    check(some);
+}
+
 TEST_CASE("a matrix that is not positive definite has no factor", "[dynamics][implicit]") {
     const ElasticBody body(jittered_box({1, 1, 1}, 0.1, 0, 1), stiff_rubber());
     StiffBody stiff = stiff_body_of(body);
