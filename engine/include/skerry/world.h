@@ -166,8 +166,8 @@ public:
     /// From now on it moves as another kind of body does, under the same handle, name and settings, and counts as added
     /// last. Centre of mass, momentum and angular momentum stay, to rounding; a deformable and an implicit body take
     /// each other's shape and velocities, a rigid one has the shape of its mesh, nearest to where the nodes were: what
-    /// deformed and shook it is gone. What its material remembers (losses) is forgotten. Refused: `automatic`; a body
-    /// that is attached or has a joint, or touches itself and shall be rigid or implicit.
+    /// deformed and shook it is gone. What begins to relax (losses) does so as if it had long had its shape. Refused:
+    /// `automatic`; a body that is attached or has a joint, or touches itself and shall be rigid or implicit.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// External forces on the nodes, kept until set again, N.
     void set_loads(BodyHandle body, std::span<const Vec3> load);

@@ -8,6 +8,7 @@
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
 #include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 
@@ -123,6 +124,23 @@ void copy_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
+/// Nothing is left to relax in the body's present shape, as if it had been held for long.
+void relax_fully(Model& model, std::size_t body) {
+    const Range blocks = model.bodies.blocks[body];
+    const ElementInputs elements = model.all_elements();
+    std::vector<Mat3> strain(static_cast<std::size_t>(blocks.size()) * element_lanes);
+    kernels().element_strains(elements, blocks, model.nodes.position, strain);
+    for (Index b = blocks.begin; b < blocks.end; ++b) {
+        if (!elements.material_of(static_cast<std::size_t>(b)).relaxes()) continue;
+        ElementStrain& taken = model.elements.viscous_strain[static_cast<std::size_t>(b)];
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const Mat3& E = strain[static_cast<std::size_t>(b - blocks.begin) * element_lanes + l];
+            const std::array<Real, 7> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0), E.trace()};
+            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = entry[i];
+        }
+    }
+}
+
 /// Shape, motion and loads of `before`, of which `after` is all that its kind can have.
 void take_state(WorldState& world, std::size_t before, std::size_t after) {
     Model& model = world.model;
@@ -141,6 +159,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     copy_rows(model.nodes.velocity, from, to);
     if (!model.has_frame(after)) {
         give_nodes_momenta(model, after, whole);
+        relax_fully(model, after);
         model.bodies.stable_step[after] =
             look_at_stable_step(model, after, model.nodes.position, world.scratch.stiffness_sum);
         return;
