@@ -50,7 +50,8 @@ struct Problem {
     void push(const Walk& walk) {
         RegionInputs pressed = inputs;
         pressed.gap = gap;
-        solve_push<Walk>({pressed, settings, stage.h, out, data}, walk, {row, memory.contact, memory.velocity},
+        solve_push<Walk>({pressed, settings, stage.h, out, data}, walk,
+                         {row, memory.contact, memory.velocity, settings.tolerance},
                          push_memory(stage, 0, row.size(), memory.scratch));
     }
 

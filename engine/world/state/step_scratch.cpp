@@ -36,6 +36,9 @@ StepParameters step_parameters(const Settings& settings) {
     // forward Euler drifts with velocities that no contact has seen: there is nothing to hold it to
     step.collision.continuous = settings.continuous_collision && settings.integrator != Integrator::forward_euler;
     step.solver = solver_settings(settings);
+    // below what keeps a pile that looks still from rest, and no more than a warm start gives at rest anyway
+    constexpr Real still_tolerance = 1e-5;
+    if (step.sleep.own_limits) step.solver.still_tolerance = still_tolerance;
     return step;
 }
 

@@ -107,6 +107,10 @@ struct RegionInputs {
     RigidInputs rigid{};                     // bodies that move as a whole; none by default
     ImplicitInputs implicit{};               // those of them that deform; none by default
     std::span<const JointBlock> joints{};    // of rigid bodies; none by default
+    // rows of BodyTable that a contact joins, or no_index; and by body. Empty: nobody knows what is still
+    std::span<const Index> first_body{}, second_body{};
+    std::span<const BodyKind> body_kind{};
+    std::span<const Real> still_time{};  // s
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
@@ -131,7 +135,11 @@ struct RegionInputs {
                 .cluster_kick = binder.read(cluster_kick),
                 .rigid = RigidInputs::bind(binder, node, body, rigid),
                 .implicit = ImplicitInputs::bind(binder, body, rigid, implicit, coupling),
-                .joints = binder.read(joints.block)};
+                .joints = binder.read(joints.block),
+                .first_body = binder.read(contact.first_body),
+                .second_body = binder.read(contact.second_body),
+                .body_kind = binder.read(body.kind),
+                .still_time = binder.read(body.still_time)};
     }
 };
 

@@ -11,6 +11,7 @@ struct SolverSettings {
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;       // e_nat, docs/methods/errors.md 2
+    Real still_tolerance = 1;    // of regions whose bodies are all still, where it is less (docs/methods/errors.md 7)
     Index max_iterations = 200;  // sweeps of a region
     // do exactly max_iterations sweeps: with pgs, separate and global are then bitwise the same
     bool fixed_iterations = false;

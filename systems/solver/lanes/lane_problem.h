@@ -31,7 +31,8 @@ struct LaneProblem {
     T diagonal[K];                 // D of docs/methods/contact.md 2.1, 1/kg; zero for a place that is not used
     T inverse_diagonal[K];         // kg; likewise
     T friction[K];
-    T scale;  // sqrt(J), of e_nat
+    T scale;      // sqrt(J), of e_nat
+    T tolerance;  // of e_nat
 };
 
 /// One region as a lane takes it.
@@ -40,7 +41,7 @@ struct LaneRegion {
     std::span<const Vec4> free_velocity;  // q by contact, m/s
     std::span<Vec4> impulse;              // N s
     std::size_t node_count;
-    Real scale;
+    Real scale, tolerance;
 };
 
 inline void set_lane(Real& all, int, Real value) {
@@ -97,6 +98,7 @@ template <class T, int K>
 void fill_lane(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
     fill_coupling(region, lane, problem);
     set_lane(problem.scale, lane, region.scale);
+    set_lane(problem.tolerance, lane, region.tolerance);
     for (std::size_t i = 0; i < region.contact.size(); ++i) {
         const LumpedContact& contact = region.contact[i];
         if (contact.node_count == 0) continue;  // no impulse of it could move anything

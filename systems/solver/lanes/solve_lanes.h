@@ -114,7 +114,8 @@ public:
         return sweep_lanes<T, K>(problem_, previous_, swept_, relaxation);
     }
     T error() const { return lane_error<T, K>(problem_); }
-    LaneMask<T> suggests_check(const T& change, Real tolerance) const {
+    /// `tolerance`: a number, or one by lane.
+    LaneMask<T> suggests_check(const T& change, const auto& tolerance) const {
         return change <= (tolerance * tolerance) * (problem_.scale * problem_.scale);
     }
     void remember() { std::copy_n(problem_.impulse, K, previous_); }
@@ -145,7 +146,7 @@ struct LaneOutcome {
 template <class T, int K>
 class LaneTest {
 public:
-    LaneTest(LaneOperator<T, K>& op, Real tolerance) : op_(op), tolerance_(tolerance) {}
+    LaneTest(LaneOperator<T, K>& op, const T& tolerance) : op_(op), tolerance_(tolerance) {}
 
     bool ends_after_sweep(Index iteration, const T& change, Index) {
         const T zero{};
@@ -154,13 +155,13 @@ public:
             all_due ? op_.swept() : LaneMask<T>(op_.swept() & op_.suggests_check(change, tolerance_));
         if (!any_lane(due)) return false;
         const T error = op_.error();
-        const LaneMask<T> solved = due & (error <= zero + tolerance_);
+        const LaneMask<T> solved = due & (error <= tolerance_);
         outcome_.solved = outcome_.solved | solved;
         outcome_.error = solved ? error : outcome_.error;
         outcome_.iterations = solved ? zero + static_cast<Real>(iteration) : outcome_.iterations;
         constexpr Real infinite = std::numeric_limits<Real>::infinity();
         // those that are left are neither solved nor not finite
-        op_.keep_sweeping(op_.swept() & !(due & !((error > zero + tolerance_) & (error < zero + infinite))));
+        op_.keep_sweeping(op_.swept() & !(due & !((error > tolerance_) & (error < zero + infinite))));
         if (!any_lane(op_.swept())) return true;
         if (all_due) check_ = next_check(iteration);
         return false;
@@ -169,19 +170,19 @@ public:
 
 private:
     LaneOperator<T, K>& op_;
-    Real tolerance_;
+    T tolerance_;
     LaneOutcome<T> outcome_{};
     Index check_ = 1;
 };
 
-/// Sweeps the `active` lanes until each is solved, or for max_iterations sweeps. A lane that is not solved then has no
-/// useful impulse.
+/// Sweeps the `active` lanes until each is solved to its tolerance, or for max_iterations sweeps. A lane that is not
+/// solved then has no useful impulse.
 template <class T, int K>
-LaneOutcome<T> solve_lanes(LaneProblem<T, K>& problem, const LaneMask<T>& active, Real tolerance, Index max_iterations,
+LaneOutcome<T> solve_lanes(LaneProblem<T, K>& problem, const LaneMask<T>& active, Index max_iterations,
                            Real relaxation) {
     static_assert(SweptOperator<LaneOperator<T, K>>);
     LaneOperator<T, K> op(problem, active);
-    LaneTest<T, K> test(op, tolerance);
+    LaneTest<T, K> test(op, problem.tolerance);
     AcceleratedSweeps<LaneOperator<T, K>, LaneTest<T, K>> sweeps(op, test, relaxation);
     sweeps.run_to(max_iterations);
     return test.outcome();

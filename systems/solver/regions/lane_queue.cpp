@@ -29,11 +29,10 @@ void LaneQueue::solve(std::size_t size_class) {
     std::array<LaneResult, element_lanes> result;
     for (std::size_t l = 0; l < batch.count; ++l) {
         const LumpedMemory& memory = batch.waiting[l].region.memory;
-        lane[l] = {memory.contact, memory.workspace[free_velocity_slot], memory.impulse, memory.node.size(),
-                   batch.waiting[l].region.scale};
+        lane[l] = {memory.contact,     memory.workspace[free_velocity_slot], memory.impulse,
+                   memory.node.size(), batch.waiting[l].region.scale,        batch.waiting[l].region.tolerance};
     }
-    solve_lane_batch(size_class, {lane.data(), batch.count}, settings.tolerance, settings.max_iterations,
-                     settings.relaxation, result);
+    solve_lane_batch(size_class, {lane.data(), batch.count}, settings.max_iterations, settings.relaxation, result);
     for (std::size_t l = 0; l < batch.count; ++l) {
         RegionInOrder& region = batch.waiting[l].region;
         RegionOutcome outcome;

@@ -17,8 +17,9 @@ void RegionMemory::make_room_for(std::size_t contacts, std::size_t region_nodes,
     for (std::size_t slot = 0; slot < workspace_slots(settings.method); ++slot) make_room(workspace[slot], contacts);
 }
 
-RegionOutcome outcome_of(const SolveResult& result) {
-    RegionStatus status = result.converged ? RegionStatus::converged : RegionStatus::iteration_limit;
+RegionOutcome outcome_of(const SolveResult& result, const SolverSettings& settings) {
+    const bool converged = result.converged || result.error <= settings.tolerance;
+    RegionStatus status = converged ? RegionStatus::converged : RegionStatus::iteration_limit;
     if (!std::isfinite(result.error)) status = RegionStatus::not_finite;
     return {.iterations = result.iterations, .error = result.error, .status = status};
 }
@@ -33,8 +34,21 @@ void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regi
     regions.push_work[number] = outcome.push_work;
 }
 
-SolveLimits limits_of(const SolverSettings& settings) {
-    return {settings.tolerance, settings.max_iterations, settings.fixed_iterations, settings.relaxation};
+SolveLimits limits_of(const SolverSettings& settings, Real tolerance) {
+    return {tolerance, settings.max_iterations, settings.fixed_iterations, settings.relaxation};
+}
+
+Real tolerance_of(const RegionStage& stage, std::span<const Index> row) {
+    const RegionInputs& inputs = stage.inputs;
+    const SolverSettings& settings = stage.settings;
+    if (!(settings.still_tolerance < settings.tolerance) || inputs.still_time.empty()) return settings.tolerance;
+    // nobody counts for how long a mesh collider has been still: what it carries along is not
+    const auto is_still = [&](Index body) {
+        return body == no_index || inputs.body_kind[body] == BodyKind::kinematic || inputs.still_time[body] > 0;
+    };
+    const bool all = std::ranges::all_of(
+        row, [&](Index i) { return is_still(inputs.first_body[i]) && is_still(inputs.second_body[i]); });
+    return all ? settings.still_tolerance : settings.tolerance;
 }
 
 LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node) {

@@ -36,12 +36,16 @@ struct RegionOutcome {
     Real push_work = 0;   // J
 };
 
-/// Of what a method came to.
-RegionOutcome outcome_of(const SolveResult& result);
+/// Of what a method came to: whoever ends within settings.tolerance has converged.
+RegionOutcome outcome_of(const SolveResult& result, const SolverSettings& settings);
 /// Puts an outcome into the region's row.
 void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regions);
 
-SolveLimits limits_of(const SolverSettings& settings);
+SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
+
+/// What a region with these contacts is solved to: closer where all that it touches is still, so that what the solver
+/// leaves does not keep it from rest (docs/methods/errors.md 7).
+Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
 
 /// One region, with its part of the memory in the order of the walk.
 template <RegionWalk Walk>
@@ -51,7 +55,8 @@ struct LoadedRegion {
     Walk walk{};
     LumpedMemory memory{};
     LoadSums sums{};
-    Real scale = 0;  // sqrt(J), of e_nat
+    Real scale = 0;      // sqrt(J), of e_nat
+    Real tolerance = 0;  // of this region
 
     Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
 };
@@ -95,7 +100,8 @@ void load_contacts(const RegionStage& stage, LoadedRegion<Walk>& region, Numberi
         }
         return sums;
     });
-    region.scale = error_scale(region.sums, stage.inputs.gravity, stage.h, stage.settings.tolerance);
+    region.tolerance = tolerance_of(stage, region.row);
+    region.scale = error_scale(region.sums, stage.inputs.gravity, stage.h, region.tolerance);
 }
 
 template <RegionWalk Walk>
@@ -121,9 +127,9 @@ void take_warm_start(const RegionStage& stage, const LoadedRegion<Walk>& region)
 /// A warm start within the tolerance needs no sweep: true, with the outcome. One that is so far off that zero is nearer
 /// gives way to zero.
 template <ContactOperator Op>
-bool start_from_warm_impulse(Op& op, const SolverSettings& settings, RegionOutcome& outcome) {
+bool start_from_warm_impulse(Op& op, const SolverSettings& settings, Real tolerance, RegionOutcome& outcome) {
     const Real error = op.error();
-    if (error <= settings.tolerance && settings.certify_warm_start) {
+    if (error <= tolerance && settings.certify_warm_start) {
         outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
         return true;
     }
@@ -156,7 +162,7 @@ bool start_region(const RegionStage& stage, const LoadedRegion<Walk>& region, Re
     if (settings.warm_start == WarmStart::off) return false;
     take_warm_start(stage, region);
     LumpedOperatorBy<Walk> op = operator_of(stage, region);
-    return start_from_warm_impulse(op, settings, outcome);
+    return start_from_warm_impulse(op, settings, region.tolerance, outcome);
 }
 
 /// Write back: velocities and impulses. Returns what the region dissipated, J. Inlined by order, as is finish_region:
@@ -184,6 +190,7 @@ struct PushedRegion {
     std::span<const Index> row;
     std::span<const LumpedContact> contact;
     std::span<const Vec4> velocity;
+    Real tolerance;
 };
 
 /// Frictionless pseudo velocities p with u_n + p_n >= min(recovery |gap| / h, recovery_speed) where the gap is below
@@ -213,7 +220,7 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
         }
         return size;
     });
-    const Real small = settings.tolerance * settings.tolerance * asked;
+    const Real small = region.tolerance * region.tolerance * asked;
     for (Index iteration = 1; iteration <= settings.max_iterations; ++iteration) {
         const Real change = walk.template sum<Real>(contact.size(), [&](std::size_t begin, std::size_t end) {
             Real size = 0;
@@ -243,7 +250,8 @@ template <RegionWalk Walk>
                                                  const PushMemory& push, RegionOutcome& outcome) {
     outcome.dissipated = write_back(stage, region);
     if (outcome.status == RegionStatus::not_finite) return;
-    if (!solve_push(stage, region.walk, {region.row, region.memory.contact, region.memory.velocity}, push)) return;
+    const PushedRegion pushed{region.row, region.memory.contact, region.memory.velocity, region.tolerance};
+    if (!solve_push(stage, region.walk, pushed, push)) return;
     region.walk.nodes(push.velocity.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)
             stage.out.push_out[region.memory.node[n]] = push.velocity[n].template head<3>();

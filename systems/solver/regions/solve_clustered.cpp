@@ -34,7 +34,8 @@ RegionOutcome solve_clustered(const RegionStage& stage, std::span<const Index> r
     RegionOutcome outcome;
     if (!start_region(stage, region, outcome)) {
         LumpedOperatorBy<ThroughClusters> op = operator_of(stage, region);
-        outcome = outcome_of(run_method(stage.settings.method, op, limits_of(stage.settings)));
+        const SolveLimits limits = limits_of(stage.settings, region.tolerance);
+        outcome = outcome_of(run_method(stage.settings.method, op, limits), stage.settings);
     }
     finish_region(stage, region, outcome);
     return outcome;

@@ -24,6 +24,7 @@ struct FreedomRegion {
     ThroughGroups walk;
     LoadSums sums;
     Real scale;  // sqrt(J), of e_nat
+    Real tolerance;
     Index base;
 
     FreedomOperator operator_for(const RegionStage& stage) const {
@@ -51,6 +52,8 @@ public:
                                         stage.inputs.implicit, stage.inputs.rigid, node_),
                   .sums = {},
                   .scale = 0,
+                  // what joints lead is not looked at
+                  .tolerance = joint.empty() ? tolerance_of(stage, row) : stage.settings.tolerance,
                   .base = base},
           number_(number) {}
 
@@ -68,7 +71,7 @@ public:
                                      add_node_velocities(contact, region_.memory.velocity.data(), Vec4::Zero()));
             region_.sums.add(contact, stage_.settings.friction, u);
         }
-        region_.scale = error_scale(region_.sums, stage_.inputs.gravity, stage_.h, stage_.settings.tolerance);
+        region_.scale = error_scale(region_.sums, stage_.inputs.gravity, stage_.h, region_.tolerance);
         return region_;
     }
 
@@ -242,7 +245,7 @@ bool start(const RegionStage& stage, const FreedomRegion& region, FreedomOperato
     }
     if (settings.warm_start == WarmStart::off) return false;
     take_warm_impulses(stage, region, op);
-    return start_from_warm_impulse(op, settings, outcome);
+    return start_from_warm_impulse(op, settings, region.tolerance, outcome);
 }
 
 /// Solves again with what joints would be off by at the end of the step, where that is more than the tolerance
@@ -257,10 +260,11 @@ void hold_joints_at_end(const RegionStage& stage, const FreedomRegion& region, F
             correct_joint(stage, stage.inputs.joints[static_cast<std::size_t>(region.joint[k])], region.memory.velocity,
                           {data.contact[at], data.rigid_part[at], data.joint_law[at - data.contact_rows]});
     }
-    const Real small = stage.settings.tolerance * region.scale;
+    const Real small = region.tolerance * region.scale;
     if (off <= small * small && !stage.settings.fixed_iterations) return;
     const Index before = outcome.iterations;
-    outcome = outcome_of(run_method(SolverMethod::ags, op, limits_of(stage.settings)));
+    outcome =
+        outcome_of(run_method(SolverMethod::ags, op, limits_of(stage.settings, region.tolerance)), stage.settings);
     outcome.iterations += before;
 }
 
@@ -397,7 +401,7 @@ bool push(const RegionStage& stage, const FreedomRegion& region, const FreedomOp
         const Real mobility = region.memory.part[at].along_normal;
         if (mobility > 0) asked += approach * approach / mobility;
     }
-    const Real small = settings.tolerance * settings.tolerance * asked;
+    const Real small = region.tolerance * region.tolerance * asked;
     const PushedJoints joints(region, op);
     for (Index iteration = 1; iteration <= settings.max_iterations; ++iteration) {
         Real size = joints.sweep(memory.velocity);
@@ -463,8 +467,9 @@ RegionOutcome solve_freedom(const RegionStage& stage, std::span<const Index> row
     FreedomOperator op = region.operator_for(stage);
     RegionOutcome outcome;
     if (!start(stage, region, op, outcome))
-        outcome = outcome_of(
-            run_method(joints.empty() ? stage.settings.method : SolverMethod::ags, op, limits_of(stage.settings)));
+        outcome = outcome_of(run_method(joints.empty() ? stage.settings.method : SolverMethod::ags, op,
+                                        limits_of(stage.settings, region.tolerance)),
+                             stage.settings);
     if (!joints.empty() && outcome.status != RegionStatus::not_finite) hold_joints_at_end(stage, region, op, outcome);
     write_solution(stage, region, outcome);
     if (outcome.status != RegionStatus::not_finite) push_out(stage, region, op, outcome);

@@ -13,7 +13,8 @@ RegionOutcome solve_by_colour(const RegionStage& stage, std::span<const Index> r
     RegionOutcome outcome;
     if (!start_region(stage, region, outcome)) {
         ColouredOperator op = operator_of(stage, region);
-        outcome = outcome_of(run_method(stage.settings.method, op, limits_of(stage.settings)));
+        const SolveLimits limits = limits_of(stage.settings, region.tolerance);
+        outcome = outcome_of(run_method(stage.settings.method, op, limits), stage.settings);
     }
     finish_region(stage, region, outcome);
     return outcome;

@@ -23,7 +23,7 @@ void allow_freezing(const RegionStage& stage, RegionInOrder& region) {
     if (!settings.freeze_contacts || settings.fixed_iterations) return;
     const std::size_t first = static_cast<std::size_t>(region.base), count = region.row.size();
     constexpr Real worth = 0.1;
-    const Real share = worth * settings.tolerance * region.scale;
+    const Real share = worth * region.tolerance * region.scale;
     region.memory.still = share * share / static_cast<Real>(count);
     region.memory.quiet_sweeps = stage.memory.quiet_sweeps.span().subspan(first, count);
     region.memory.last_velocity = stage.memory.last_velocity.span().subspan(first, count);
@@ -54,9 +54,9 @@ RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, 
 
 RegionOutcome sweep_region(const RegionStage& stage, RegionInOrder& region) {
     const SolverSettings& settings = stage.settings;
-    const SolveLimits limits = limits_of(settings);
+    const SolveLimits limits = limits_of(settings, region.tolerance);
     if (region.sums.frictionless && settings.frictionless_rows && sweeps_accelerated(settings)) {
-        RegionOutcome outcome = outcome_of(solve_frictionless(stage, region, limits));
+        RegionOutcome outcome = outcome_of(solve_frictionless(stage, region, limits), settings);
         outcome.shortcut = shortcut_frictionless;
         return outcome;
     }
@@ -64,7 +64,7 @@ RegionOutcome sweep_region(const RegionStage& stage, RegionInOrder& region) {
     LumpedOperator op = operator_of(stage, region);
     SolveResult result = run_method(settings.method, op, limits);
     if (op.frozen() > 0 && op.make_feasible()) result = without_freezing(stage, region, limits, op, result);
-    RegionOutcome outcome = outcome_of(result);
+    RegionOutcome outcome = outcome_of(result, settings);
     outcome.frozen = op.frozen();
     return outcome;
 }

@@ -50,7 +50,9 @@ struct SmallRegion {
         }
         scale = std::sqrt(scale);
     }
-    LaneRegion lane(std::vector<Vec4>& out) const { return {contact, free_velocity, out, node_count, scale}; }
+    LaneRegion lane(std::vector<Vec4>& out, Real tolerance) const {
+        return {contact, free_velocity, out, node_count, scale, tolerance};
+    }
 };
 
 template <int K>
@@ -60,19 +62,20 @@ void check_against_twin() {
     LaneProblem<Real8, K> together;
     clear(together);
     LaneMask<Real8> filled{};
+    const auto tolerance_of = [](int lane) { return lane % 3 == 0 ? 1e-4 : 1e-8; };
     for (int l = 0; l < element_lanes; ++l) {
         auto& region = regions[static_cast<std::size_t>(l)];
-        fill_lane(region.lane(region.impulse), l, together);
+        fill_lane(region.lane(region.impulse, tolerance_of(l)), l, together);
         filled[l] = -1;
     }
-    const auto all = solve_lanes<Real8, K>(together, filled, 1e-8, lane_sweep_limit, 1);
+    const auto all = solve_lanes<Real8, K>(together, filled, lane_sweep_limit, 1);
     for (int l = 0; l < element_lanes; ++l) {
         CAPTURE(K, l);
         auto& region = regions[static_cast<std::size_t>(l)];
         LaneProblem<Real, K> alone;
         clear(alone);
-        fill_lane(region.lane(region.impulse), 0, alone);
-        const auto one = solve_lanes<Real, K>(alone, true, 1e-8, lane_sweep_limit, 1);
+        fill_lane(region.lane(region.impulse, tolerance_of(l)), 0, alone);
+        const auto one = solve_lanes<Real, K>(alone, true, lane_sweep_limit, 1);
         REQUIRE((all.solved[l] != 0) == one.solved);
         CHECK(all.iterations[l] == one.iterations);
         CHECK(all.error[l] == one.error);
@@ -113,8 +116,8 @@ TEST_CASE("a region comes out the same whatever shares its batch and however far
         const SmallRegion region(contacts, 7);
         std::vector<Vec4> alone = region.impulse, widest = region.impulse;
         std::array<LaneResult, element_lanes> result, other;
-        const LaneRegion single = region.lane(alone);
-        solve_lane_batch(lane_size_class(contacts), {&single, 1}, 1e-6, 200, 1, result);
+        const LaneRegion single = region.lane(alone, 1e-6);
+        solve_lane_batch(lane_size_class(contacts), {&single, 1}, 200, 1, result);
         REQUIRE(result[0].solved);
         std::vector<SmallRegion> strangers;
         std::vector<std::vector<Vec4>> out;
@@ -124,9 +127,9 @@ TEST_CASE("a region comes out the same whatever shares its batch and however far
         }
         strangers[3].free_velocity[2].setConstant(std::numeric_limits<Real>::quiet_NaN());
         std::vector<LaneRegion> batch;
-        for (std::size_t k = 0; k < 7; ++k) batch.push_back(strangers[k].lane(out[k]));
-        batch.insert(batch.begin() + 5, region.lane(widest));
-        solve_lane_batch(lane_sizes.size() - 1, batch, 1e-6, 200, 1, other);
+        for (std::size_t k = 0; k < 7; ++k) batch.push_back(strangers[k].lane(out[k], 1e-3));
+        batch.insert(batch.begin() + 5, region.lane(widest, 1e-6));
+        solve_lane_batch(lane_sizes.size() - 1, batch, 200, 1, other);
         CHECK(other[5].iterations == result[0].iterations);
         CHECK(other[5].error == result[0].error);
         CHECK(alone == widest);

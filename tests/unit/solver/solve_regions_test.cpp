@@ -18,6 +18,44 @@ SolverSettings exact() {
     return settings;
 }
 
+/// Pairs of sheets, each sheet a body of its own: every third pair is still, of every third one the first sheet alone,
+/// and every third first sheet is still on a collider that moves.
+struct StillSheets {
+    static constexpr int pairs = 18;
+    ContactScene scene;
+    std::vector<Index> first, second;
+    std::vector<BodyKind> kind;
+    std::vector<Real> still_time;
+
+    StillSheets() {
+        for (int k = 0; k < pairs; ++k) {
+            add_sheets(scene, 3 + k % 6, 0.5, static_cast<unsigned>(k));
+            first.resize(scene.stencil.size(), 2 * k);
+            second.resize(scene.stencil.size(), k % 4 == 0 ? no_index : 2 * k + 1);
+            kind.push_back(BodyKind::deformable);
+            kind.push_back(k % 3 == 2 ? BodyKind::kinematic : BodyKind::deformable);
+            still_time.push_back(1e-3);
+            still_time.push_back(k % 3 == 0 ? 0.2 : 0);
+        }
+    }
+    static bool still(int pair) { return pair % 3 != 1 || pair % 4 == 0; }
+    SolvedScene solve(const SolverSettings& settings) const {
+        SolvedScene result = scene.solve(settings);
+        result.impulse = scene.impulse;
+        result.velocity = scene.velocity;
+        RegionInputs inputs = scene.inputs();
+        inputs.first_body = first;
+        inputs.second_body = second;
+        inputs.body_kind = kind;
+        inputs.still_time = still_time;
+        SolverMemory memory;
+        const auto executor = make_executor(Backend::threads, 2);
+        solve_regions(*executor, inputs, settings, scene.h, memory, result.regions,
+                      {result.impulse, result.velocity, result.push_out});
+        return result;
+    }
+};
+
 }  // namespace
 
 TEST_CASE("no contacts are skipped", "[unit][solver]") {
@@ -348,4 +386,42 @@ TEST_CASE("a contact that only a sliver of weight could move is left alone", "[u
     const Index moving = scene.add_node(1, Vec3(0, 0, -1)), fixed = scene.add_node(0, Vec3::Zero());
     scene.touch({{fixed, moving, fixed, fixed}, {1 - 1e-9, 1e-9, 0, 0}}, Vec3::UnitZ(), 0.5);
     CHECK(scene.solve().velocity[0] == Vec3(0, 0, -1));
+}
+
+TEST_CASE("regions whose bodies are all still are solved closer, each with the bits that it has where all are",
+          "[determinism][solver]") {
+    const StillSheets sheets;
+    SolverSettings asked;
+    asked.parallel_region_contacts = 60;
+    SolverSettings closer = asked, mixed = asked;
+    closer.tolerance = mixed.still_tolerance = 1e-7;
+    const SolvedScene loose = sheets.scene.solve(asked), close = sheets.scene.solve(closer);
+    const SolvedScene solved = sheets.solve(mixed);
+    REQUIRE(solved.regions.size() == StillSheets::pairs);
+    int in_lanes = 0;
+    for (int k = 0; k < StillSheets::pairs; ++k) {
+        CAPTURE(k);
+        const auto r = static_cast<std::size_t>(k);
+        const SolvedScene& expected = StillSheets::still(k) ? close : loose;
+        CHECK(solved.regions.error[r] == expected.regions.error[r]);
+        CHECK(solved.regions.error[r] < (StillSheets::still(k) ? 1e-7 : 1e-3));
+        CHECK(solved.regions.iterations[r] == expected.regions.iterations[r]);
+        for (const Index row : solved.regions.contacts[r])
+            CHECK(solved.impulse[static_cast<std::size_t>(row)] == expected.impulse[static_cast<std::size_t>(row)]);
+        in_lanes += solved.regions.shortcut[r] == shortcut_in_lanes;
+    }
+    CHECK(in_lanes > 3);
+    asked.still_tolerance = 1;
+    CHECK(sheets.solve(asked).impulse == loose.impulse);
+}
+
+TEST_CASE("a still region that ends within the tolerance that was asked for has converged", "[unit][solver]") {
+    const StillSheets sheets;
+    SolverSettings settings;
+    settings.still_tolerance = 1e-15;  // out of reach
+    const SolvedScene solved = sheets.solve(settings);
+    for (std::size_t r = 0; r < solved.regions.size(); ++r) {
+        CHECK(solved.regions.status[r] == RegionStatus::converged);
+        CHECK(solved.regions.error[r] < 1e-3);
+    }
 }
