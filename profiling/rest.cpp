@@ -16,9 +16,8 @@ using namespace skerry::profiling;
 
 namespace {
 
-/// CPU seconds of a step, mean over `seconds` in frames.
-double cost_of_step(World& world, double seconds) {
-    constexpr double frame = 1.0 / 60;
+/// CPU seconds of a step, mean over `seconds` in frames of this length.
+double cost_of_step(World& world, double seconds, double frame) {
     const double end = world.time() + seconds;
     std::uint64_t steps = 0;
     const double begin = cpu_seconds();
@@ -59,13 +58,13 @@ Missing missing_weight(World& world) {
     return missing;
 }
 
-void print_row(const std::filesystem::path& file, double lively_until, double most) {
+void print_row(const std::filesystem::path& file, double lively_until, double most, double frame) {
     SceneOverrides overrides;
     overrides.threads = 1;
     overrides.assignments = {"settings.sleep=true"};
     World world = load_scene(file, overrides).world;
-    const double lively = cost_of_step(world, lively_until);
-    while (!all_rest(world) && world.time() < most) cost_of_step(world, 0.1);
+    const double lively = cost_of_step(world, lively_until, frame);
+    while (!all_rest(world) && world.time() < most) cost_of_step(world, 0.1, frame);
     const std::string name = file.stem().string();
     const std::size_t asleep = world.report().asleep, bodies = world.bodies().size();
     if (asleep < bodies) {
@@ -74,7 +73,7 @@ void print_row(const std::filesystem::path& file, double lively_until, double mo
     }
     const double since = world.time();
     std::vector<double> resting;
-    for (int i = 0; i < 5; ++i) resting.push_back(cost_of_step(world, 1));
+    for (int i = 0; i < 5; ++i) resting.push_back(cost_of_step(world, 1, frame));
     const Missing missing = missing_weight(world);
     std::printf("| %s | %zu | %zu | %zu | %.1f | %.1f | %.2f | %.2f %% | %.2g, %.2g |\n", name.c_str(), bodies,
                 world.report().elements, world.contacts().size(), since, 1e6 * lively, 1e6 * median(resting),
@@ -87,13 +86,15 @@ void print_row(const std::filesystem::path& file, double lively_until, double mo
 int main(int argc, char** argv) {
     CLI::App app{"What a step costs at rest, over what it costs while bodies move; CPU time of one thread."};
     std::vector<std::filesystem::path> scenes;
-    double lively = 1, most = 60;
+    double lively = 1, most = 60, frames = 60;
     app.add_option("scenes", scenes, "scene files")->required();
     app.add_option("--lively", lively, "s, from the start, that count as lively");
     app.add_option("--most", most, "s, after which what still moves is given up");
+    app.add_option("--frames-per-second", frames, "which steps divide: other ones, another fall")
+        ->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
     std::printf(
         "| scene | bodies | tetrahedra | contacts at rest | all rest after, s | lively step, us | resting step, us "
         "| share | contacts miss the weight by (mean, worst body) |\n|---|---|---|---|---|---|---|---|---|\n");
-    for (const std::filesystem::path& scene : scenes) print_row(scene, lively, most);
+    for (const std::filesystem::path& scene : scenes) print_row(scene, lively, most, 1 / frames);
 }

@@ -1,4 +1,5 @@
 // Bodies at rest: left out of the step, and woken by whatever concerns them.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
 
@@ -295,6 +296,26 @@ TEST_CASE("a block that begins to tip over is never put to rest", "[scene]") {
         }
         CHECK(world.center_of_mass(block).z() < 0.1);
     }
+}
+
+TEST_CASE("while all look still regions are solved to 1e-5, before that to the tolerance, with the same bits",
+          "[scene]") {
+    Tower tower(own_limits), awake(0);
+    std::vector<Real> error, error_awake;  // of each call
+    while (!tower.all_asleep() && tower.world.time() < 8) {
+        const StepReport report = tower.world.advance(0.01), report_awake = awake.world.advance(0.01);
+        REQUIRE(report.ok());
+        REQUIRE(report_awake.ok());
+        error.push_back(report.worst_error);
+        error_awake.push_back(report_awake.worst_error);
+        if (tower.world.time() < 0.05) CHECK(distance(tower.copy(tower.high), awake.copy(awake.high)) == 0);
+    }
+    REQUIRE(tower.all_asleep());
+    // the calls within the last sleep_time
+    constexpr auto still = static_cast<std::ptrdiff_t>(sleep_time / 0.01) - 1;
+    CHECK(*std::max_element(error.end() - still, error.end()) < 1e-5);
+    CHECK(*std::max_element(error_awake.end() - still, error_awake.end()) > 1e-5);
+    CHECK(tower.world.report().worst_error > 1e-4);
 }
 
 TEST_CASE("rest is the same on any number of threads", "[scene]") {
