@@ -15,7 +15,8 @@ LumpedSolver::LumpedSolver(const LumpedContacts& contacts) : contacts_(contacts)
 }
 
 void LumpedSolver::separate(ContactRegions mode) {
-    separate_regions(stencil_, contacts_.inverse_mass, NodeGroups{}, mode, union_find_, regions_, region_of_);
+    separate_regions(*executor_, stencil_, contacts_.inverse_mass, NodeGroups{}, mode, separation_memory_, regions_,
+                     region_of_);
 }
 
 void LumpedSolver::reset() {

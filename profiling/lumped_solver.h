@@ -32,7 +32,7 @@ private:
     std::vector<Real> none_;  // by contact: gap, restitution
     std::vector<Index> region_of_;
     std::unique_ptr<Executor> executor_ = make_executor(Backend::serial, 1);
-    UnionFind union_find_;
+    SeparationMemory separation_memory_;
     SolverMemory memory_;
     RegionTable regions_;
 };

@@ -85,18 +85,73 @@ void collect_contacts(std::span<const Index> contact_region, Index region_count,
         contact_region.size(), [&](std::size_t i) { return contact_region[i]; }, region_count, regions.contacts);
 }
 
-/// With regions of their own where no contact touches what they join. Returns how many regions there are.
-Index collect_joints(std::span<const JointBlock> joints, bool all_as_one, UnionFind& sets, Index region_count,
+/// `number(node)`: of the region of a joint. Returns how many regions there are with those where no contact touches
+/// what they join.
+template <class Number>
+Index collect_joints(std::span<const JointBlock> joints, const Number& number, Index region_count,
                      Ragged<Index>& list) {
     list.clear();
     if (joints.empty()) return region_count;
     const auto region_of = [&](std::size_t i) {
         const JointBlock& joint = joints[i];
-        return all_as_one ? 0 : sets.number(joint.first_node == no_index ? joint.second_node : joint.first_node);
+        return number(joint.first_node == no_index ? joint.second_node : joint.first_node);
     };
-    Index count = all_as_one ? 1 : region_count;
-    for (std::size_t i = 0; i < joints.size(); ++i) count = std::max(count, region_of(i) + 1);
-    collect(joints.size(), region_of, count, list);
+    for (std::size_t i = 0; i < joints.size(); ++i) region_count = std::max(region_count, region_of(i) + 1);
+    collect(joints.size(), region_of, region_count, list);
+    return region_count;
+}
+
+/// One after the other: few contacts, or one worker. The twin of separate_in_blocks.
+Index separate_in_order(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
+                        UnionFind& sets, RegionTable& regions, std::span<Index> contact_region) {
+    const Index count = groups.empty()
+                            ? label_by_union_find(
+                                  stencil, inverse_mass, [](Index node) { return node; }, {}, sets, contact_region)
+                            : label_by_union_find(
+                                  stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, groups.joints,
+                                  sets, contact_region);
+    const Index with_joints = collect_joints(
+        groups.joints, [&](Index node) { return sets.number(node); }, count, regions.joints);
+    collect_contacts(contact_region, with_joints, regions);
+    return with_joints;
+}
+
+Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                         const NodeGroups& groups, BlockLabels& labels, RegionTable& regions,
+                         std::span<Index> contact_region) {
+    const Index count =
+        label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
+    // A set of joints alone is told of one item behind the contacts, by which its region is numbered.
+    const Index contacts = static_cast<Index>(stencil.size());
+    Index item = contacts;
+    const auto number = [&](Index node) {
+        const Index root = labels.sets.root(node);
+        if (labels.sets.first_item(root) == no_index) labels.sets.begin_with(root, item++);
+        const Index first = labels.sets.first_item(root);
+        return first < contacts ? contact_region[static_cast<std::size_t>(first)] : count + first - contacts;
+    };
+    const Index with_joints = collect_joints(groups.joints, number, count, regions.joints);
+    regions.contacts.offset.resize(static_cast<std::size_t>(with_joints) + 1, regions.contacts.offset[count]);
+    return with_joints;
+}
+
+Index take_all_as_one(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
+                      RegionTable& regions, std::span<Index> contact_region) {
+    const Index count = label_all_as_one(stencil, inverse_mass, contact_region);
+    const Index with_joints = collect_joints(
+        groups.joints, [](Index) { return 0; }, count, regions.joints);
+    collect_contacts(contact_region, with_joints, regions);
+    return with_joints;
+}
+
+Index separate_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                              const NodeGroups& groups, RegionTable& regions, std::span<Index> contact_region) {
+    SKERRY_CHECK(groups.joints.empty());
+    regions.joints.clear();
+    const Index count = label_by_algorithm_1(stencil, inverse_mass, contact_region);
+    collect_contacts(contact_region, count, regions);
+    // it looks at nodes alone: regions may share groups of them
+    regions.independent = groups.empty() && count_shared_nodes(stencil, inverse_mass, regions) == 0;
     return count;
 }
 
@@ -114,8 +169,9 @@ void resize_results(Index region_count, RegionTable& regions) {
 
 }  // namespace
 
-bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
-                      ContactRegions mode, UnionFind& memory, RegionTable& regions, std::span<Index> contact_region) {
+bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                      const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
+                      std::span<Index> contact_region) {
     SKERRY_CHECK(contact_region.size() == stencil.size());
     regions.independent = true;
     if (stencil.empty() && groups.joints.empty()) {
@@ -124,28 +180,24 @@ bool separate_regions(std::span<const Stencil> stencil, std::span<const Real> in
         resize_results(0, regions);
         return false;
     }
+    const bool in_blocks =
+        stencil.size() >= least_contacts_in_blocks && executor.worker_count() >= least_workers_for_blocks;
     Index region_count = 0;
     switch (mode) {
         case ContactRegions::separate:
-            region_count = groups.empty()
-                               ? label_by_union_find(
-                                     stencil, inverse_mass, [](Index node) { return node; }, {}, memory, contact_region)
-                               : label_by_union_find(
-                                     stencil, inverse_mass, [&](Index node) { return groups.leader(node); },
-                                     groups.joints, memory, contact_region);
+            region_count = in_blocks
+                               ? separate_in_blocks(executor, stencil, inverse_mass, groups, memory.labels, regions,
+                                                    contact_region)
+                               : separate_in_order(stencil, inverse_mass, groups, memory.sets, regions, contact_region);
             break;
         case ContactRegions::global:
-            region_count = label_all_as_one(stencil, inverse_mass, contact_region);
+            region_count = take_all_as_one(stencil, inverse_mass, groups, regions, contact_region);
             break;
         case ContactRegions::paper_algorithm_1:
-            region_count = label_by_algorithm_1(stencil, inverse_mass, contact_region);
+            region_count = separate_by_algorithm_1(stencil, inverse_mass, groups, regions, contact_region);
             break;
     }
-    region_count = collect_joints(groups.joints, mode == ContactRegions::global, memory, region_count, regions.joints);
-    collect_contacts(contact_region, region_count, regions);
     resize_results(region_count, regions);
-    if (mode == ContactRegions::paper_algorithm_1)  // which looks at nodes alone: regions may share groups of them
-        regions.independent = groups.empty() && count_shared_nodes(stencil, inverse_mass, regions) == 0;
     return true;
 }
 

@@ -94,15 +94,15 @@ struct ContactScene {
     SolvedScene solve(const SolverSettings& settings = {}, ContactRegions mode = ContactRegions::separate,
                       Backend backend = Backend::serial, int workers = 1) const {
         SolvedScene result;
-        UnionFind memory;
+        const auto executor = make_executor(backend, workers);
+        SeparationMemory memory;
         std::vector<Index> region(stencil.size());
-        separate_regions(stencil, inverse_mass, NodeGroups{&clusters, rigid.nodes()}, mode, memory, result.regions,
-                         region);
+        separate_regions(*executor, stencil, inverse_mass, NodeGroups{&clusters, rigid.nodes()}, mode, memory,
+                         result.regions, region);
         result.impulse = impulse;
         result.velocity = velocity;
         result.push_out.assign(velocity.size(), Vec3::Zero());
         SolverMemory solver;
-        const auto executor = make_executor(backend, workers);
         const std::vector<Vec3> none(rigid.mass.size(), Vec3::Zero());
         result.contact_impulse = result.contact_moment = result.push_velocity = result.push_spin = none;
         solve_regions(*executor, inputs(), settings, h, solver, result.regions,

@@ -105,7 +105,7 @@ struct StepScratch {
     bool ran_inline = false;  // on the calling thread alone
     bool left_out = false;    // no stage ran, since nothing moves
 
-    UnionFind union_find;
+    SeparationMemory separation_memory;
     SolverMemory solver_memory;
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;

@@ -106,7 +106,7 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
             inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep), value(p.h), make(w.scratch.joints));
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
-            value(p.contact_regions), make(w.scratch.union_find), make(w.scratch.regions), write(c.region));
+            value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
     g.stage("dynamics/couple_implicit_bodies", couple_implicit_bodies, implicit_bodies(m), read(c.stencil),
             read(m.nodes.body), value(p.h), value(p.theta), make(m.stiff_bodies), make(w.scratch.coupling));
 }

@@ -1,13 +1,24 @@
 #include "systems/contact/separate_regions.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
+#include <memory>
 #include <random>
 #include <set>
 #include <vector>
 
+#include "tests/unit/jobs/executors.h"
+
 using namespace skerry;
 
 namespace {
+
+/// One worker.
+Executor& in_order() {
+    static const std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
+    return *executor;
+}
 
 /// A contact that touches these nodes.
 Stencil touching(std::vector<Index> nodes) {
@@ -27,9 +38,10 @@ struct Separated {
 
 Separated separate(const std::vector<Stencil>& stencil, const std::vector<Real>& inverse_mass, ContactRegions mode) {
     Separated result;
-    UnionFind memory;
+    SeparationMemory memory;
     result.region.resize(stencil.size());
-    result.ran = separate_regions(stencil, inverse_mass, NodeGroups{}, mode, memory, result.regions, result.region);
+    result.ran =
+        separate_regions(in_order(), stencil, inverse_mass, NodeGroups{}, mode, memory, result.regions, result.region);
     return result;
 }
 
@@ -99,18 +111,125 @@ TEST_CASE("union-find finds the regions of a flood fill on random sets", "[unit]
 }
 
 TEST_CASE("the memory of one step does not leak into the next", "[unit][contact]") {
-    UnionFind memory;
+    SeparationMemory memory;
     RegionTable regions;
     const std::vector<Real> inverse_mass(8, 1);
     std::vector<Index> region(2);
     const std::vector<Stencil> joined{touching({1, 2}), touching({2, 3})}, apart{touching({1, 2}), touching({3, 4})};
-    separate_regions(joined, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
+    separate_regions(in_order(), joined, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(regions.size() == 1);
-    separate_regions(apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
+    separate_regions(in_order(), apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(region == std::vector<Index>{0, 1});
-    memory.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
-    separate_regions(apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
+    memory.sets.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
+    separate_regions(in_order(), apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(region == std::vector<Index>{0, 1});
+}
+
+/// A pile: pairs of bodies with some contacts each between nodes near each other, in the order of the pairs; some nodes
+/// held, some contacts without a node that moves, now and then a chain through many bodies.
+struct PileOfContacts {
+    static constexpr Index nodes_per_body = 40;
+    std::vector<Stencil> stencil;
+    std::vector<Real> inverse_mass;
+
+    PileOfContacts(std::mt19937& random, int pairs, int bodies) {
+        const auto pick = [&](Index count) { return static_cast<Index>(random() % static_cast<unsigned>(count)); };
+        inverse_mass.resize(static_cast<std::size_t>(bodies * nodes_per_body));
+        for (Real& m : inverse_mass) m = pick(10) == 0 ? 0 : 1;
+        for (int pair = 0; pair < pairs; ++pair) {
+            const Index first = pair * bodies / pairs, second = pick(bodies);
+            const Index place = pick(nodes_per_body - 4), beside = pick(nodes_per_body - 4);
+            for (Index contact = pick(9); contact > 0; --contact) {
+                const Index at = first * nodes_per_body + place + pick(3);
+                const Index to = second * nodes_per_body + beside;
+                stencil.push_back(touching({at, to + pick(4), to + pick(4)}));
+                if (pick(8) == 0) stencil.back().weight[static_cast<std::size_t>(pick(3))] = 0;
+                if (pick(40) == 0) stencil.push_back(touching({at, pick(bodies) * nodes_per_body}));
+            }
+        }
+    }
+};
+
+/// What groups such nodes: nothing, or some bodies that are rigid, and joints between them and to the world, or some
+/// nodes of other bodies in clusters.
+struct GroupsOfPile {
+    std::vector<Index> node_body;
+    std::vector<Range> body_nodes, body_rigid;
+    std::vector<JointBlock> joints;
+    NodeClusters clusters;
+
+    explicit GroupsOfPile(Index bodies) {
+        for (Index b = 0; b < bodies; ++b) {
+            const Index first = b * PileOfContacts::nodes_per_body;
+            body_nodes.push_back({first, first + PileOfContacts::nodes_per_body});
+            node_body.insert(node_body.end(), PileOfContacts::nodes_per_body, b);
+        }
+    }
+
+    NodeGroups rigid(std::mt19937& random) {
+        const auto bodies = static_cast<Index>(body_nodes.size());
+        for (Index b = 0; b < bodies; ++b) body_rigid.push_back(b % 5 == 0 ? Range{b / 5, b / 5 + 1} : Range{0, 0});
+        for (Index b = 0; b + 10 < bodies; b += 10) {
+            if (random() % 2 == 0) continue;
+            JointBlock block{};
+            block.first_node = b * PileOfContacts::nodes_per_body;
+            block.second_node = random() % 3 == 0 ? no_index : (b + 10) * PileOfContacts::nodes_per_body;
+            joints.insert(random() % 2 == 0 ? joints.begin() : joints.end(), block);
+        }
+        return {.rigid = {node_body, body_nodes, body_rigid}, .joints = joints};
+    }
+
+    NodeGroups clustered() {
+        clusters.cluster_of.resize(node_body.size(), no_index);
+        clusters.nodes.offset.push_back(0);
+        for (std::size_t b = 1; b < body_nodes.size(); b += 3) {
+            for (Index node = body_nodes[b].begin; node < body_nodes[b].begin + 12; node += 3) {
+                clusters.cluster_of[node] = static_cast<Index>(clusters.body.size());
+                clusters.nodes.item.push_back(node);
+            }
+            clusters.nodes.offset.push_back(static_cast<Index>(clusters.nodes.item.size()));
+            clusters.body.push_back(static_cast<Index>(b));
+        }
+        return {.clusters = &clusters};
+    }
+};
+
+void check_same(const RegionTable& regions, const RegionTable& twin) {
+    CHECK(std::ranges::equal(regions.contacts.offset, twin.contacts.offset));
+    CHECK(std::ranges::equal(regions.contacts.item, twin.contacts.item));
+    CHECK(std::ranges::equal(regions.joints.offset, twin.joints.offset));
+    CHECK(std::ranges::equal(regions.joints.item, twin.joints.item));
+    CHECK(regions.iterations.size() == twin.iterations.size());
+}
+
+TEST_CASE("many contacts are separated in blocks as in order", "[unit][contact][determinism]") {
+    std::mt19937 random(14);
+    SeparationMemory in_order_memory, memory;  // of all: nothing may be left of the step before
+    RegionTable regions, twin;
+    std::uint32_t in_blocks = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+        INFO("trial " << trial);
+        const Index bodies = 20 + trial % 4 * 200;
+        PileOfContacts pile(random, 300 + trial * 40 + (trial % 10 == 9 ? 5000 : 0), bodies);
+        if (trial == 8) pile.stencil.resize(least_contacts_in_blocks);
+        GroupsOfPile of(bodies);
+        const NodeGroups groups = trial % 3 == 0 ? NodeGroups{} : trial % 3 == 1 ? of.rigid(random) : of.clustered();
+        std::vector<Index> region(pile.stencil.size()), twin_region(pile.stencil.size());
+        separate_regions(in_order(), pile.stencil, pile.inverse_mass, groups, ContactRegions::separate, in_order_memory,
+                         twin, twin_region);
+        if (trial == 30) memory.labels.sets.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
+        for (const ExecutorChoice& choice : executor_choices({4, 7})) {
+            CAPTURE(choice.text());
+            const auto executor = choice.make();
+            separate_regions(*executor, pile.stencil, pile.inverse_mass, groups, ContactRegions::separate, memory,
+                             regions, region);
+            REQUIRE(region == twin_region);
+            check_same(regions, twin);
+        }
+        in_blocks += pile.stencil.size() >= least_contacts_in_blocks;
+    }
+    CHECK(in_blocks > 45);
+    CHECK(memory.labels.sets.now > 45);  // starts since the stamps were used up
 }
 
 TEST_CASE("a pinned node does not join the contacts that touch it", "[unit][contact]") {
@@ -142,14 +261,14 @@ TEST_CASE("a contact without a moving node belongs to no region", "[unit][contac
 }
 
 TEST_CASE("no contacts are no regions, and old ones go", "[unit][contact]") {
-    UnionFind memory;
+    SeparationMemory memory;
     RegionTable regions;
     std::vector<Index> region(1);
-    separate_regions(std::vector{touching({1, 2})}, std::vector<Real>(3, 1), NodeGroups{}, ContactRegions::separate,
-                     memory, regions, region);
+    separate_regions(in_order(), std::vector{touching({1, 2})}, std::vector<Real>(3, 1), NodeGroups{},
+                     ContactRegions::separate, memory, regions, region);
     REQUIRE(regions.size() == 1);
-    CHECK_FALSE(
-        separate_regions({}, std::vector<Real>(3, 1), NodeGroups{}, ContactRegions::separate, memory, regions, {}));
+    CHECK_FALSE(separate_regions(in_order(), {}, std::vector<Real>(3, 1), NodeGroups{}, ContactRegions::separate,
+                                 memory, regions, {}));
     CHECK(regions.size() == 0);
     CHECK(regions.status.size() == 0);
 }
@@ -213,9 +332,10 @@ TEST_CASE("what a joint joins is one region, and what no contact touches one of 
     NodeGroups groups;
     groups.joints = joints;
     RegionTable regions;
-    UnionFind memory;
+    SeparationMemory memory;
     std::vector<Index> region(3);
-    REQUIRE(separate_regions(stencil, inverse_mass, groups, ContactRegions::separate, memory, regions, region));
+    REQUIRE(
+        separate_regions(in_order(), stencil, inverse_mass, groups, ContactRegions::separate, memory, regions, region));
     CHECK(region == std::vector<Index>{0, 0, 1});
     REQUIRE(regions.size() == 3);
     const auto list = [](std::span<const Index> of) { return std::vector<Index>(of.begin(), of.end()); };
@@ -223,14 +343,17 @@ TEST_CASE("what a joint joins is one region, and what no contact touches one of 
     CHECK(list(regions.joints_of(1)) == std::vector<Index>{2});
     CHECK(list(regions.joints_of(2)) == std::vector<Index>{0, 3});
     CHECK(regions.contacts[2].empty());
-    REQUIRE(separate_regions(stencil, inverse_mass, groups, ContactRegions::global, memory, regions, region));
+    REQUIRE(
+        separate_regions(in_order(), stencil, inverse_mass, groups, ContactRegions::global, memory, regions, region));
     CHECK(regions.size() == 1);
     CHECK(list(regions.joints_of(0)) == std::vector<Index>{0, 1, 2, 3});
     // none of contacts alone, and none of joints that are gone
     std::vector<Index> none;
-    REQUIRE(separate_regions({}, inverse_mass, groups, ContactRegions::separate, memory, regions, none));
+    REQUIRE(separate_regions(in_order(), {}, inverse_mass, groups, ContactRegions::separate, memory, regions, none));
     CHECK(regions.size() == 3);
-    REQUIRE(separate_regions(stencil, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region));
+    REQUIRE(separate_regions(in_order(), stencil, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions,
+                             region));
     CHECK(regions.joints_of(0).empty());
-    CHECK_FALSE(separate_regions({}, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, none));
+    CHECK_FALSE(
+        separate_regions(in_order(), {}, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, none));
 }

@@ -1,4 +1,5 @@
-// Counts what operator new hands out: solving large regions that have been solved before asks for no memory.
+// Counts what operator new hands out: separating contacts and solving large regions, both done before, ask for no
+// memory.
 #include <catch2/catch.hpp>
 
 #include "tests/support/contact_scene.h"
@@ -22,11 +23,11 @@ TEST_CASE("large regions are solved without asking for memory, also when they ar
         CAPTURE(choice.text());
         const auto executor = choice.make();
         SolvedScene solved;
-        UnionFind union_find;
+        SeparationMemory separation;
         SolverMemory memory;
         std::vector<Index> region(scene.stencil.size());
-        separate_regions(scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate, union_find,
-                         solved.regions, region);
+        separate_regions(*executor, scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate,
+                         separation, solved.regions, region);
         solved.impulse = scene.impulse;
         solved.push_out.assign(scene.velocity.size(), Vec3::Zero());
         solved.velocity = scene.velocity;
@@ -40,6 +41,31 @@ TEST_CASE("large regions are solved without asking for memory, also when they ar
             if (step >= 10) asked += allocations - before;
         }
         REQUIRE(solved.regions.iterations[0] > 0);
+        CHECK(asked == 0);
+    }
+}
+
+TEST_CASE("many contacts are separated without asking for memory", "[unit][solver]") {
+    ContactScene scene;
+    for (unsigned seed = 0; seed < 60; ++seed) add_sheets(scene, 5, 0.5, seed);
+    const std::span<const Stencil> all = scene.stencil;
+    REQUIRE(all.size() > least_contacts_in_blocks);
+    for (const ExecutorChoice& choice : executor_choices({4})) {
+        if (choice.backend == Backend::openmp) continue;  // libgomp allocates its tasks
+        CAPTURE(choice.text());
+        const auto executor = choice.make();
+        SeparationMemory memory;
+        RegionTable regions;
+        std::vector<Index> region(all.size());
+        long asked = 0;
+        for (int step = 0; step < 20; ++step) {
+            const std::size_t count = step % 3 == 0 ? all.size() : all.size() - 60;  // contacts come and go
+            const long before = allocations;
+            separate_regions(*executor, all.first(count), scene.inverse_mass, NodeGroups{}, ContactRegions::separate,
+                             memory, regions, std::span(region).first(count));
+            if (step >= 10) asked += allocations - before;
+        }
+        CHECK(regions.size() >= 50);
         CHECK(asked == 0);
     }
 }

@@ -69,13 +69,13 @@ TEST_CASE("gaps within the slop are not pushed, and a push is taken back in the 
     CHECK(scene.solve().push_out[0].z() > 0);
 
     RegionTable regions;
-    UnionFind union_find;
+    SeparationMemory separation;
     SolverMemory memory;
     std::vector<Index> region(1);
-    separate_regions(scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate, union_find, regions,
-                     region);
-    std::vector<Vec3> impulse(1), velocity, push(1, Vec3::Zero());
     const auto executor = make_executor(Backend::serial, 1);
+    separate_regions(*executor, scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate, separation,
+                     regions, region);
+    std::vector<Vec3> impulse(1), velocity, push(1, Vec3::Zero());
     for (const Real gap : {-1e-3, 0.0}) {
         scene.gap[0] = gap;
         velocity = scene.velocity;

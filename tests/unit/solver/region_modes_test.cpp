@@ -114,10 +114,10 @@ TEST_CASE("memory used before changes nothing", "[determinism][solver]") {
     const auto executor = make_executor(Backend::serial, 1);
     const auto run = [&](const ContactScene& scene) {
         SolvedScene result;
-        UnionFind union_find;
+        SeparationMemory separation;
         std::vector<Index> region(scene.stencil.size());
-        separate_regions(scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate, union_find,
-                         result.regions, region);
+        separate_regions(*executor, scene.stencil, scene.inverse_mass, NodeGroups{}, ContactRegions::separate,
+                         separation, result.regions, region);
         result.impulse = scene.impulse;
         result.velocity = scene.velocity;
         result.push_out.assign(scene.velocity.size(), Vec3::Zero());

@@ -1,0 +1,188 @@
+#include "systems/contact/label_in_blocks.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "jobs/parallel_for.h"
+
+namespace skerry {
+namespace {
+
+// A block of so many contacts takes some microseconds, as long as it takes a worker to join. Every block looks at how
+// many contacts it has for each other one, so that there are no more than most_blocks.
+constexpr std::size_t least_shift = 7, most_blocks = 64;
+
+/// Contacts in blocks of a power of two.
+struct Blocks {
+    std::size_t shift = least_shift;
+    std::size_t contacts;
+
+    explicit Blocks(std::size_t count) : contacts(count) {
+        while (of(count - 1) >= most_blocks) ++shift;
+    }
+    std::size_t of(std::size_t contact) const { return contact >> shift; }
+    std::size_t count() const { return of(contacts - 1) + 1; }
+
+    /// Calls body(block, begin, end) for all of them.
+    template <class Body>
+    void run(Executor& executor, Body&& body) const {
+        parallel_for(executor, contacts, std::size_t{1} << shift,
+                     [&](std::size_t begin, std::size_t end) { body(of(begin), begin, end); });
+    }
+};
+
+/// What contacts of each block belong to regions that begin in each other, and where those are put.
+class Places {
+public:
+    Places(std::size_t blocks, Column<Index>& place) : blocks_(blocks), place_(place) {
+        place_.assign(blocks * blocks, 0);
+    }
+    /// Those of `block`, by block in which their regions begin: none before the first, none behind `block`.
+    Index* of(std::size_t block) { return place_.data() + block * blocks_; }
+
+    /// Makes places of the counts: by the block in which regions begin, then in order. Returns where each begins and
+    /// the end.
+    std::array<Index, most_blocks + 1> cut() {
+        std::array<Index, most_blocks + 1> begin;
+        Index sum = 0;
+        for (std::size_t first = 0; first < blocks_; ++first) {
+            begin[first] = sum;
+            for (std::size_t block = first; block < blocks_; ++block) {
+                Index& place = of(block)[first];
+                place = std::exchange(sum, sum + place);
+            }
+        }
+        begin[blocks_] = sum;
+        return begin;
+    }
+
+private:
+    std::size_t blocks_;
+    Column<Index>& place_;
+};
+
+void join_all(Executor& executor, std::span<const JointBlock> joints, SharedUnionFind& sets) {
+    parallel_for(executor, joints.size(), std::size_t{1} << least_shift, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j)
+            if (joints[j].first_node != no_index && joints[j].second_node != no_index)
+                sets.join(joints[j].first_node, joints[j].second_node);
+    });
+}
+
+/// Joins the moving nodes of a contact, each with its group: `leader(node)` stands for that. Returns one of them, or
+/// no_index.
+template <class Leader>
+Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets) {
+    Index one = no_index;
+    for (std::size_t a = 0; a < 4; ++a) {
+        const Index at = stencil.node[a];
+        if (stencil.weight[a] == 0 || !(inverse_mass[at] > 0)) continue;
+        const Index other = leader(at);
+        one = one == no_index ? other : sets.join(one, other);
+    }
+    return one;
+}
+
+template <class Leader>
+void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil> stencil,
+               std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets,
+               std::span<Index> contact_node) {
+    constexpr std::size_t ahead = 12;  // contacts: by then their nodes have come from the memory
+    blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
+        const auto fetch = [&](const Stencil& next) {
+            for (const Index node : next.node) {
+                sets.fetch(node);
+                __builtin_prefetch(&inverse_mass[node]);
+            }
+        };
+        for (std::size_t i = begin; i < std::min(begin + ahead, end); ++i) fetch(stencil[i]);
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + ahead < end) fetch(stencil[i + ahead]);
+            contact_node[i] = unite(stencil[i], inverse_mass, leader, sets);
+        }
+    });
+}
+
+/// Regions first .. last - 1, whose contacts are given in order and so far name the first of their region: numbers
+/// them and sorts their contacts by region. `begin`: of all places.
+void collect(std::span<const Index> contact, Index begin, Index first, Index last, std::span<Index> contact_region,
+             Ragged<Index>& list) {
+    Index* const offset = list.offset.data();
+    const Index start = begin;
+    std::fill(offset + first, offset + last, 0);
+    Index next = first;
+    for (const Index c : contact) {
+        Index& region = contact_region[static_cast<std::size_t>(c)];
+        // the first contact of a region comes before its others, and has its number by then
+        region = region == c ? next++ : contact_region[static_cast<std::size_t>(region)];
+        ++offset[region];
+    }
+    for (Index r = first; r < last; ++r) offset[r] = std::exchange(begin, begin + offset[r]);
+    for (const Index c : contact) list.item[offset[contact_region[static_cast<std::size_t>(c)]]++] = c;
+    // the fill has moved each offset to the start of the next region: move them back
+    for (Index r = last - 1; r > first; --r) offset[r] = offset[r - 1];
+    if (first < last) offset[first] = start;
+}
+
+}  // namespace
+
+Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                      const NodeGroups& groups, BlockLabels& memory, Ragged<Index>& contacts,
+                      std::span<Index> contact_region) {
+    const Blocks blocks(stencil.size());
+    SharedUnionFind& sets = memory.sets;
+    sets.start(inverse_mass.size());
+    join_all(executor, groups.joints, sets);
+    if (groups.empty())
+        unite_all(
+            executor, blocks, stencil, inverse_mass, [](Index node) { return node; }, sets, contact_region);
+    else
+        unite_all(
+            executor, blocks, stencil, inverse_mass, [&](Index node) { return groups.leader(node); }, sets,
+            contact_region);
+    blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (contact_region[i] == no_index) continue;
+            contact_region[i] = sets.root(contact_region[i]);
+            sets.begin_with(contact_region[i], static_cast<Index>(i));
+        }
+    });
+    // From now on a contact names the first one of its region.
+    Places places(blocks.count(), memory.place);
+    std::array<Index, most_blocks + 1> first_region{};  // that begins in each block
+    blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        Index* const count = places.of(block);
+        Index beginning = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (contact_region[i] == no_index) continue;
+            const Index first = contact_region[i] = sets.first_item(contact_region[i]);
+            ++count[blocks.of(static_cast<std::size_t>(first))];
+            beginning += first == static_cast<Index>(i);
+        }
+        first_region[block + 1] = beginning;
+    });
+    for (std::size_t block = 0; block < blocks.count(); ++block) first_region[block + 1] += first_region[block];
+    const std::array<Index, most_blocks + 1> begin_of = places.cut();
+    const Index region_count = first_region[blocks.count()], item_count = begin_of[blocks.count()];
+
+    memory.by_block.resize(static_cast<std::size_t>(item_count));
+    contacts.item.resize(static_cast<std::size_t>(item_count));
+    contacts.offset.resize(static_cast<std::size_t>(region_count) + 1);
+    contacts.offset[region_count] = item_count;
+    blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        Index* const place = places.of(block);
+        for (std::size_t i = begin; i < end; ++i)
+            if (contact_region[i] != no_index)
+                memory.by_block[place[blocks.of(static_cast<std::size_t>(contact_region[i]))]++] =
+                    static_cast<Index>(i);
+    });
+    blocks.run(executor, [&](std::size_t block, std::size_t, std::size_t) {
+        const auto begin = static_cast<std::size_t>(begin_of[block]);
+        const auto end = static_cast<std::size_t>(begin_of[block + 1]);
+        collect(memory.by_block.span().subspan(begin, end - begin), begin_of[block], first_region[block],
+                first_region[block + 1], contact_region, contacts);
+    });
+    return region_count;
+}
+
+}  // namespace skerry
