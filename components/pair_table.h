@@ -49,6 +49,7 @@ struct PairTable {
     Column<Index> first;        // row of BodyTable; never a kinematic body
     Column<Index> second;       // row of BodyTable, or of ColliderTable
     Column<std::uint8_t> idle;  // neither partner moves in this step: no contacts are looked for, last ones are kept
+    Column<Index> looked_at;    // candidates that are not idle
     Column<Vec3> frame_apart;   // m, difference of the positions of both frames, two bodies
     Column<Real> frame_path;    // m, the length of the way of one frame as the other sees it
     Column<Real> travel;  // m: sum of both travels and of that way; of a body's whole way to a collider. In every step
@@ -83,6 +84,7 @@ struct PairTable {
         visit("frame_apart", frame_apart, ColumnRole::memory);
         visit("frame_path", frame_path, ColumnRole::memory);
         visit("idle", idle, ColumnRole::scratch);
+        visit("looked_at", looked_at, ColumnRole::scratch);
         visit("travel", travel, ColumnRole::scratch);
         visit("travel_bound", travel_bound, ColumnRole::scratch);
         visit("closing", closing, ColumnRole::scratch);

@@ -1,6 +1,7 @@
 #include "systems/collision/find_candidates.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
@@ -17,6 +18,8 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t trees_per_block = 4;  // a refit takes microseconds
+// A block of either takes some microseconds.
+constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256;
 
 /// Which rows nothing is known of. Returns whether there are any.
 bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Column<std::uint8_t>& forgotten) {
@@ -29,18 +32,20 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
     return any;
 }
 
-void bound_body_travels(const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+void bound_body_travels(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                         SearchMemory& memory) {
     memory.body_travel_bound.resize(inputs.body.slot.size());
     memory.body_frame_reach.resize(inputs.body.slot.size());
     memory.body_reach.resize(inputs.body.slot.size());
-    for (std::size_t b = 0; b < inputs.body.slot.size(); ++b) {
-        const bool measure = memory.body_forgotten[b] != 0;
-        const BodyReach reach = body_reach(inputs, settings, static_cast<Index>(b), measure, h);
-        memory.body_travel_bound[b] = inputs.body.travel[b] + inputs.body.frame[b].path + reach.in_world;
-        memory.body_frame_reach[b] = reach.in_frame;
-        memory.body_reach[b] = reach.in_world;
-    }
+    parallel_for(executor, inputs.body.slot.size(), bounded_bodies_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            const bool measure = memory.body_forgotten[b] != 0;
+            const BodyReach reach = body_reach(inputs, settings, static_cast<Index>(b), measure, h);
+            memory.body_travel_bound[b] = inputs.body.travel[b] + inputs.body.frame[b].path + reach.in_world;
+            memory.body_frame_reach[b] = reach.in_frame;
+            memory.body_reach[b] = reach.in_world;
+        }
+    });
 }
 
 void bound_collider_travels(const CollisionInputs& inputs, Real h, SearchMemory& memory) {
@@ -85,14 +90,22 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     pairs.closing[p] = memory.body_reach[a] + memory.body_reach[b];
 }
 
-void list_expired(const CollisionInputs& inputs, Real h, SearchMemory& memory, PairTable& pairs) {
-    memory.expired.clear();
+void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, SearchMemory& memory, PairTable& pairs) {
     pairs.fresh.resize(pairs.size());
+    parallel_for(executor, pairs.size(), bounded_pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            bound_travel(inputs, memory, h, static_cast<Index>(p), pairs);
+            pairs.fresh[p] = !(pairs.travel_bound[p] < pairs.valid_until[p]);
+        }
+    });
+    // without a branch, which is hard to predict
+    memory.expired.resize(pairs.size() + 1);
+    std::size_t expired = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        bound_travel(inputs, memory, h, static_cast<Index>(p), pairs);
-        pairs.fresh[p] = !(pairs.travel_bound[p] < pairs.valid_until[p]);
-        if (pairs.fresh[p]) memory.expired.push_back(static_cast<Index>(p));
+        memory.expired[expired] = static_cast<Index>(p);
+        expired += pairs.fresh[p];
     }
+    memory.expired.resize(expired);
     // A tree that several expired pairs share is fitted once.
     memory.refit.clear();
     if (memory.expired.empty()) return;
@@ -149,6 +162,16 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     }
 }
 
+std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
+    std::atomic<std::size_t> count{0};
+    parallel_for(executor, pairs.size(), bounded_pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        std::size_t of_block = 0;
+        for (std::size_t p = begin; p < end; ++p) of_block += pairs.candidates[p].size();
+        count.fetch_add(of_block, std::memory_order_relaxed);
+    });
+    return count;
+}
+
 /// Bodies whose displacement has cost a searched pair a good part of its skin.
 void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                     const PairTable& pairs) {
@@ -172,14 +195,14 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     const bool all = !settings.use_budgets;
     bool broad = mark_forgotten(inputs.body.slot.size(), all, search.body_valid_until, memory.body_forgotten);
     broad |= mark_forgotten(inputs.collider.slot.size(), all, search.collider_valid_until, memory.collider_forgotten);
-    bound_body_travels(inputs, settings, h, memory);
+    bound_body_travels(executor, inputs, settings, h, memory);
     bound_collider_travels(inputs, h, memory);
     broad |= !all_below(memory.body_travel_bound, search.body_valid_until) || !colliders_below(inputs, search);
     if (broad) {
         find_pairs(executor, inputs, settings, h, search, pairs);
         bound_collider_travels(inputs, h, memory);  // of a plane that turns, by where the bodies are now
     }
-    list_expired(inputs, h, memory, pairs);
+    list_expired(executor, inputs, h, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
     refit_trees(executor, inputs, box, leaf_box, memory);
@@ -191,8 +214,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     });
     ask_for_rebase(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();
-    search.candidate_count = 0;
-    for (std::size_t p = 0; p < pairs.size(); ++p) search.candidate_count += pairs.candidates[p].size();
+    search.candidate_count = count_candidates(executor, pairs);
     return true;
 }
 

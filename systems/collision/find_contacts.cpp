@@ -16,6 +16,7 @@ constexpr Index candidates_per_block = 2048;
 constexpr Index candidates_worth_of_a_pair = 16;
 
 constexpr std::size_t rows_per_block = 256;
+constexpr std::size_t counted_pairs_per_block = 512;  // of which it is looked up what is to be looked at
 
 bool collider_stands_still(const CollisionInputs& inputs, Index collider) {
     return inputs.collider.motion[collider].stands_still();
@@ -26,14 +27,19 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
     return inputs.body.asleep[body] != 0;
 }
 
-/// Pairs of which neither partner moves: what is between them is in equilibrium, or they would not rest.
-void mark_idle(const CollisionInputs& inputs, PairTable& pairs) {
+/// Pairs of which neither partner moves: what is between them is in equilibrium, or they would not rest. Of the others,
+/// how many candidates they have.
+void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-        pairs.idle[p] = inputs.body.asleep[pairs.first[p]] &&
-                        (pairs.kind[p] == PairKind::collider ? collider_stands_still(inputs, pairs.second[p])
-                                                             : body_stands_still(inputs, pairs.second[p]));
-    }
+    pairs.looked_at.resize(pairs.size());
+    parallel_for(executor, pairs.size(), counted_pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            pairs.idle[p] = inputs.body.asleep[pairs.first[p]] &&
+                            (pairs.kind[p] == PairKind::collider ? collider_stands_still(inputs, pairs.second[p])
+                                                                 : body_stands_still(inputs, pairs.second[p]));
+            pairs.looked_at[p] = pairs.idle[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
+        }
+    });
 }
 
 /// Cuts the concatenated candidate lists of the pairs that do not rest into blocks of about equal length. Returns their
@@ -42,7 +48,11 @@ Index cut_blocks(PairTable& pairs) {
     pairs.block.clear();
     Index filled = candidates_per_block;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const Index count = pairs.idle[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
+        const Index count = pairs.looked_at[p];
+        if (filled < candidates_per_block && filled + count <= candidates_per_block) {  // most pairs: nothing to cut
+            filled += count > 0 ? count + candidates_worth_of_a_pair : 0;
+            continue;
+        }
         for (Index begin = 0; begin < count;) {
             if (filled >= candidates_per_block) {
                 pairs.block.push_back({static_cast<Index>(p), begin});
@@ -112,7 +122,7 @@ void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& c
 
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts) {
-    mark_idle(inputs, pairs);
+    mark_idle(executor, inputs, pairs);
     const Index blocks = cut_blocks(pairs);
     if (blocks == 0) {
         contacts.resize(0);

@@ -21,6 +21,8 @@ namespace skerry {
 
 namespace {
 
+constexpr std::size_t checked_pairs_per_block = 512;  // of which it is looked up how far they come
+
 /// Where the features are at some time of the step, and how they are nearest.
 struct Nearest {
     Stencil stencil;
@@ -236,25 +238,40 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
     return tested;
 }
 
+/// Whether a pair moves further in this step than its list is good for.
+bool is_beyond_list(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
+    if (!can_be_crossed(inputs, pairs, p)) return false;
+    if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
+    // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. Where the list was made from the very
+    // positions of this step nothing has moved since, d0 is not lost, and T + m is the bound.
+    const Real drifted =
+        pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
+    return !(reach_of(inputs, pairs, p, h).travel_bound < pairs.valid_until[p] + drifted);
+}
+
+/// Almost never.
+bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const PairTable& pairs, Real h) {
+    std::atomic<bool> any{false};
+    parallel_for(executor, pairs.size(), checked_pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            if (is_beyond_list(inputs, pairs, static_cast<Index>(p), h)) any.store(true, std::memory_order_relaxed);
+    });
+    return any;
+}
+
 /// Has the lists of pairs made anew that move further than they are good for. Returns how many; those whose list was
 /// made for such a motion already, or all where none is `allowed`, are added to `hopeless`.
 Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
-        if (!can_be_crossed(inputs, pairs, p)) continue;
-        if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) continue;
-        // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. Where the list was made from the very
-        // positions of this step nothing has moved since, d0 is not lost, and T + m is the bound.
-        const Real drifted =
-            pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
-        const PairReach reach = reach_of(inputs, pairs, p, h);
-        if (reach.travel_bound < pairs.valid_until[p] + drifted) continue;
-        const bool made_for_it = pairs.fresh[p] && reach.motion <= -pairs.longer_motion[p];
-        if (made_for_it || !allowed || !std::isfinite(reach.motion)) {
+        if (!is_beyond_list(inputs, pairs, p, h)) continue;
+        const Real motion = reach_of(inputs, pairs, p, h).motion;
+        const bool made_for_it = pairs.fresh[p] && motion <= -pairs.longer_motion[p];
+        if (made_for_it || !allowed || !std::isfinite(motion)) {
             ++hopeless;
             continue;
         }
-        pairs.longer_motion[p] = reach.motion;
+        pairs.longer_motion[p] = motion;
         pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();
         ++count;
     }
@@ -281,7 +298,9 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     crossings.beyond_lists = false;
     if (!settings.continuous) return 0;
     Index hopeless = 0;
-    const Index extended = extend_lists(inputs, h, crossings.extends_lists, pairs, hopeless);
+    const Index extended = any_beyond_list(executor, inputs, pairs, h)
+                               ? extend_lists(inputs, h, crossings.extends_lists, pairs, hopeless)
+                               : 0;
     if (extended > 0) {
         crossings.beyond_lists = true;
         return extended;

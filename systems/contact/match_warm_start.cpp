@@ -9,7 +9,7 @@
 namespace skerry {
 namespace {
 
-constexpr std::size_t contact_block = 2048;  // ~20 us of merging
+constexpr std::size_t contact_block = 512;  // ~5 us of merging
 
 /// Turns an impulse by the smallest rotation that takes one unit normal to the other, so that it keeps its place in the
 /// friction cone. A normal that flipped names another contact: nothing is carried over.

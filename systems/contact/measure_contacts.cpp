@@ -75,7 +75,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
     const std::size_t count = contacts.size();
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // a fixed number of parts, so that their sums need no memory; their borders depend on the contact count alone
-    constexpr std::size_t part_limit = 64, smallest_part = 512;
+    constexpr std::size_t part_limit = 64, smallest_part = 128;
     const std::size_t part_size = std::max(smallest_part, (count + part_limit - 1) / part_limit);
     std::array<ContactMeasures, part_limit> parts{};
     parallel_for(executor, count, part_size, [&](std::size_t begin, std::size_t end) {

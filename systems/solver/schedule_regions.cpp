@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "jobs/parallel_for.h"
+#include "jobs/reduce.h"
 #include "systems/solver/regions/lane_queue.h"
 
 namespace skerry {
@@ -23,6 +26,8 @@ constexpr Real forgetting = 0.3;  // weight of the latest step in the moving ave
 constexpr Real caution = 1.2;     // times the average
 constexpr Real fewest_sweeps = 4;
 constexpr Real first_sweeps = 8, sweeps_of_size = 2;  // of regions not seen before; the second by root of the contacts
+
+constexpr std::size_t regions_per_block = 256;  // some microseconds
 
 /// Contacts, and blocks of joints.
 Index contact_count(const RegionTable& regions, Index region) {
@@ -69,42 +74,55 @@ void sort_regions(const Column<Real>& cost, RegionTable& regions) {
 
 }  // namespace
 
-void recall_regions(std::span<const ContactKey> key, RegionMemory& memory, RegionTable& regions) {
+void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionMemory& memory, RegionTable& regions) {
     const std::size_t count = regions.size();
     regions.id.resize(key.empty() ? 0 : count);
     RegionHistoryTable& present = memory.present;
     const RegionHistoryTable& history = memory.history;
     present.resize(count);
-    std::size_t old = 0;
-    for (std::size_t r = 0; r < count; ++r) {
-        const Index contacts = contact_count(regions, static_cast<Index>(r));
-        present.contacts[r] = contacts;
-        present.sweeps[r] = no_history;
-        present.age[r] = 0;
-        if (key.empty()) continue;
-        // contacts are in key order and regions in that of their first contacts: both lists ascend
-        const ContactKey id =
-            regions.contacts[r].empty() ? id_of_joint(regions.joints[r][0]) : key[regions.contacts[r][0]];
-        regions.id[r] = present.id[r] = id;
-        while (old < history.size() && history.id[old] < id) ++old;
-        if (old == history.size() || history.id[old] != id) continue;
-        present.sweeps[r] = history.sweeps[old];
-        if (history.contacts[old] == contacts) present.age[r] = history.age[old] + 1;
-    }
+    parallel_for(executor, count, regions_per_block, [&](std::size_t begin, std::size_t end) {
+        // every block finds its own place in the history, then both run along together
+        std::size_t old = 0;
+        for (std::size_t r = begin; r < end; ++r) {
+            const Index contacts = contact_count(regions, static_cast<Index>(r));
+            present.contacts[r] = contacts;
+            present.sweeps[r] = no_history;
+            present.age[r] = 0;
+            if (key.empty()) continue;
+            // contacts are in key order and regions in that of their first contacts: both lists ascend
+            const ContactKey id =
+                regions.contacts[r].empty() ? id_of_joint(regions.joints[r][0]) : key[regions.contacts[r][0]];
+            regions.id[r] = present.id[r] = id;
+            if (r == begin)
+                old = static_cast<std::size_t>(std::ranges::lower_bound(history.id, id) - history.id.begin());
+            while (old < history.size() && history.id[old] < id) ++old;
+            if (old == history.size() || history.id[old] != id) continue;
+            present.sweeps[r] = history.sweeps[old];
+            if (history.contacts[old] == contacts) present.age[r] = history.age[old] + 1;
+        }
+    });
 }
 
-void schedule_regions(const SolverSettings& settings, int workers, RegionMemory& memory, RegionTable& regions) {
+void schedule_regions(Executor& executor, const SolverSettings& settings, RegionMemory& memory, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
     const bool lanes = lanes_allowed(settings) && regions.independent;
     make_room(memory.cost, regions.size());
-    Real total = 0;
-    for (Index r = 0; r < count; ++r) {
-        // regions that share a node see each other's result: their order must not depend on what is remembered
-        const Real average = regions.independent ? memory.present.sweeps[r] : no_history;
-        memory.cost[r] = predicted_cost(contact_count(regions, r), average, lanes, settings);
-        total += memory.cost[r];
-    }
+    const Real total = reduce(
+        executor, regions.size(), regions_per_block, memory.cost_parts, Real(0),
+        [&](std::size_t begin, std::size_t end) {
+            Real sum = 0;
+            for (std::size_t r = begin; r < end; ++r) {
+                // regions that share a node see each other's result: their order must not depend on what is remembered
+                const Real average = regions.independent ? memory.present.sweeps[r] : no_history;
+                memory.cost[r] =
+                    predicted_cost(contact_count(regions, static_cast<Index>(r)), average, lanes, settings);
+                sum += memory.cost[r];
+            }
+            return sum;
+        },
+        std::plus<>());
     sort_regions(memory.cost, regions);
+    const int workers = executor.worker_count();
     const Real share = total / (tasks_per_worker * workers);
     const Real task_cost = workers == 1 ? total : std::clamp(share, smallest_task, largest_task);
     memory.task.clear();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/check.h"
+#include "jobs/parallel_for.h"
 #include "systems/solver/regions/lane_queue.h"
 #include "systems/solver/regions/region_blocks.h"
 #include "systems/solver/regions/solve_clustered.h"
@@ -12,6 +13,8 @@
 
 namespace skerry {
 namespace {
+
+constexpr std::size_t cleared_per_block = 4096;  // some microseconds of clearing
 
 void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, RegionTable& regions) {
     LaneQueue queue(stage, regions);
@@ -85,10 +88,13 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
                  out.push_out.size() == contacts.inverse_mass.size());
     RegionMemory& data = memory.data();
     // advance_positions has used the last push; a refused step has not
-    if (data.pushed.exchange(false)) std::fill(out.push_out.begin(), out.push_out.end(), Vec3::Zero());
+    if (data.pushed.exchange(false))
+        parallel_for(executor, out.push_out.size(), cleared_per_block, [&](std::size_t begin, std::size_t end) {
+            std::fill(out.push_out.begin() + begin, out.push_out.begin() + end, Vec3::Zero());
+        });
     regions.pushed = false;
     make_rows(regions);
-    recall_regions(contacts.key, data, regions);
+    recall_regions(executor, contacts.key, data, regions);
     if (regions.size() == 0) {
         remember_regions(data, regions);
         return false;
@@ -101,7 +107,7 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
         data.runs.make_room(static_cast<std::size_t>(executor.worker_count()));
     }
     make_room(data.joint_law, data.rows - data.contact_rows);
-    schedule_regions(settings, executor.worker_count(), data, regions);
+    schedule_regions(executor, settings, data, regions);
     solve_tasks(executor, {contacts, settings, h, out, data}, regions);
     regions.pushed = data.pushed.load(std::memory_order_relaxed);
     remember_regions(data, regions);

@@ -90,6 +90,7 @@ struct RegionMemory {
     Column<Index> place;  // in its region's list of nodes, if that list agrees
     // by region
     Column<Real> cost;           // microseconds, predicted
+    Column<Real> cost_parts;     // working memory
     RegionHistoryTable history;  // of the last step; then
     RegionHistoryTable present;  // of this one
     // by task

@@ -25,6 +25,8 @@ std::vector<ContactKey> keys(std::size_t count, std::uint64_t first = 0) {
     return key;
 }
 
+const std::unique_ptr<Executor> one = make_executor(Backend::serial, 1), two = make_executor(Backend::threads, 2);
+
 std::vector<Index> order_of(const RegionTable& regions) {
     return {regions.order.begin(), regions.order.end()};
 }
@@ -38,7 +40,7 @@ TEST_CASE("a region is known by its first contact, with the sweeps it took and h
     RegionTable regions = regions_of({3, 20, 1});
     const std::vector<ContactKey> key = keys(24);
     for (const Index sweeps : {10, 20}) {
-        recall_regions(key, data, regions);
+        recall_regions(*one, key, data, regions);
         CHECK(regions.id[1] == key[3]);
         regions.iterations[0] = 1;
         regions.iterations[1] = sweeps;
@@ -50,7 +52,7 @@ TEST_CASE("a region is known by its first contact, with the sweeps it took and h
 
     // contact 3 now starts nothing; 2 is a region of its own; the rest starts at 3
     RegionTable changed = regions_of({2, 1, 21});
-    recall_regions(key, data, changed);
+    recall_regions(*one, key, data, changed);
     CHECK(data.present.sweeps[0] == 1);
     CHECK(data.present.age[0] == 0);                          // lost a contact
     CHECK(data.present.sweeps[1] < 0);                        // never seen
@@ -61,25 +63,53 @@ TEST_CASE("a region that took many sweeps is started before a larger one that to
     SolverMemory memory;
     RegionTable regions = regions_of({50, 1, 100, 4, 5, 1});
     const std::vector<ContactKey> key = keys(161);
-    recall_regions(key, memory.data(), regions);
-    schedule_regions({}, 2, memory.data(), regions);
+    recall_regions(*one, key, memory.data(), regions);
+    schedule_regions(*two, {}, memory.data(), regions);
     CHECK(order_of(regions) == std::vector<Index>{2, 0, 4, 3, 1, 5});
     for (const Index r : {0, 1, 2, 3, 4, 5}) regions.iterations[r] = r == 0 ? 100 : 1;
     remember_regions(memory.data(), regions);
-    recall_regions(key, memory.data(), regions);
-    schedule_regions({}, 2, memory.data(), regions);
+    recall_regions(*one, key, memory.data(), regions);
+    schedule_regions(*two, {}, memory.data(), regions);
     CHECK(order_of(regions) == std::vector<Index>{0, 2, 4, 3, 1, 5});
     regions.independent = false;  // they see each other's results: what is remembered must not count
-    schedule_regions({}, 2, memory.data(), regions);
+    schedule_regions(*two, {}, memory.data(), regions);
     CHECK(order_of(regions) == std::vector<Index>{2, 0, 4, 3, 1, 5});
+}
+
+TEST_CASE("each of many regions is remembered, whatever came and went before it", "[unit][solver]") {
+    constexpr Index count = 2000;  // several blocks
+    SolverMemory memory;
+    RegionMemory& data = memory.data();
+    RegionTable regions = regions_of(std::vector<Index>(count, 2));
+    const std::vector<ContactKey> key = keys(2 * count);
+    recall_regions(*two, key, data, regions);
+    for (Index r = 0; r < count; ++r) regions.iterations[r] = r;
+    remember_regions(data, regions);
+    // every third is gone, and some are new behind each tenth
+    std::vector<ContactKey> next;
+    std::vector<Index> was;
+    for (Index r = 0; r < count; ++r) {
+        if (r % 3 == 0) continue;
+        next.insert(next.end(), {key[2 * r], key[2 * r + 1]});
+        was.push_back(r);
+        if (r % 10 != 0) continue;
+        next.insert(next.end(), {{key[2 * r + 1].pair, 8}, {key[2 * r + 1].pair, 9}});
+        was.push_back(no_index);
+    }
+    RegionTable changed = regions_of(std::vector<Index>(was.size(), 2));
+    recall_regions(*two, next, data, changed);
+    for (std::size_t r = 0; r < was.size(); ++r) {
+        CHECK(changed.id[r] == next[2 * r]);
+        CHECK(data.present.sweeps[r] == static_cast<Real>(was[r]));  // no_index: -1, never seen
+    }
 }
 
 TEST_CASE("tasks hold every region once, and are small enough to share", "[unit][solver]") {
     SolverMemory memory;
     RegionTable regions = regions_of(std::vector<Index>(2000, 3));
-    recall_regions({}, memory.data(), regions);
+    recall_regions(*one, {}, memory.data(), regions);
     for (const int workers : {1, 2, 8}) {
-        schedule_regions({}, workers, memory.data(), regions);
+        schedule_regions(*make_executor(Backend::threads, workers), {}, memory.data(), regions);
         const Column<RegionTask>& task = memory.data().task;
         REQUIRE(task.size() >= static_cast<std::size_t>(workers));
         Index end = 0;
