@@ -51,11 +51,14 @@ struct BodyTable {
     Column<Index> tetrahedron_count;
     Column<Index> pinned_count;     // nodes without freedom
     Column<Real> contact_distance;  // m, thickness of the contact shell; two bodies keep the mean of theirs
-    Column<Real> mean_edge;         // m, of the surface at rest
-    Column<Real> min_altitude;      // m, of the elements at rest
-    Column<Real> rest_step;         // s, stable step of the rest shape
-    Column<Real> stable_step;       // s, as last watched
-    Column<Real> cluster_step;      // s, the longest that its implicit elements stand; 0 where it has none
+    // m, of a rigid body that is a sphere: its surface is its first node, its middle, that far away. 0: it has
+    // triangles
+    Column<Real> sphere_radius;
+    Column<Real> mean_edge;     // m, of the surface at rest
+    Column<Real> min_altitude;  // m, of the elements at rest
+    Column<Real> rest_step;     // s, stable step of the rest shape
+    Column<Real> stable_step;   // s, as last watched
+    Column<Real> cluster_step;  // s, the longest that its implicit elements stand; 0 where it has none
     // of the whole body in the present cycle of steps: its own steps are 2^level steps long
     Column<std::uint8_t> level;
     Column<std::array<Index, element_level_count>> level_count;  // elements of each level, within the body
@@ -112,6 +115,7 @@ struct BodyTable {
         visit("tetrahedron_count", tetrahedron_count, ColumnRole::state);
         visit("pinned_count", pinned_count, ColumnRole::state);
         visit("contact_distance", contact_distance, ColumnRole::state);
+        visit("sphere_radius", sphere_radius, ColumnRole::state);
         visit("mean_edge", mean_edge, ColumnRole::state);
         visit("min_altitude", min_altitude, ColumnRole::state);
         visit("rest_step", rest_step, ColumnRole::state);

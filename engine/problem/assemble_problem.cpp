@@ -71,12 +71,15 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
         matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
         return matrix;
     };
+    const auto arm_of = [&](const RigidPoints& body, const Touch& touch) {
+        return Vec3(body.arm[static_cast<std::size_t>(touch.node)] -
+                    body.radius / touch.weight * contacts.normal[static_cast<std::size_t>(touch.contact)]);
+    };
     for (const RigidPoints& body : contacts.rigid) {
         const std::vector<Touch> touches = find.of(body.node);
         for (const Touch& a : touches)
             for (const Touch& b : touches) {
-                const Mat3 arm = crossing(body.arm[static_cast<std::size_t>(a.node)]),
-                           other = crossing(body.arm[static_cast<std::size_t>(b.node)]);
+                const Mat3 arm = crossing(arm_of(body, a)), other = crossing(arm_of(body, b));
                 const Mat3 block =
                     a.weight * b.weight *
                     (body.inverse_mass * Mat3::Identity() + arm * body.inverse_inertia * other.transpose());

@@ -58,7 +58,11 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     std::vector<RigidPoints> bodies;
     for (const auto& [row, nodes] : touched) {
         const auto r = static_cast<std::size_t>(row);
-        RigidPoints points{{nodes.begin(), nodes.end()}, {}, rigid.inverse_mass(r), rigid.inverse_inertia[r]};
+        RigidPoints points{{nodes.begin(), nodes.end()},
+                           {},
+                           rigid.inverse_mass(r),
+                           rigid.inverse_inertia[r],
+                           rigid.nodes.radius(*nodes.begin())};
         for (const Index node : nodes)
             points.arm.push_back(rigid.position[static_cast<std::size_t>(node)] - rigid.center[r]);
         bodies.push_back(std::move(points));
@@ -104,8 +108,11 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         lumped.node.push_back(step.contacts.stencil[row].node);
         lumped.weight.push_back(step.contacts.stencil[row].weight);
         lumped.normal.push_back(step.contacts.normal[row]);
+        const RigidInputs& rigid = step.contacts.rigid;
+        const Vec3 rolling = rigid.nodes.rolling(step.contacts.stencil[row], step.contacts.normal[row],
+                                                 [&](std::size_t r) { return rigid.spin(r); });
         lumped.offset.push_back(contact.bias * step.contacts.normal[row] - step.contacts.surface_velocity[row] -
-                                midpoint_slip(step.contacts, static_cast<Index>(row), step.free_velocity));
+                                midpoint_slip(step.contacts, static_cast<Index>(row), step.free_velocity) + rolling);
         lumped.friction.push_back(contact.friction.slide);
         impulse.push_back(step.impulse[row]);
         result.contact.push_back(static_cast<Index>(row));

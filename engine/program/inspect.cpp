@@ -230,6 +230,14 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
     return kinds;
 }
 
+/// "192 tetrahedra (smoothed), mean edge 0.05 m", or "a sphere of 0.1 m (rigid)".
+std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
+    const std::string how(kind.sets_step() ? name_of(kind.bound.element) : name_of(kind.dynamics));
+    if (body.sphere) return "a sphere of radius " + with_unit(body.sphere->radius, "m") + " (" + how + ")";
+    return grouped(kind.mesh.tetrahedra) + " tetrahedra (" + how + "), mean edge " +
+           with_unit(kind.mesh.mean_edge, "m");
+}
+
 /// "steel", or "steel 300, rubber 20".
 std::string materials_text(const BodyKindReport& kind) {
     if (kind.materials.size() == 1) return kind.materials.front().first;
@@ -376,6 +384,7 @@ int inspect_scene(const InspectOptions& options) {
                          {"dynamics", name_of(kind.dynamics)},
                          {"materials", materials},
                          {"mesh", mesh_json(kind.mesh)}};
+            if (const auto& sphere = plan.bodies[kind.body].sphere) body["sphere_radius"] = sphere->radius;
             if (kind.sets_step())
                 body.update({{"stable_dt", kind.bound.step},
                              {"element", name_of(kind.bound.element)},
@@ -425,9 +434,7 @@ int inspect_scene(const InspectOptions& options) {
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
                   << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
-                  << grouped(kind.mesh.tetrahedra) << " tetrahedra ("
-                  << (kind.sets_step() ? name_of(kind.bound.element) : name_of(kind.dynamics)) << "), mean edge "
-                  << with_unit(kind.mesh.mean_edge, "m")
+                  << shape_text(plan.bodies[kind.body], kind)
                   << (kind.sets_step() ? ", stable step " + with_unit(kind.bound.step, "s") : "") << "; "
                   << materials_text(kind) << "\n";
         if (kind.sets_step()) print_bound(kind.bound, "                ");

@@ -76,7 +76,10 @@ Scene build_scene(const ScenePlan& plan) {
         BodySettings settings = body.settings;
         settings.material = materials[body.material];
         for (const auto& [label, row] : body.materials) settings.materials.emplace(label, materials[row]);
-        bodies.push_back(called_at(body.place, [&] { return world.add_body(plan.meshes[body.mesh], settings); }));
+        bodies.push_back(called_at(body.place, [&] {
+            return body.sphere ? world.add_body(*body.sphere, settings)
+                               : world.add_body(plan.meshes[body.mesh], settings);
+        }));
         pins.emplace_back();
         for (const PinPlan& pin : body.pins)
             pins.back().push_back(

@@ -118,7 +118,8 @@ std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan
 /// `names` are those of the bodies so far.
 void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>& names, ScenePlan& plan) {
     const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
-    const Mesh& mesh = plan.meshes.emplace_back(make_mesh(entry.mesh));
+    const Mesh& mesh = plan.meshes.emplace_back(entry.mesh ? make_mesh(*entry.mesh)
+                                                           : mesh::sphere_picture(entry.shape->sphere.radius));
     const std::vector<std::pair<int, std::size_t>> materials = find_materials_by_label(plan, entry, mesh);
     std::vector<PinPlan> pins;
     for (const PinEntry& pin : entry.pin.items) pins.push_back(plan_pin(pin, mesh));
@@ -143,6 +144,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>
         body.settings.element = entry.element;
         body.settings.name = copies ? name + "_" + std::to_string(copy) : name;
         body.mesh = plan.meshes.size() - 1;
+        if (entry.shape) body.sphere = entry.shape->sphere;
         body.material = material;
         body.materials = materials;
         body.pins = pins;

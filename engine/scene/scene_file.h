@@ -75,9 +75,13 @@ struct RepeatEntry {
     Real jitter = 0;              // m
     int seed = 1;
 };
+struct BodyShapeEntry {
+    Sphere sphere;
+};
 struct BodyEntry {
     std::string name;
-    MeshEntry mesh;
+    std::optional<MeshEntry> mesh;
+    std::optional<BodyShapeEntry> shape;
     std::string material;
     ByNumber<std::string> materials;
     Vec3 position = Vec3::Zero();

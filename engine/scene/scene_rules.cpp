@@ -57,7 +57,9 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
         Rule<BodyEntry>("body", "A body. The rotation is applied before the position.")
             .key("name", &BodyEntry::name, {.meaning = "for messages, output and probes; body_NUMBER by default"})
-            .key("mesh", &BodyEntry::mesh, {.meaning = "its tetrahedra", .required = true})
+            .key("mesh", &BodyEntry::mesh, {.meaning = "its tetrahedra"})
+            .key("shape", &BodyEntry::shape,
+                 {.meaning = "in place of a mesh: it is round, and moves as a whole (\"dynamics\": \"rigid\")"})
             .key("material", &BodyEntry::material, {.meaning = "the name of one of the materials", .required = true})
             .key("materials", &BodyEntry::materials,
                  {.meaning = "materials of tetrahedra by the label that the mesh file gives them; the others have "
@@ -84,6 +86,7 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "what carries its stress"})
             .key("pin", &BodyEntry::pin, {.meaning = "nodes that are held"})
+            .exactly_one({"mesh", "shape"})
             .at_most_one({"position", "positions"})
             .at_most_one({"positions", "repeat"});
     return rule;

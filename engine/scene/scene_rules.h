@@ -32,6 +32,8 @@ const Rule<RepeatEntry>& rule_of<RepeatEntry>();
 template <>
 const Rule<BodyEntry>& rule_of<BodyEntry>();
 template <>
+const Rule<BodyShapeEntry>& rule_of<BodyShapeEntry>();
+template <>
 const Rule<Plane>& rule_of<Plane>();
 template <>
 const Rule<Sphere>& rule_of<Sphere>();

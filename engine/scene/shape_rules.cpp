@@ -205,6 +205,14 @@ const Rule<Bucket>& rule_of<Bucket>() {
 }
 
 template <>
+const Rule<BodyShapeEntry>& rule_of<BodyShapeEntry>() {
+    static const auto rule =
+        Rule<BodyShapeEntry>("body_shape", "The shape of a rigid body without a mesh.")
+            .key("sphere", &BodyShapeEntry::sphere, {.meaning = "a solid sphere", .required = true});
+    return rule;
+}
+
+template <>
 const Rule<ShapeEntry>& rule_of<ShapeEntry>() {
     static const auto rule = Rule<ShapeEntry>("shape", "The shape of a collider.")
                                  .key("plane", &ShapeEntry::plane, {.meaning = "a half space"})

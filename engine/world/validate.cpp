@@ -207,6 +207,16 @@ void require_apart(const Mesh& mesh, const std::string& object) {
                    "one on each side at most");
 }
 
+/// Where a body is put, and how it starts.
+void require_start(const BodySettings& body, const std::string& object) {
+    require_finite(object, "position", body.position);
+    require_finite(object, "rotation", body.rotation);
+    require_finite(object, "velocity", body.velocity);
+    require_finite(object, "angular_velocity", body.angular_velocity);
+    if (body.contact_distance)
+        require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
+}
+
 }  // namespace
 
 void validate(const Mesh& mesh, const BodySettings& body) {
@@ -226,12 +236,17 @@ void validate(const Mesh& mesh, const BodySettings& body) {
         refuse(object, "self_contact", "true of a body whose dynamics are " + std::string(name_of(body.dynamics)),
                "false");
     require_labels(mesh, body.materials, object);
-    require_finite(object, "position", body.position);
-    require_finite(object, "rotation", body.rotation);
-    require_finite(object, "velocity", body.velocity);
-    require_finite(object, "angular_velocity", body.angular_velocity);
-    if (body.contact_distance)
-        require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
+    require_start(body, object);
+}
+
+void validate(const Sphere& sphere, const BodySettings& body) {
+    const std::string object = titled("body", body.name);
+    ShapeCheck{object}(sphere);
+    if (body.dynamics != BodyDynamics::rigid)
+        refuse(object, "dynamics", std::string(name_of(body.dynamics)), "rigid: a sphere does not deform");
+    if (body.self_contact) refuse(object, "self_contact", "true of a sphere", "false");
+    if (!body.materials.empty()) refuse(object, "materials", "materials by label", "none: a sphere has one material");
+    require_start(body, object);
 }
 
 void validate(const Motion& motion, const std::string& object) {

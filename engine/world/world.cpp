@@ -153,11 +153,14 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
     return handle;
 }
 
-BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
-    validate(mesh, body);
-    const Index material = state_->model.row(body.material, "add_body");
-    const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(state_->model, mesh, body);
-    state_->require_between_steps("add_body");
+namespace {
+
+/// `sphere_radius`: m, of a sphere that the mesh draws; 0: the body is what the mesh fills.
+BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySettings& body, Real sphere_radius) {
+    Model& model = state.model;
+    const Index material = model.row(body.material, "add_body");
+    const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(model, mesh, body);
+    state.require_between_steps("add_body");
     NewBody fresh{.slot = 0,
                   .kind = BodyKind::deformable,
                   .self_contact = body.self_contact,
@@ -168,6 +171,7 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
                   .tetrahedron_material = tetrahedron_material,
                   .collider = no_index,
                   .contact_distance = body.contact_distance.value_or(-1),
+                  .sphere_radius = sphere_radius,
                   .nodes = mesh.nodes,
                   .tetrahedra = mesh.tetrahedra,
                   .triangles = {},
@@ -177,28 +181,39 @@ BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
                   .angular_velocity = body.angular_velocity};
     DynamicsEstimate choice;
     if (body.dynamics == BodyDynamics::automatic) {
-        state_->settle();  // what is gone allows no step
+        state.settle();  // what is gone allows no step
         fresh.dynamics = BodyDynamics::explicit_elastic;
-        fresh.dynamics = choose_dynamics(state_->model, fresh, choice);
+        fresh.dynamics = choose_dynamics(model, fresh, choice);
     }
-    const BodyHandle handle = state_->model.body_map.insert(static_cast<Index>(state_->model.bodies.slot.size()));
+    const BodyHandle handle = model.body_map.insert(static_cast<Index>(model.bodies.slot.size()));
     fresh.slot = handle.slot;
-    append_body(state_->model, state_->scratch.stiffness_sum, fresh);
-    state_->model.body_records.back().choice = choice;
+    append_body(model, state.scratch.stiffness_sum, fresh);
+    model.body_records.back().choice = choice;
     const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
-    state_->model.body_records.back().name = name;
+    model.body_records.back().name = name;
     try {
-        validate_step(state_->model, state_->model.row(handle, "add_body"), name);
+        validate_step(model, model.row(handle, "add_body"), name);
     } catch (const SceneError&) {
-        Model& model = state_->model;
         std::vector<std::uint8_t> last;
         mark(model.row(handle, "add_body"), last);
         model.body_map.forget(handle);
         erase_gone(row_moves(model, last, {}), model);
         throw;
     }
-    state_->edits.rows = state_->edits.elements = true;
+    state.edits.rows = state.edits.elements = true;
     return handle;
+}
+
+}  // namespace
+
+BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
+    validate(mesh, body);
+    return add_valid_body(*state_, mesh, body, 0);
+}
+
+BodyHandle World::add_body(const Sphere& sphere, const BodySettings& body) {
+    validate(sphere, body);
+    return add_valid_body(*state_, mesh::sphere_picture(sphere.radius), body, sphere.radius);
 }
 
 ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& collider) {
@@ -230,6 +245,14 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
+    if (model.bodies.sphere_radius[b] > 0)
+        Complaint{.file = {},
+                  .object = "attach",
+                  .field = "body",
+                  .found = "the sphere '" + model.body_records[b].name + "'",
+                  .expected = "a body with a mesh",
+                  .hint = "a sphere that is led is a collider"}
+            .raise();
     const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
     if (model.has_frame(b) && !hold_whole(model, b, nodes))
         Complaint{.file = {},

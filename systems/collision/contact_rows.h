@@ -16,7 +16,8 @@ struct ContactPair {
     Index first, second;
 };
 
-/// A contact of two bodies or of a body with a collider (which has no velocity yet).
+/// A contact of two bodies or of a body with a collider (which has no velocity yet). `point`, `distance` and
+/// `contact_distance` are of the features: a sphere is its middle.
 ContactRow contact_row(const CollisionInputs& inputs, const ContactPair& pair, const Candidate& candidate,
                        ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
                        Real contact_distance, const SurfaceProperties& surface);

@@ -60,7 +60,7 @@ protected:
 
     bool within_reach(Real distance, Real relative_speed) const {
         const Real gap = distance - scale_.contact_distance;
-        return gap <= reach(h_, relative_speed, settings_.gravity, scale_.contact_distance);
+        return gap <= reach(h_, relative_speed, settings_.gravity, scale_.shell);
     }
 
     void add(const Candidate& candidate, ContactKind kind, const Stencil& stencil, const Vec3& point,

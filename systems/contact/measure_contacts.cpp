@@ -71,7 +71,8 @@ void add(ContactMeasures& sum, const ContactMeasures& part) {
 
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
                                  std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
-                                 std::span<Vec3> slip, std::span<ContactState> state, Friction friction) {
+                                 const SphereSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
+                                 Friction friction) {
     const std::size_t count = contacts.size();
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // a fixed number of parts, so that their sums need no memory; their borders depend on the contact count alone
@@ -83,7 +84,9 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3& normal = contacts.normal[i];
             const Vec3& impulse = contacts.impulse[i];
-            const Vec3 after = relative_velocity(contacts.stencil[i], contacts.surface_velocity[i], velocity_next);
+            const Stencil& stencil = contacts.stencil[i];
+            const Vec3 after = relative_velocity(stencil, contacts.surface_velocity[i], velocity_next) +
+                               spins.nodes.rolling(stencil, normal, [&](std::size_t r) { return spins.after(r); });
             slip[i] = after - after.dot(normal) * normal;
             state[i] = state_of(impulse, normal, contacts.static_friction[i], contacts.dynamic_friction[i], friction);
             part.max_penetration = std::max(part.max_penetration, -contacts.distance[i]);
@@ -91,10 +94,10 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
             part.stick_count += state[i] == ContactState::stick;
             part.slide_count += state[i] == ContactState::slide;
             if (state[i] == ContactState::open) continue;
-            const Vec3 before = relative_velocity(contacts.stencil[i], contacts.surface_velocity[i], velocity);
+            const Vec3 before = relative_velocity(stencil, contacts.surface_velocity[i], velocity) +
+                                spins.nodes.rolling(stencil, normal, [&](std::size_t r) { return spins.before(r); });
             part.dissipated -= 0.5 * impulse.dot(before + after);
-            add_outer(contacts.stencil[i], contacts.surface_velocity[i], impulse, inverse_mass, velocity, velocity_next,
-                      part);
+            add_outer(stencil, contacts.surface_velocity[i], impulse, inverse_mass, velocity, velocity_next, part);
         }
     });
     ContactMeasures total;

@@ -4,6 +4,7 @@
 #include "components/contact_table.h"
 #include "components/options.h"
 #include "jobs/executor.h"
+#include "systems/contact/node_groups.h"
 
 namespace skerry {
 
@@ -19,11 +20,33 @@ struct ContactMeasures {
     Index slide_count = 0;
 };
 
+/// How spheres spin, before and after the solve: at a contact their surface has a velocity that their node has not.
+struct SphereSpins {
+    RigidNodes nodes{};
+    // RigidBodyTable
+    std::span<const Mat3> inverse_inertia{};
+    std::span<const Vec3> angular_momentum{}, moment_kick{}, contact_moment{};
+
+    static SphereSpins bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
+                            const RigidBodyTable& rigid) {
+        return {.nodes = RigidNodes::bind(binder, node, body, rigid),
+                .inverse_inertia = binder.read(rigid.inverse_inertia),
+                .angular_momentum = binder.read(rigid.angular_momentum),
+                .moment_kick = binder.read(rigid.moment_kick),
+                .contact_moment = binder.read(rigid.contact_moment)};
+    }
+
+    Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
+    Vec3 after(std::size_t r) const {
+        return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r] + contact_moment[r]);
+    }
+};
+
 /// Writes slip (tangential relative velocity after the solve) and state (open: no impulse; slide: impulse on the limit
 /// of `friction`). Parallel over blocks of contacts; sums in block order.
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
                                  std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
-                                 std::span<Vec3> slip, std::span<ContactState> state,
+                                 const SphereSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
                                  Friction friction = Friction::cone);
 
 }  // namespace skerry

@@ -1,9 +1,11 @@
 // Which nodes do not move by themselves: those of a rigid body, and those of a cluster.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <span>
 
 #include "components/body_table.h"
+#include "components/contact_table.h"
 #include "components/joint_table.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
@@ -13,16 +15,18 @@
 namespace skerry {
 
 struct RigidNodes {
-    std::span<const Index> node_body;   // NodeTable
-    std::span<const Range> body_nodes;  // BodyTable
-    std::span<const Range> body_rigid;  // BodyTable; empty: no body is rigid
+    std::span<const Index> node_body;       // NodeTable
+    std::span<const Range> body_nodes;      // BodyTable
+    std::span<const Range> body_rigid;      // BodyTable; empty: no body is rigid
+    std::span<const Real> sphere_radius{};  // BodyTable; empty: no body is a sphere
 
     static RigidNodes bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                            const RigidBodyTable& rigid) {
         const bool any = !binder.read(rigid.mass).empty();
         return {.node_body = binder.read(node.body),
                 .body_nodes = binder.read(body.nodes),
-                .body_rigid = binder.read_if(any, body.rigid)};
+                .body_rigid = binder.read_if(any, body.rigid),
+                .sphere_radius = binder.read_if(any, body.sphere_radius)};
     }
 
     bool any() const { return !body_rigid.empty(); }
@@ -31,6 +35,23 @@ struct RigidNodes {
         if (!any()) return no_index;
         const Range rows = body_rigid[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
         return rows.size() > 0 ? rows.begin : no_index;
+    }
+    /// m, of the sphere whose middle a node is; 0: it is a point.
+    Real radius(Index node) const {
+        return sphere_radius.empty()
+                   ? 0
+                   : sphere_radius[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
+    }
+    /// m/s: by how much the surfaces of the spheres in a contact pass each other by their spins, where they touch. A
+    /// sphere is one node of the stencil, of weight 1 or -1, and touches at -radius normal from it, or at +radius
+    /// normal. `spin(r)`: rad/s, by row of RigidBodyTable.
+    Vec3 rolling(const Stencil& stencil, const Vec3& normal, auto&& spin) const {
+        Vec3 sum = Vec3::Zero();
+        if (sphere_radius.empty()) return sum;
+        for (std::size_t a = 0; a < 4; ++a)
+            if (const Real r = radius(stencil.node[a]); r > 0 && stencil.weight[a] != 0)
+                sum -= r * spin(static_cast<std::size_t>(row(stencil.node[a]))).cross(normal);
+        return sum;
     }
     /// The first node of the rigid body that a node belongs to, or itself.
     Index leader(Index node) const {

@@ -45,9 +45,14 @@ void sum_contact_impulses(const ContactSumInputs& contacts, const Vec3& moment_p
         // contacts of a pair stand together
         if (pairs.empty() || pairs.back().partners != partners) pairs.push_back({.partners = partners});
         const bool analytic = contacts.second_body[c] == no_index;
-        const Vec3 on_first = arm(stencil, 1, contacts.position, moment_point).cross(impulse);
+        const auto radius = [&](Index body) { return contacts.sphere_radius[static_cast<std::size_t>(body)]; };
+        const Vec3 first_arm =
+            arm(stencil, 1, contacts.position, moment_point) - radius(contacts.first_body[c]) * normal;
+        const Vec3 on_first = first_arm.cross(impulse);
         const Vec3 second_arm =
-            analytic ? Vec3(contacts.point[c] - moment_point) : arm(stencil, -1, contacts.position, moment_point);
+            analytic
+                ? Vec3(contacts.point[c] - moment_point)
+                : Vec3(arm(stencil, -1, contacts.position, moment_point) + radius(contacts.second_body[c]) * normal);
         const Vec3 on_second = -second_arm.cross(impulse);
         const Real along = impulse.dot(normal), sign = turned ? -1 : 1;
         PairSums& pair = pairs.back();

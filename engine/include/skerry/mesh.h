@@ -42,6 +42,9 @@ Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 /// lie on the sphere.
 Mesh ball(Real radius, int resolution);
 
+/// What a rigid sphere is drawn with: its first node is in the middle, and its faces are flat.
+Mesh sphere_picture(Real radius);
+
 /// A solid cylinder of the given radius and height: `resolution` elements across the diameter (odd: the next even
 /// number).
 Mesh cylinder(Real radius, Real height, int resolution);

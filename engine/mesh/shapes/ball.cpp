@@ -122,4 +122,9 @@ Mesh ball(Real radius, int resolution) {
     return BallBuilder(radius, shells).build();
 }
 
+Mesh sphere_picture(Real radius) {
+    constexpr int resolution = 8;
+    return ball(radius, resolution);
+}
+
 }  // namespace skerry::mesh

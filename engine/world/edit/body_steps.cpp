@@ -1,6 +1,8 @@
 // What a body takes from its materials: masses, how its elements relax, and the step that it stands.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -72,9 +74,19 @@ std::vector<Real> densities(const Model& model, const NewBody& body) {
     return density;
 }
 
+Real sphere_mass(const Model& model, const NewBody& body) {
+    const Real density = model.materials.constants[static_cast<std::size_t>(body.material)].density;
+    return 4 * std::numbers::pi / 3 * density * body.sphere_radius * body.sphere_radius * body.sphere_radius;
+}
+
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     add_lumped_mass(body.tetrahedra, body.nodes, densities(model, body), rows_of(nodes.mass, range));
+    if (body.sphere_radius > 0) {  // what draws it is inside it
+        const std::span<Real> mass = rows_of(nodes.mass, range);
+        const Real drawn = std::accumulate(mass.begin(), mass.end(), Real(0)), whole = sphere_mass(model, body);
+        for (Real& of_node : mass) of_node *= whole / drawn;
+    }
     for (auto n = static_cast<std::size_t>(range.begin); n < static_cast<std::size_t>(range.end); ++n)
         nodes.inverse_mass[n] = nodes.mass[n] > 0 ? 1 / nodes.mass[n] : 0;
 }

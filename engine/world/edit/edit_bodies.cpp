@@ -90,6 +90,17 @@ Real mean_edge_length(const Model& model, Range edges) {
     return edges.size() > 0 ? sum / edges.size() : 0;
 }
 
+/// Of triangles that only draw a body.
+Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span<const Vec3> nodes) {
+    Real sum = 0;
+    for (const auto& triangle : triangles)
+        for (std::size_t k = 0; k < 3; ++k)
+            sum +=
+                (nodes[static_cast<std::size_t>(triangle[k])] - nodes[static_cast<std::size_t>(triangle[(k + 1) % 3])])
+                    .norm();
+    return sum / static_cast<Real>(3 * triangles.size());
+}
+
 /// Smallest altitude of the tetrahedra: three times the volume over the largest face.
 /// m, of all tetrahedra; 0 without any.
 Real smallest_altitude(const NewBody& body) {
@@ -213,6 +224,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.self_contact[b] = body.self_contact;
     bodies.material[b] = body.material;
     bodies.filter[b] = body.filter;
+    bodies.sphere_radius[b] = body.sphere_radius;
     bodies.collider[b] = body.collider;
     bodies.nodes[b] = nodes;
     bodies.node_blocks[b] = {
@@ -244,7 +256,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     if (implicit) model.stiffen(b);
     model.settled = false;
     model.append_outline(b);
-    bodies.mean_edge[b] = mean_edge_length(model, bodies.edges[b]);
+    bodies.mean_edge[b] = body.sphere_radius > 0 ? mean_edge_length(model.body_records[b].surface, body.nodes)
+                                                 : mean_edge_length(model, bodies.edges[b]);
     bodies.contact_distance[b] =
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);

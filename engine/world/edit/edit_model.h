@@ -23,6 +23,7 @@ struct NewBody {
     std::span<const Index> tetrahedron_material = {};  // by tetrahedron; empty: `material`
     Index collider = no_index;
     Real contact_distance = -1;  // m, < 0: 2 % of the mean edge
+    Real sphere_radius = 0;      // m, > 0: a sphere about the first node, which the mesh only draws
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;
     std::span<const std::array<Index, 3>> triangles;  // of a surface without tetrahedra
@@ -57,6 +58,8 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
 // body_steps.cpp
 /// Tetrahedra by material, in the order in which the mesh comes to their materials.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body);
+/// kg, of a body that is a sphere.
+Real sphere_mass(const Model& model, const NewBody& body);
 /// Adds the masses of the tetrahedra to those of the nodes, which are free then.
 void set_masses(Model& model, const NewBody& body, Range nodes);
 /// Finds the mass forms (mass_forms.h) of a body of one level without clusters, whose masses are shared, and leaves

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Of the solid that tetrahedra fill, in the frame of the mesh.
+/// Of the solid that tetrahedra fill, or of a sphere, in the frame of the mesh.
 struct MassProperties {
     Real mass = 0;               // kg
     Vec3 center = Vec3::Zero();  // m
@@ -17,7 +17,12 @@ struct MassProperties {
     Mat3 axes;                   // principal frame to that of the mesh
 };
 
-MassProperties mass_properties(const NewBody& body, std::span<const Real> density) {
+MassProperties mass_properties(const Model& model, const NewBody& body) {
+    if (body.sphere_radius > 0) {
+        const Real mass = sphere_mass(model, body), moment = mass * body.sphere_radius * body.sphere_radius * 2 / 5;
+        return {mass, body.nodes[0], Vec3::Constant(moment), Mat3::Identity()};
+    }
+    const std::vector<Real> density = densities(model, body);
     MassProperties found;
     std::vector<Real> mass(body.tetrahedra.size());
     const auto corner = [&](std::size_t t, std::size_t k) -> const Vec3& {
@@ -109,7 +114,7 @@ void append_rigid_body(Model& model, Index row, const NewBody& body) {
     });
     table.body[r] = row;
     table.holder[r] = no_index;
-    const MassProperties found = mass_properties(body, densities(model, body));
+    const MassProperties found = mass_properties(model, body);
     write_masses(found, r, table);
     table.center[r] = body.position + body.rotation * found.center;
     table.rotation[r] = body.rotation * found.axes;
@@ -122,7 +127,7 @@ void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
     const std::size_t r = rigid_row(model, body);
     const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
     const Mat3 from_mesh = frame_of_mesh(table, r);
-    write_masses(mass_properties(as_new, densities(model, as_new)), r, table);
+    write_masses(mass_properties(model, as_new), r, table);
     table.rotation[r] = from_mesh * table.axes[r];
     set_motion(table, r, velocity, turn);
 }

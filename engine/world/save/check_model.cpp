@@ -105,6 +105,7 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
     expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
     expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, unbounded);
+    expect_between(file, "/bodies/sphere_radius", bodies.sphere_radius, 0.0, unbounded);
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         const auto complain = [&](const char* field, const std::string& found, const std::string& expected) {
             file.complain(std::string("/bodies/") + field, found + " at row " + std::to_string(b), expected);
@@ -121,6 +122,8 @@ void check_bodies(const Hdf5File& file, const Model& model) {
             count < 0 || (count + element_lanes - 1) / element_lanes != bodies.tetrahedron_blocks[b].size())
             complain("tetrahedron_count", std::to_string(count), "as many as the blocks hold");
         if (bodies.nodes[b].size() == 0) complain("nodes", "none", "at least one");
+        if (bodies.sphere_radius[b] > 0 && (bodies.rigid[b].size() != 1 || bodies.implicit[b].size() > 0))
+            complain("sphere_radius", std::to_string(bodies.sphere_radius[b]), "0 of a body that is not rigid");
         if (bodies.rigid[b].size() > (deforms ? 1 : 0))
             complain("rigid", std::to_string(bodies.rigid[b].size()) + " rows", "one of a rigid body, else none");
         if (bodies.rigid[b].size() > 0 && bodies.blocks[b].size() > 0)

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "systems/collision/build_surface.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/inputs/may_collide.h"
 #include "systems/collision/narrow/collider_distance.h"
-#include "systems/collision/overlap/collider_overlap.h"
 #include "systems/collision/tree/box.h"
 #include "systems/dynamics/motion/move_colliders.h"
 
@@ -33,10 +33,13 @@ StartSearch::StartSearch(const Model& model, Real now)
         const RigidPose pose = pose_at(colliders.script[c], colliders.keyframe, colliders.initial[c], now);
         collider_.push_back({pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()});
     }
-    for (const Range vertices : model.bodies.vertices) {
-        box_.push_back(empty_box());
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        Aabb box = empty_box();
+        const Range vertices = model.bodies.vertices[b];
         for (Index v = vertices.begin; v < vertices.end; ++v)
-            grow(box_.back(), model.nodes.position[model.surface.vertices.node[v]]);
+            grow(box, model.nodes.position[model.surface.vertices.node[v]]);
+        const Real radius = model.bodies.sphere_radius[b];
+        box_.push_back({box.lower.array() - radius, box.upper.array() + radius});
     }
 }
 
@@ -94,7 +97,19 @@ std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     return overlap;
 }
 
+std::optional<SphereSolid> StartSearch::sphere(Index body) const {
+    const Real radius = model_.bodies.sphere_radius[body];
+    if (!(radius > 0)) return std::nullopt;
+    return SphereSolid{model_.nodes.position[model_.bodies.nodes[body].begin] + shift(body), radius};
+}
+
 std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
+    const std::optional<SphereSolid> first = sphere(pair.first), second = sphere(pair.second);
+    if (first && second) {
+        const RigidMotion place{second->middle, Mat3::Identity(), Vec3::Zero(), Vec3::Zero()};
+        return overlap_of_sphere(*first, {ColliderShape::sphere, {second->radius, 0, 0}}, place, rounding(pair));
+    }
+    // of a sphere and a body with faces, the faces that draw it: overlaps that are less are left to the steps
     return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
                         rounding(pair));
 }
@@ -103,6 +118,8 @@ std::optional<Overlap> StartSearch::look_at_collider(const StartPair& pair) {
     const PlacedSolid body{solid(pair.first), shift(pair.first)};
     const ColliderGeometry& geometry = model_.colliders.geometry[pair.second];
     const RigidMotion& motion = collider_[static_cast<std::size_t>(pair.second)];
+    if (const std::optional<SphereSolid> found = sphere(pair.first))
+        return overlap_of_sphere(*found, geometry, motion, rounding(pair));
     if (const auto overlap = find_surface_inside(geometry, motion, body, rounding(pair))) return overlap;
     if (geometry.shape == ColliderShape::plane) return std::nullopt;
     return find_collider_inside(geometry, motion, body, rounding(pair));
@@ -147,7 +164,10 @@ const Solid& StartSearch::solid(Index body) {
         return *found;
     }
     std::vector<SolidTriangle> surface;
-    const Range triangles = model_.bodies.triangles[body];
+    if (model_.bodies.sphere_radius[body] > 0)
+        for (const BoundaryTriangle& triangle : boundary_triangles(record.tetrahedra))
+            surface.push_back({triangle.node, triangle.element});
+    const Range triangles = model_.bodies.sphere_radius[body] > 0 ? Range{0, 0} : model_.bodies.triangles[body];
     for (Index t = triangles.begin; t < triangles.end; ++t) {
         const auto& [a, b, c] = model_.surface.triangles.node[t];
         surface.push_back(

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/world/state/model.h"
-#include "systems/collision/overlap/solid_overlap.h"
+#include "systems/collision/overlap/collider_overlap.h"
 
 namespace skerry {
 
@@ -55,6 +55,8 @@ private:
     Real mean_edge(const StartPair& pair) const;
     /// m: two that are in each other by less cannot be told from two that touch.
     Real rounding(const StartPair& pair) const;
+    /// Where it has been moved, if it is one.
+    std::optional<SphereSolid> sphere(Index body) const;
     std::optional<Overlap> look_at_bodies(const StartPair& pair);
     std::optional<Overlap> look_at_collider(const StartPair& pair);
     void add_analytic(const std::vector<char>& marked, const BoxTree& tree, std::vector<StartPair>& pairs) const;

@@ -167,9 +167,11 @@ void Model::rebuild_clusters() {
 
 void Model::append_outline(std::size_t body) {
     const BodyRecord& record = body_records[body];
-    const bool has_tetrahedra = !record.tetrahedra.empty();
+    const bool is_sphere = bodies.sphere_radius[body] > 0, has_tetrahedra = !is_sphere && !record.tetrahedra.empty();
     std::vector<BoundaryTriangle> triangles;
-    if (has_tetrahedra)
+    if (is_sphere)
+        triangles.push_back({{0, 0, 0}, no_index});
+    else if (has_tetrahedra)
         triangles = boundary_triangles(record.tetrahedra);
     else
         for (const auto& triangle : record.surface) triangles.push_back({triangle, no_index});

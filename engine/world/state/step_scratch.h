@@ -77,6 +77,7 @@ struct KeptVelocities {
     Column<Vec3> velocity_next;     // m/s, predicted
     Column<Vec3> position, center;  // m, of nodes and of rigid bodies, at the start of the step; where any is rigid
     Column<Mat3> rotation;          // of rigid bodies, at the start of the step
+    Column<Vec3> angular_momentum;  // kg m^2/s, the same
     Column<Vec3> deforming, deforming_before;  // m/s, of implicit bodies: kicked, at the start of the step
 };
 

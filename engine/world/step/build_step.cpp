@@ -128,7 +128,8 @@ void list_solve(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/measure_joints", w.scratch.findings.joints, measure_joints,
                         inputs<JointWorkInputs>(w.scratch.joints, w.model.rigid_bodies));
     g.stage_with_result("contact/measure_contacts", w.scratch.findings.measures, measure_contacts, read(c),
-                        read(n.inverse_mass), read(n.velocity), read(n.velocity_next), write(c.slip), write(c.state),
+                        read(n.inverse_mass), read(n.velocity), read(n.velocity_next),
+                        inputs<SphereSpins>(n, w.model.bodies, w.model.rigid_bodies), write(c.slip), write(c.state),
                         value(p.solver.friction));
 }
 

@@ -39,6 +39,7 @@ void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> veloc
     copy(position, kept.position);
     copy(frames.center, kept.center);
     copy(frames.rotation, kept.rotation);
+    copy(frames.angular_momentum, kept.angular_momentum);
     copy(frames.deforming, kept.deforming);
     copy(frames.deforming_before, kept.deforming_before);
 }
@@ -55,6 +56,7 @@ void show_contact_problem(const WorldState& world, Real time) {
                                              model.implicit_nodes, scratch.coupling, scratch.joints);
     inputs.rigid.position = kept.position;
     inputs.rigid.center = kept.center;
+    inputs.rigid.angular_momentum = kept.angular_momentum;
     inputs.implicit.rotation = kept.rotation;
     inputs.implicit.velocity = kept.deforming;
     inputs.implicit.velocity_before = kept.deforming_before;

@@ -48,7 +48,8 @@ inline Real reach(Real h, Real relative_speed, Real gravity, Real contact_distan
 
 /// The distances of one pair, m.
 struct PairScale {
-    Real contact_distance;  // kept free between the surfaces
+    Real contact_distance;  // kept free between the features: that of the surfaces, and the radii of spheres
+    Real shell;             // of it, what is kept free between the surfaces
     Real edge;              // the smaller of the mean surface edges
     Real face_depth;        // a point this deep behind a face is pushed out of it
     Real edge_depth;        // the same behind an edge or vertex, and for two edges

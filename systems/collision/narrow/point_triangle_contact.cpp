@@ -60,6 +60,7 @@ Vec3 vertex_normal(const Query& q, Index triangle, std::size_t k) {
     const VertexTable& vertices = q.surface.vertices;
     const Index vertex = q.surface.triangles.vertex[triangle][k];
     const Index self = vertices.node[vertex];
+    if (q.surface.triangles.edge[triangle][k] == no_index) return q.offset;  // the middle of a sphere
     Vec3 sum = Vec3::Zero();
     for (Index i = vertices.triangle_begin[vertex]; i < vertices.triangle_end[vertex]; ++i) {
         const Index other = q.surface.vertex_triangle[i];

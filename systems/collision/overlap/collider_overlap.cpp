@@ -161,4 +161,13 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
                    length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
 }
 
+std::optional<Overlap> overlap_of_sphere(const SphereSolid& sphere, const ColliderGeometry& geometry,
+                                         const RigidMotion& motion, Real tolerance) {
+    const SurfacePoint nearest = distance_to_collider(geometry, motion, sphere.middle);
+    const Real depth = sphere.radius - nearest.distance;
+    if (!(depth > tolerance)) return std::nullopt;
+    return Overlap{nearest.distance < 0 ? OverlapKind::inside : OverlapKind::crossing, depth, nearest.normal,
+                   sphere.middle - (nearest.distance + depth / 2) * nearest.normal};
+}
+
 }  // namespace skerry

@@ -18,4 +18,14 @@ std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, con
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                             const PlacedSolid& body, Real tolerance);
 
+/// A body that is a sphere.
+struct SphereSolid {
+    Vec3 middle;  // m
+    Real radius;  // m
+};
+
+/// Of a sphere and a collider, by more than `tolerance` (m): inside where the middle is.
+std::optional<Overlap> overlap_of_sphere(const SphereSolid& sphere, const ColliderGeometry& geometry,
+                                         const RigidMotion& motion, Real tolerance);
+
 }  // namespace skerry

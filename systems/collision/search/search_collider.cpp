@@ -60,7 +60,8 @@ private:
 
     /// No edge or face touches between its nodes before the body has moved as far as this, m.
     Real distance_between_nodes() const {
-        if (nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinite;
+        const bool has_edges = inputs_.body.edges[pair_.first].size() > 0;
+        if (!has_edges || nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinite;
         const Vec3 middle = local(nearest_node_);
         // of the whole body at once: where the nearest node is, and while all lie over one face of a box
         Real hull = infinite, flat = infinite;

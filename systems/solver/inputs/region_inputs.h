@@ -33,6 +33,8 @@ struct RigidInputs {
     Real inverse_mass(std::size_t r) const { return holder.empty() || holder[r] == no_index ? 1 / mass[r] : 0; }
     Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
     Vec3 spin(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
+    /// rad/s, at the start of the step.
+    Vec3 spin_before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
 
     static RigidInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                             const RigidBodyTable& rigid) {

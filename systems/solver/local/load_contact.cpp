@@ -19,6 +19,10 @@ inline AroundKick around_kick(const RegionInputs& inputs, Index row, std::span<c
         velocity.before += stencil.weight[a] * inputs.velocity[stencil.node[a]];
         velocity.now += stencil.weight[a] * velocity_next[stencil.node[a]];
     }
+    const Vec3& normal = inputs.normal[row];
+    velocity.before +=
+        inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spin_before(r); });
+    velocity.now += inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spin(r); });
     if (inputs.implicit.any())
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0)

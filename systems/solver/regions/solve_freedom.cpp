@@ -118,7 +118,7 @@ private:
             [&](Index node) { return place_of(node); },
             [&](Index node, Real weight) {
                 const Index body = rigid.row(node);
-                if (body != no_index) add_term(part, body, node, weight);
+                if (body != no_index) add_term(part, body, node, weight, contact_normal(i));
                 return body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index;
             });
         data_.impulse[first_ + i].setZero();
@@ -144,7 +144,11 @@ private:
         }
     }
 
-    void add_term(RigidPart& part, Index body, Index node, Real weight) {
+    const Vec3& contact_normal(std::size_t i) const {
+        return stage_.inputs.normal[static_cast<std::size_t>(region_.row[i])];
+    }
+
+    void add_term(RigidPart& part, Index body, Index node, Real weight, const Vec3& normal) {
         const RigidInputs& rigid = stage_.inputs.rigid;
         Index k = 0;
         while (k < part.term_count && part.term[static_cast<std::size_t>(k)].row != body) ++k;
@@ -152,7 +156,11 @@ private:
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = Vec4::Zero(), .spin_step = {}};
+            // a sphere touches beside its node: at -radius normal of weight 1, or at radius normal of weight -1
+            term = {.row = body,
+                    .slot = static_cast<Index>(2 * place),
+                    .arm = padded(-rigid.nodes.radius(node) * normal),
+                    .spin_step = {}};
         }
         term.weight += weight;
         term.arm += weight * padded(rigid.position[static_cast<std::size_t>(node)] -

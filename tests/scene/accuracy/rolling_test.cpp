@@ -1,4 +1,4 @@
-// Rigid bodies that roll, rock and jam (docs/methods/accuracy.md 55 to 57).
+// Rigid bodies that roll, rock and jam (docs/methods/accuracy.md 55 to 57, 64).
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -73,7 +73,59 @@ Rolled roll(Real degrees, Real mu, Real h) {
     return {report.momentum.x() / mass / seconds, own.y() / (mass * radius * radius / 2) / seconds};
 }
 
+enum class Slope { plane, mesh };
+
+/// The same of a sphere, over a whole second.
+Rolled roll_sphere(Real degrees, Real mu, Slope slope) {
+    constexpr Real radius = 0.1, seconds = 1, kept = 1e-3;  // m, s, m
+    Settings settings = accurate(tilted_gravity(degrees), 1e-10);
+    settings.step_size = 0.01;
+    World world(settings);
+    const auto material = world.add_material({.friction = mu});
+    if (slope == Slope::plane)
+        world.add_collider(Plane{.point = {0, 0, kept / 2}});
+    else
+        world.add_collider(mesh::boundary(mesh::box({8, 1, 0.2}, {40, 5, 1})),
+                           {.position = {0, 0, -0.1}, .contact_distance = kept});
+    const auto body = world.add_body(Sphere{radius}, {.material = material,
+                                                      .position = {-3, 0.07, radius + kept},
+                                                      .contact_distance = kept,
+                                                      .dynamics = BodyDynamics::rigid});
+    REQUIRE(world.advance(seconds).ok());
+    const WorldReport report = world.report();
+    const Real mass = world.mass(body);
+    const Vec3 own = report.angular_momentum - world.center_of_mass(body).cross(report.momentum);
+    return {report.momentum.x() / mass / seconds, own.y() / (mass * radius * radius * 2 / 5) / seconds};
+}
+
 }  // namespace
+
+TEST_CASE("a rigid sphere rolls down a slope, and slips where friction is too small", "[scene][accuracy]") {
+    constexpr Real radius = 0.1;
+    const Real gentle = 10 * pi / 180, steep = 30 * pi / 180;
+    for (const Slope slope : {Slope::plane, Slope::mesh}) {
+        const std::string on = slope == Slope::plane ? "plane" : "mesh of 980 triangles";
+        accuracy::check({.item = 64,
+                         .name = "rigid sphere on a " + on + " of 10 degrees, mu = 0.5, acceleration (m/s^2)",
+                         .formula = "(5/7) g sin(b), mu >= (2/7) tan(b)",
+                         .expected = 5.0 / 7 * g * std::sin(gentle),
+                         .found = roll_sphere(10, 0.5, slope).acceleration,
+                         .tolerance = 1e-8});
+        const Rolled slipping = roll_sphere(30, 0.1, slope);
+        accuracy::check({.item = 64,
+                         .name = "the same on 30 degrees, mu = 0.1, acceleration (m/s^2)",
+                         .formula = "g (sin(b) - mu cos(b)), mu < (2/7) tan(b)",
+                         .expected = g * (std::sin(steep) - 0.1 * std::cos(steep)),
+                         .found = slipping.acceleration,
+                         .tolerance = 1e-8});
+        accuracy::check({.item = 64,
+                         .name = "the same, angular acceleration (rad/s^2)",
+                         .formula = "(5/2) mu g cos(b) / R",
+                         .expected = 2.5 * 0.1 * g * std::cos(steep) / radius,
+                         .found = slipping.spin,
+                         .tolerance = 1e-8});
+    }
+}
 
 TEST_CASE("a rigid wheel rolls down a slope, and slips where friction is too small", "[scene][accuracy]") {
     constexpr Real radius = 0.1;

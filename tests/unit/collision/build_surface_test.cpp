@@ -128,3 +128,18 @@ TEST_CASE("nothing has no boundary, one tetrahedron has four faces", "[unit]") {
     const std::array<std::array<Index, 4>, 1> one{{{0, 1, 2, 3}}};
     CHECK(boundary_triangles(one).size() == 4);
 }
+
+TEST_CASE("a triangle that is three times one node is a point: one vertex, no edges", "[unit]") {
+    SurfaceTables surface;
+    const std::vector<BoundaryTriangle> point{{{0, 0, 0}, no_index}};
+    append_surface(point, 5, no_index, surface);
+    const SurfaceRanges ranges = append_surface(point, 7, no_index, surface);
+    CHECK(ranges.triangles.size() == 1);
+    CHECK(ranges.vertices.size() == 1);
+    CHECK(ranges.edges.size() == 0);
+    CHECK(surface.vertices.node[1] == 7);
+    CHECK(surface.triangles.node[1] == std::array<Index, 3>{7, 7, 7});
+    CHECK(surface.triangles.owned_vertices[1] == 1);
+    CHECK(surface.triangles.owned_edges[1] == 0);
+    for (const Index edge : surface.triangles.edge[1]) CHECK(edge == no_index);
+}

@@ -352,7 +352,7 @@ TEST_CASE("a body touches itself neither at rest nor when it is squeezed evenly 
 }
 
 TEST_CASE("two ridges that have passed each other are pushed back, however flat they are", "[unit]") {
-    const PairScale scale{0.02, 1, 0.25, 0.02, 0.25};
+    const PairScale scale{0.02, 0.02, 1, 0.25, 0.02, 0.25};
     for (Real bend : {0.025, 0.05, 0.5, 2.0})
         for (Real height : {0.01, 0.0, -0.005, -0.015}) {
             INFO("bend " << bend << ", height " << height);
@@ -381,7 +381,7 @@ TEST_CASE("two ridges that have passed each other are pushed back, however flat 
 
 TEST_CASE("an edge that lies on two edges of a face is held by the sharper, though the flatter lets it come nearer",
           "[unit]") {
-    const PairScale scale{0.02, 1, 0.25, 0.03, 0.25};
+    const PairScale scale{0.02, 0.02, 1, 0.25, 0.03, 0.25};
     constexpr Real near = 0.0201;
     const Vec3 a(0, 0, 0), common(1, 0, 0), b(0.4, 0.9, 0);
     // What is beyond an edge of the face falls away by the bend.

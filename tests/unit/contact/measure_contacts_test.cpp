@@ -35,8 +35,8 @@ Measured measure(const ContactTable& table, const std::vector<Vec3>& before, con
                  int workers = 1, Friction friction = Friction::cone) {
     Measured result{{}, std::vector<Vec3>(table.size()), std::vector<ContactState>(table.size())};
     const auto executor = make_executor(Backend::threads, workers);
-    result.sums = measure_contacts(*executor, table, std::vector<Real>(before.size(), 1.0), before, after, result.slip,
-                                   result.state, friction);
+    result.sums = measure_contacts(*executor, table, std::vector<Real>(before.size(), 1.0), before, after, {},
+                                   result.slip, result.state, friction);
     return result;
 }
 

@@ -138,6 +138,36 @@ TEST_CASE("the impulses of a step of a held implicit body solve the problem that
     for (const StepProblem& step : stack.problems) CHECK(independent_error(step.problem, step.impulse) < 1e-6);
 }
 
+TEST_CASE("the impulses of a step of rigid spheres solve the problem that it shows", "[unit][problem]") {
+    Settings settings = Stack::exact();
+    settings.step_size = 2e-3;
+    Stack stack(settings, {.young_modulus = 1e6, .density = 500}, BodyDynamics::rigid);
+    const auto rubber = stack.world.add_material({.density = 500, .friction = 0.5});
+    for (const Vec3& place : {Vec3(0.3, 0, 0.101), Vec3(0.42, 0.1, 0.24), Vec3(0, 0, 0.32)})
+        stack.world.add_body(Sphere{0.1}, {.material = rubber,
+                                           .position = place,
+                                           .velocity = {-0.5, 0, -0.5},
+                                           .angular_velocity = {3, 8, -5},
+                                           .contact_distance = 0.002,
+                                           .dynamics = BodyDynamics::rigid});
+    stack.watch();
+    stack.world.advance(0.2);
+    REQUIRE(stack.problems.size() > 20);
+    REQUIRE(stack.any_coupled());
+    for (std::size_t k = 0; k < stack.problems.size(); ++k) {
+        const StepProblem& step = stack.problems[k];
+        CHECK(independent_error(step.problem, step.impulse) < 1e-6);
+        const std::vector<Vec3> u = velocities(step.problem, step.impulse);
+        for (std::size_t i = 0; i < u.size(); ++i) {  // slip has the spins
+            const Contact& contact = stack.contacts[k][step.contact[i]];
+            const TangentFrame tangents = tangent_frame(contact.normal);
+            for (const auto& [axis, along] : {std::pair{1, tangents.first}, {2, tangents.second}})
+                if (step.lumped.friction[i] > 0 && contact.motion == ContactMotion::stick)
+                    CHECK(u[i][axis] == Approx(contact.slip.dot(along)).margin(1e-8));
+        }
+    }
+}
+
 TEST_CASE("the lumped form of a step and its blocks give the same velocities", "[unit][problem]") {
     Stack stack;
     stack.watch(5);

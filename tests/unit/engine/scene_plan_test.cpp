@@ -216,3 +216,26 @@ TEST_CASE("joints of what is not there, or cannot be, are refused where they sta
     refused(R"("kind": "ball", "first": "door", "upper": 1)", "joints[0]");
     refused(R"("kind": "hinge", "first": "door", "motor": {"strength": 1})", "joints[0].motor");
 }
+
+TEST_CASE("a body with a shape in the place of a mesh is a sphere", "[unit]") {
+    const TemporaryFolder folder;
+    const auto scene = [&](const std::string& body) {
+        return folder.write("s.json",
+                            R"({"materials": {"steel": {}}, "bodies": [{"material": "steel", )" + body + "}]}");
+    };
+    const std::string sphere = R"("shape": {"sphere": {"radius": 0.2}})";
+    const ScenePlan plan = plan_scene(scene(sphere + R"(, "dynamics": "rigid", "positions": [[0, 0, 1], [0, 0, 2]])"));
+    REQUIRE(plan.bodies.size() == 2);
+    REQUIRE(plan.bodies[1].sphere);
+    CHECK(plan.bodies[1].sphere->radius == 0.2);
+    const Scene built = build_scene(plan);
+    const BodyHandle body = built.world.bodies()[1];
+    CHECK(built.world.mass(body) == Approx(4 * 3.14159265358979 / 3 * 0.008 * 1000).epsilon(1e-12));
+    CHECK(built.world.positions(body)[0] == Vec3(0, 0, 2));
+
+    using Catch::Contains;
+    CHECK_THROWS_WITH(build_scene(plan_scene(scene(sphere))), Contains("dynamics") && Contains("rigid"));
+    CHECK_THROWS_WITH(plan_scene(scene(R"("dynamics": "rigid")")), Contains("mesh") && Contains("shape"));
+    CHECK_THROWS_WITH(plan_scene(scene(sphere + R"(, "mesh": {"ball": {"radius": 1, "resolution": 3}})")),
+                      Contains("mesh") && Contains("shape"));
+}

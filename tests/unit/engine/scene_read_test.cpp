@@ -204,7 +204,7 @@ TEST_CASE("what is missing, or there twice, is named", "[unit]") {
     check_messages({
         {"no mesh",
          R"({"bodies": [{"name": "b", "material": "m"}]})",
-         {"body \"b\": bodies[0]: found no key \"mesh\""}},
+         {"body \"b\": bodies[0]: found none of these keys", "exactly one of \"mesh\", \"shape\""}},
         {"no material",
          R"({"bodies": [{"mesh": {"ball": {"radius": 1, "resolution": 3}}}]})",
          {"bodies[0]: found no key \"material\""}},

@@ -1,0 +1,323 @@
+// Rigid spheres, which are round to what they touch (docs/methods/rigid_bodies.md 6).
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "engine/world/world_state.h"
+#include "skerry/forces.h"
+#include "skerry/query.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+constexpr Real radius = 0.1, density = 1000, g = standard_gravity;
+const Real mass = 4 * std::numbers::pi / 3 * density * radius * radius * radius, moment = 0.4 * mass * radius * radius;
+
+struct Spheres {
+    World world;
+    MaterialHandle material;
+
+    explicit Spheres(const Settings& settings, Real mu = 0.5, Real restitution = 0)
+        : world(settings),
+          material(world.add_material(
+              {.young_modulus = 1e6, .density = density, .friction = mu, .restitution = restitution})) {}
+
+    BodyHandle add(const Vec3& position, const Vec3& velocity = Vec3::Zero(), const Vec3& spin = Vec3::Zero(),
+                   const std::string& name = "") {
+        return world.add_body(Sphere{radius}, {.material = material,
+                                               .position = position,
+                                               .velocity = velocity,
+                                               .angular_velocity = spin,
+                                               .contact_distance = 0.001,
+                                               .dynamics = BodyDynamics::rigid,
+                                               .name = name});
+    }
+    Vec3 velocity(BodyHandle body) const {
+        const Model& model = WorldAccess::state_of(world).model;
+        const auto r = static_cast<std::size_t>(model.bodies.rigid[model.row(body, "test")].begin);
+        return model.rigid_bodies.momentum[r] / model.rigid_bodies.mass[r];
+    }
+    Vec3 spin(BodyHandle body) const {
+        const Model& model = WorldAccess::state_of(world).model;
+        const auto r = static_cast<std::size_t>(model.bodies.rigid[model.row(body, "test")].begin);
+        return model.rigid_bodies.angular_momentum[r] / model.rigid_bodies.moments[r][0];
+    }
+    Vec3 place(BodyHandle body) const { return world.positions(body)[0]; }
+};
+
+Settings steps_of(Real h, const Vec3& gravity = {0, 0, -g}) {
+    Settings settings = accurate(gravity, 1e-10);
+    settings.step_size = h;
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("a sphere has the mass and the moments of the solid, not of what draws it", "[scene]") {
+    Spheres s(steps_of(1e-2, Vec3::Zero()));
+    const BodyHandle ball = s.add({0, 0, 1}, {1, 2, 3}, {4, 5, 6});
+    CHECK(s.world.mass(ball) == Approx(mass).epsilon(1e-14));
+    CHECK((s.world.center_of_mass(ball) - Vec3(0, 0, 1)).norm() < 1e-14);
+    CHECK(s.world.energy().kinetic == Approx(mass * 14 / 2 + moment * 77 / 2).epsilon(1e-13));
+    MaterialSettings heavier = s.world.material(s.material);
+    heavier.density *= 2;
+    s.world.set_material(s.material, heavier);
+    CHECK(s.world.mass(ball) == Approx(2 * mass).epsilon(1e-14));
+    CHECK(s.world.energy().kinetic == Approx(mass * 14 + moment * 77).epsilon(1e-13));
+}
+
+TEST_CASE("a sphere rolls down a slope at five sevenths, on whatever the slope is made of", "[scene]") {
+    constexpr Real degrees = 10, seconds = 0.5;
+    const Real law = 5.0 / 7 * g * std::sin(degrees * std::numbers::pi / 180) * seconds;
+    enum Floor { plane, box, mesh_collider, rigid_slab };
+    for (const Floor floor : {plane, box, mesh_collider, rigid_slab}) {
+        CAPTURE(floor);
+        Settings settings = steps_of(5e-3, tilted_gravity(degrees));
+        Spheres s(settings);
+        const Mesh slab = mesh::box({4, 1, 0.2}, {16, 4, 1});
+        if (floor == plane) s.world.add_collider(Plane{});
+        if (floor == box) s.world.add_collider(Box{{4, 1, 0.2}}, {.position = {0, 0, -0.1}});
+        if (floor == mesh_collider)
+            s.world.add_collider(mesh::boundary(slab), {.position = {0, 0, -0.1}, .contact_distance = 0.001});
+        if (floor == rigid_slab) {
+            const BodyHandle held = s.world.add_body(slab, {.material = s.material,
+                                                            .position = {0, 0, -0.1},
+                                                            .contact_distance = 0.001,
+                                                            .dynamics = BodyDynamics::rigid});
+            std::vector<Index> all(slab.nodes.size());
+            std::iota(all.begin(), all.end(), 0);
+            s.world.attach(held, all);
+        }
+        const Real kept = floor == plane || floor == box ? 0.0005 : 0.001;
+        const BodyHandle ball = s.add({-1, 0.03, radius + kept});
+        REQUIRE(s.world.advance(seconds).ok());
+        CHECK(s.velocity(ball).x() == Approx(law).epsilon(1e-9));
+        CHECK(s.spin(ball).y() == Approx(law / radius).epsilon(1e-9));
+        CHECK(std::abs(s.velocity(ball).y()) + std::abs(s.velocity(ball).z()) < 1e-9);
+        CHECK(s.place(ball).z() == Approx(radius + kept).epsilon(1e-9));
+        const WorldReport report = s.world.report();
+        CHECK(std::abs(report.dissipated) < 1e-9);  // nothing slips
+        for (const Contact& contact : s.world.contacts()) CHECK(contact.slip.norm() < 1e-8);
+    }
+}
+
+TEST_CASE("a sphere that slides begins to roll at five sevenths of its speed", "[scene]") {
+    constexpr Real mu = 0.2, speed = 2;
+    Spheres s(steps_of(1e-3), mu);
+    s.world.add_collider(Plane{});
+    const BodyHandle ball = s.add({0, 0, radius + 0.0005}, {speed, 0, 0});
+    REQUIRE(s.world.advance(0.1).ok());
+    CHECK(s.velocity(ball).x() == Approx(speed - mu * g * 0.1).epsilon(1e-9));
+    CHECK(s.spin(ball).y() == Approx(2.5 * mu * g * 0.1 / radius).epsilon(1e-9));
+    REQUIRE(s.world.advance(0.4).ok());
+    CHECK(s.velocity(ball).x() == Approx(5.0 / 7 * speed).epsilon(1e-9));
+    CHECK(s.spin(ball).y() == Approx(5.0 / 7 * speed / radius).epsilon(1e-9));
+    const WorldReport report = s.world.report();
+    CHECK(report.dissipated == Approx(mass * speed * speed / 7).epsilon(1e-6));
+    CHECK(report.energy_error < 1e-9);
+}
+
+TEST_CASE("the moment that friction has on a sphere is what spins it", "[scene]") {
+    constexpr Real mu = 0.2;
+    Spheres s(steps_of(1e-3), mu);
+    const auto floor = s.world.add_collider(Plane{});
+    const BodyHandle ball = s.add({0, 0, radius + 0.0005}, {2, 0, 0});
+    s.world.measure_forces(true, Vec3(0, 0, radius));
+    REQUIRE(s.world.advance(1e-3).ok());
+    const ForceReport on = s.world.forces().on(ball, floor);
+    const Vec3 about = on.moment_about({0, 0, radius + 0.0005});
+    CHECK(on.force().x() == Approx(-mu * mass * g).epsilon(1e-9));
+    CHECK(about.y() == Approx(mu * mass * g * radius).epsilon(1e-9));
+    CHECK(about.y() * 1e-3 / moment == Approx(s.spin(ball).y()).epsilon(1e-9));
+}
+
+TEST_CASE("a sphere stays what it is when bodies before it go", "[scene]") {
+    Spheres s(steps_of(1e-3));
+    const BodyHandle block =
+        s.world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = s.material, .position = {3, 0, 0}});
+    const BodyHandle below = s.add({0, 0, 0}), above = s.add({0, 0, 0.25}, {0, 0, -1});
+    REQUIRE(s.world.advance(0.02).ok());
+    s.world.remove(block);
+    REQUIRE(s.world.advance(0.08).ok());
+    CHECK(s.world.contacts().size() == 1);
+    CHECK((s.place(above) - s.place(below)).norm() == Approx(2 * radius + 0.001).epsilon(1e-6));
+}
+
+TEST_CASE("two spheres meet along the line of their middles", "[scene]") {
+    Spheres s(steps_of(1e-3, Vec3::Zero()), 0, 1);
+    const Vec3 along = Vec3(1, 2, -0.5).normalized();
+    const Real kept = 2 * radius + 0.001;
+    const BodyHandle still = s.add({0, 0, 0}), thrown = s.add(-(kept + 0.05) * along, 2 * along);
+    REQUIRE(s.world.advance(0.1).ok());
+    CHECK((s.velocity(still) - 2 * along).norm() < 1e-9);
+    CHECK(s.velocity(thrown).norm() < 1e-9);
+    CHECK(s.world.report().max_penetration == 0);
+    CHECK(s.world.report().energy_error < 1e-9);
+}
+
+TEST_CASE("friction spins two spheres that graze each other, and angular momentum stays", "[scene]") {
+    Spheres s(steps_of(1e-3, Vec3::Zero()), 0.3);
+    const BodyHandle a = s.add({0, 0, 0}), b = s.add({-0.3, 0.1, 0}, {3, 0, 0});
+    const Vec3 before = s.world.report().angular_momentum;
+    REQUIRE(s.world.advance(0.2).ok());
+    CHECK(s.spin(a).norm() > 1);
+    CHECK((s.spin(a) - s.spin(b)).norm() < 1e-9);
+    const Vec3 after = s.world.report().angular_momentum;
+    // the two surfaces are the contact distance apart, which friction bridges without a moment
+    CHECK((after - before).norm() < 0.01 * before.norm());
+    CHECK(s.world.report().momentum_error < 1e-12);
+}
+
+TEST_CASE("a sphere lies in a soft body that closes around it, and is carried by all that it touches", "[scene]") {
+    Spheres s({.step_size = 1e-3});
+    s.world.add_collider(Plane{});
+    const auto soft = s.world.add_material(
+        {.young_modulus = 2e4, .poisson_ratio = 0.3, .density = 500, .friction = 0.5, .damping = 5});
+    const BodyHandle pad = s.world.add_body(mesh::box({0.5, 0.5, 0.2}, {10, 10, 4}),
+                                            {.material = soft, .position = {0, 0, 0.1005}, .contact_distance = 0.001});
+    const BodyHandle ball = s.add({0.013, 0.007, 0.2 + radius + 0.003});
+    REQUIRE(s.world.advance(1.5).ok());
+    const StepReport last = s.world.advance(1e-4);
+    REQUIRE(last.steps == 1);
+    const Real depth = 0.2 + radius - s.place(ball).z();
+    CHECK(depth > 0.01);
+    Vec3 carried = Vec3::Zero();
+    Index touching = 0;
+    for (const Contact& contact : s.world.contacts())
+        if (contact.first == ball || contact.second == ball) {
+            carried += (contact.first == ball ? 1 : -1) * contact.impulse;
+            ++touching;
+            CHECK(contact.distance > 0);
+        }
+    CHECK(touching > 5);
+    CHECK(carried.z() / last.step_size == Approx(mass * g).epsilon(0.05));
+    for (const Vec3& x : s.world.positions(pad)) CHECK((x - s.place(ball)).norm() > radius);
+}
+
+TEST_CASE("a sphere rests on two edges of meshes, and on one corner", "[scene]") {
+    constexpr Real kept = 0.001, apart = 0.06;
+    Spheres s(steps_of(5e-3));
+    const SurfaceMesh slab = mesh::boundary(mesh::box({0.5, 2, 0.2}, {5, 11, 2}));
+    for (const Real side : {-1.0, 1.0})
+        s.world.add_collider(slab, {.position = {side * (0.25 + apart), 0, -0.1}, .contact_distance = kept});
+    const Real height = std::sqrt((radius + kept) * (radius + kept) - apart * apart);
+    const BodyHandle ball = s.add({0, 0.01, height + 1e-4});
+    // upside down on a corner, in unstable balance without friction
+    const SurfaceMesh spike{{{0, 0, 0.5}, {-0.2, -0.2, 0}, {0.2, -0.2, 0}, {0, 0.3, 0}},
+                            {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+    s.world.add_collider(spike, {.position = {3, 0, 0}, .friction = 0, .contact_distance = kept});
+    const BodyHandle above = s.add({3, 0, 0.5 + radius + kept});
+    REQUIRE(s.world.advance(0.3).ok());
+    CHECK(s.place(ball).z() == Approx(height).epsilon(1e-6));
+    CHECK((s.place(ball).head<2>() - Vec3(0, 0.01, 0).head<2>()).norm() < 1e-9);
+    CHECK((s.place(above) - Vec3(3, 0, 0.5 + radius + kept)).norm() < 1e-9);
+}
+
+TEST_CASE("spheres come to rest on each other in a bucket", "[scene]") {
+    Spheres s({.step_size = 5e-3});
+    s.world.add_collider(Bucket{.radius = 0.3, .height = 0.5, .thickness = 0.02});
+    std::vector<BodyHandle> balls;
+    for (int k = 0; k < 6; ++k)
+        balls.push_back(s.add({0.11 * std::cos(k * 2.2), 0.11 * std::sin(k * 2.2), 0.15 + 0.25 * k}));
+    REQUIRE(s.world.advance(4).ok());
+    for (const BodyHandle ball : balls) {
+        CHECK(s.velocity(ball).norm() < 1e-3);
+        CHECK(s.place(ball).z() > radius);
+        CHECK(s.place(ball).head<2>().norm() < 0.3 - radius);
+        for (const BodyHandle other : balls)
+            if (other != ball) CHECK((s.place(ball) - s.place(other)).norm() > 2 * radius);
+    }
+}
+
+TEST_CASE("a fast sphere goes through nothing", "[scene]") {
+    for (const Real speed : {3.0, 30.0, 100.0}) {
+        CAPTURE(speed);
+        Spheres s(steps_of(1.0 / 120, Vec3::Zero()));
+        s.world.add_collider(Box{{0.02, 2, 2}}, {.position = {1, 0, 0}});
+        s.world.add_collider(mesh::boundary(mesh::box({0.02, 2, 2}, {1, 4, 4})),
+                             {.position = {-1, 0, 0}, .contact_distance = 0.001});
+        const BodyHandle a = s.add({0.3, 0.02, 0.01}, {speed, 0, 0}), b = s.add({-0.3, 0.3, 0.01}, {-speed, 0, 0});
+        REQUIRE(s.world.advance(0.5).ok());
+        CHECK(s.place(a).x() < 1);
+        CHECK(s.place(b).x() > -1);
+        CHECK(s.world.report().max_penetration < 1e-9);
+    }
+}
+
+TEST_CASE("rays and nearest points meet the sphere, not the faces that draw it", "[scene]") {
+    Spheres s(steps_of(1e-3));
+    const BodyHandle ball = s.add({1, 2, 3});
+    const Vec3 aside = Vec3(0.31, -0.2, 0.9).normalized();
+    const auto hit = s.world.cast_ray(Vec3(1, 2, 3) + 2 * aside, -aside, 10);
+    REQUIRE(hit);
+    CHECK(hit->body == ball);
+    CHECK(hit->distance == Approx(2 - radius).epsilon(1e-14));
+    CHECK((hit->normal - aside).norm() < 1e-13);
+    const auto nearest = s.world.nearest_point(Vec3(1, 2, 3) + 0.5 * aside, 10);
+    REQUIRE(nearest);
+    CHECK(nearest->distance == Approx(0.5 - radius).epsilon(1e-14));
+    CHECK((nearest->point - (Vec3(1, 2, 3) + radius * aside)).norm() < 1e-13);
+    for (const Vec3& x : s.world.positions(ball)) CHECK((x - Vec3(1, 2, 3)).norm() < radius + 1e-14);
+}
+
+TEST_CASE("spheres that overlap at the start are refused or moved apart", "[scene]") {
+    Settings settings = steps_of(1e-3);
+    settings.start_overlaps = StartOverlaps::refuse;
+    const auto overlapping = [&](const Settings& with) {
+        Spheres s(with);
+        s.world.add_collider(Plane{});
+        s.add({0, 0, 0.15}, Vec3::Zero(), Vec3::Zero(), "below");
+        s.add({0, 0.02, 0.34}, Vec3::Zero(), Vec3::Zero(), "above");
+        return s;
+    };
+    Spheres refused = overlapping(settings);
+    CHECK_THROWS_WITH(refused.world.advance(1e-3), Catch::Contains("above") && Catch::Contains("below"));
+    settings.start_overlaps = StartOverlaps::resolve;
+    Spheres moved = overlapping(settings);
+    REQUIRE(moved.world.advance(1e-3).ok());
+    const auto bodies = moved.world.bodies();
+    CHECK((moved.place(bodies[0]) - moved.place(bodies[1])).norm() > 2 * radius);
+}
+
+TEST_CASE("what a sphere cannot be is refused by name", "[scene]") {
+    Spheres s(steps_of(1e-3));
+    using Catch::Contains;
+    CHECK_THROWS_WITH(s.world.add_body(Sphere{radius}, {.material = s.material, .name = "soft"}),
+                      Contains("'soft'") && Contains("dynamics"));
+    CHECK_THROWS_WITH(
+        s.world.add_body(Sphere{0}, {.material = s.material, .dynamics = BodyDynamics::rigid, .name = "none"}),
+        Contains("'none'") && Contains("radius"));
+    const BodyHandle ball = s.add({0, 0, 0}, Vec3::Zero(), Vec3::Zero(), "ball");
+    const std::uint64_t before = s.world.state_hash();
+    CHECK_THROWS_WITH(s.world.set_dynamics(ball, BodyDynamics::explicit_elastic), Contains("'ball'"));
+    CHECK_THROWS_WITH(s.world.attach(ball, std::vector<Index>{0, 1, 2, 3}), Contains("'ball'"));
+    CHECK(s.world.state_hash() == before);
+}
+
+TEST_CASE("spheres have the same bits on any number of threads, cloned, and from a file", "[determinism]") {
+    const auto course = [](int threads) {
+        Settings settings = steps_of(5e-3);
+        settings.backend = Backend::threads;
+        settings.threads = threads;
+        Spheres s(settings);
+        s.world.add_collider(Plane{});
+        for (int k = 0; k < 5; ++k) s.add({0.13 * (k % 2), 0.04 * k, 0.12 + 0.21 * k});
+        s.world.add_body(mesh::box({0.3, 0.3, 0.1}, {4, 4, 1}), {.material = s.material, .position = {0, 0, 1.5}});
+        REQUIRE(s.world.advance(0.3).ok());
+        return s;
+    };
+    Spheres one = course(1), two = course(2);
+    CHECK(one.world.state_hash() == two.world.state_hash());
+    World copy = one.world.clone();
+    const TemporaryFolder folder;
+    one.world.save(folder.path() / "world.h5");
+    World loaded = World::load(folder.path() / "world.h5");
+    for (World* world : {&one.world, &two.world, &copy, &loaded}) {
+        REQUIRE(world->advance(0.3).ok());
+        CHECK(world->state_hash() == one.world.state_hash());
+    }
+}
