@@ -57,7 +57,8 @@ bool affordable(const SceneFile& scene) {
         const Real repeated =
             body.repeat ? Real(1) * body.repeat->count[0] * body.repeat->count[1] * body.repeat->count[2] : 1;
         copies += repeated + static_cast<Real>(body.positions.size());
-        elements += repeated * elements_of(body.mesh);
+        constexpr Real of_sphere = 1280;  // what draws it
+        elements += repeated * (body.mesh ? elements_of(*body.mesh) : of_sphere);
     }
     for (const ColliderEntry& collider : scene.colliders)
         if (collider.shape.mesh) elements += elements_of(*collider.shape.mesh);

@@ -166,7 +166,7 @@ TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, a
     }
     list.push_back({"body 'odd'", "contact_distance",
                     [&] { world.add_body(box, {.material = rubber, .contact_distance = -1, .name = "odd"}); }});
-    list.push_back({"body 'odd'", "mesh", [&] { world.add_body({}, {.material = rubber, .name = "odd"}); }});
+    list.push_back({"body 'odd'", "mesh", [&] { world.add_body(Mesh{}, {.material = rubber, .name = "odd"}); }});
     Mesh flat = box;
     for (Vec3& x : flat.nodes) x.z() = 0;
     list.push_back({"body 'odd'", "volume", [&] { world.add_body(flat, {.material = rubber, .name = "odd"}); }});
