@@ -31,6 +31,7 @@ struct TetrahedronBlockTable {
     Column<ElementLane> altitude;  // m, the smallest at rest; infinite in a lane that is left over
     // in how many times max_strain_step F may change: more than 1 where an implicit element covers the tetrahedron
     Column<ElementLane> leeway;
+    Column<std::uint8_t> sliver;  // bit l: tetrahedron of lane l is one (build_elements.h)
     // m: none of the block turns inside out, or back, while the body's travel is below this
     Column<Real> uninverted_until;
 
@@ -40,6 +41,7 @@ struct TetrahedronBlockTable {
         visit("volume", volume, ColumnRole::state);
         visit("altitude", altitude, ColumnRole::state);
         visit("leeway", leeway, ColumnRole::state);
+        visit("sliver", sliver, ColumnRole::state);
         visit("uninverted_until", uninverted_until, ColumnRole::memory);
     }
 };

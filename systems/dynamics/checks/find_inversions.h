@@ -15,7 +15,8 @@ namespace skerry {
 struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
-    std::span<const ElementLane> tetrahedron_leeway;  // empty: 1
+    std::span<const ElementLane> tetrahedron_leeway;    // empty: 1
+    std::span<const std::uint8_t> tetrahedron_sliver;   // empty: none is one
     std::span<const Range> body_blocks;               // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
     std::span<const Vec3> position;                 // m, at the start of the step
@@ -28,6 +29,7 @@ struct InversionInputs {
         return {.tetrahedron_node = binder.read(tetrahedron.node),
                 .tetrahedron_volume = binder.read(tetrahedron.volume),
                 .tetrahedron_leeway = binder.read(tetrahedron.leeway),
+                .tetrahedron_sliver = binder.read(tetrahedron.sliver),
                 .body_blocks = binder.read(body.tetrahedron_blocks),
                 .body_frame_speed = binder.read(body.frame_speed),
                 .body_travel = binder.read(body.travel),
@@ -44,7 +46,7 @@ struct Inversions {
     Index count = 0;
     Index body = no_index;         // row of BodyTable, of the first
     Index tetrahedron = no_index;  // of the table: lane of a block
-    // some body of them had no inverted tetrahedron before; those that implicit elements cover do not count
+    // some body of them had no inverted tetrahedron before; slivers and what implicit elements cover do not count
     bool first = false;
 };
 
@@ -54,7 +56,7 @@ struct InversionPart {
     Range blocks{0, 0};
     Real uninverted_until = 0;                // m, the least of them
     Index count = 0, tetrahedron = no_index;  // that the step turns over, and the first of them
-    bool judged = false;                      // some of them without leeway
+    bool judged = false;                      // some of them neither slivers nor with leeway
 };
 
 /// Working memory, kept between steps.

@@ -238,15 +238,23 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
 
 std::span<const Real> StiffBody::responses(std::span<const Index> nodes, Index first) {
     const auto same = [first](Index kept, Index asked) { return kept == asked - first; };
-    const std::size_t count = nodes.size(), numbers = 3 * count;
-    const auto of_nodes = std::span<const Real>(responses_).first(std::min(responses_.size(), numbers * numbers));
-    if (std::ranges::equal(touched_, nodes, same)) return of_nodes;
-    touched_.resize(count);
-    std::ranges::transform(nodes, touched_.begin(), [first](Index node) { return node - first; });
+    if (!std::ranges::equal(touched_, nodes, same)) {
+        touched_.resize(nodes.size());
+        std::ranges::transform(nodes, touched_.begin(), [first](Index node) { return node - first; });
+        find_responses();
+    }
+    const std::size_t numbers = 3 * nodes.size();
+    return std::span<const Real>(responses_).first(numbers * numbers);
+}
+
+void StiffBody::find_responses() {
+    const std::size_t count = touched_.size(), numbers = 3 * count;
     if (responses_.size() < numbers * numbers) responses_.resize(numbers * numbers);
-    const bool has_factor = inertia_factor_ != 0;
-    if (!has_factor) std::ranges::fill(responses_, 0);
-    for (std::size_t i = 0; i < count && has_factor; ++i) {
+    if (inertia_factor_ == 0) {
+        std::ranges::fill(responses_, 0);
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
         const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
         // both ways from one column: symmetric to the last bit
         for (std::size_t j = i; j < count; ++j) {
@@ -259,7 +267,6 @@ std::span<const Real> StiffBody::responses(std::span<const Index> nodes, Index f
                 }
         }
     }
-    return std::span<const Real>(responses_).first(numbers * numbers);
 }
 
 }  // namespace skerry

@@ -67,6 +67,7 @@ private:
     void take_rigid_part(std::span<X> impulse) const;
     template <class X>
     void respond_to(std::span<X> impulse) const;
+    void find_responses();
     void forget_factor();
 
     std::vector<Index> place_;        // by node

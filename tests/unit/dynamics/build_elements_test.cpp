@@ -4,6 +4,7 @@
 
 #include "components/check.h"
 #include "tests/support/elastic_body.h"
+#include "tests/support/sliver_box.h"
 
 using namespace skerry;
 using test::ElasticBody;
@@ -61,6 +62,27 @@ TEST_CASE("lanes that are left over have no volume, no gradient and a node of th
     }
     CHECK(nodes.node[4][0] == 8 + mesh.tetrahedra[0][0]);
     CHECK(tetrahedra.node[1][0][0] == 8 + mesh.tetrahedra[0][0]);
+}
+
+TEST_CASE("a sliver has next to no volume beside what is around it: flat cells among flat ones are none", "[unit]") {
+    const auto slivers = [](const Mesh& mesh) {
+        TetrahedronBlockTable table;
+        append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, table);
+        std::vector<std::size_t> found;
+        for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+            if ((table.sliver[t / element_lanes] >> t % element_lanes & 1) != 0) found.push_back(t);
+        return found;
+    };
+    Mesh mesh = test::sliver_box(0.2, 6, 0.01, 0.02);
+    std::vector<std::size_t> flat;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (six_volumes(mesh.tetrahedra[t], mesh.nodes) < 0.021 * std::pow(0.2 / 6, 3)) flat.push_back(t);
+    REQUIRE(flat.size() > 8);
+    CHECK(slivers(mesh) == flat);
+    for (Vec3& x : mesh.nodes) x.z() *= 0.01;  // none of it depends on the shape of the body
+    CHECK(slivers(mesh) == flat);
+    CHECK(slivers(test::sliver_box(0.2, 6, 0.01, 0.1)).empty());
+    CHECK(slivers(test::mirrored_box(0.2, 6)).empty());
 }
 
 TEST_CASE("no tetrahedra make no blocks", "[unit]") {
