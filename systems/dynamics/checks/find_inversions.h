@@ -15,9 +15,9 @@ namespace skerry {
 struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
-    std::span<const ElementLane> tetrahedron_leeway;    // empty: 1
-    std::span<const std::uint8_t> tetrahedron_sliver;   // empty: none is one
-    std::span<const Range> body_blocks;               // BodyTable
+    std::span<const ElementLane> tetrahedron_leeway;   // empty: 1
+    std::span<const std::uint8_t> tetrahedron_sliver;  // empty: none is one
+    std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
     std::span<const Vec3> position;                 // m, at the start of the step
     std::span<const Vec3> velocity_next, push_out;  // push_out: empty: no contact pushes

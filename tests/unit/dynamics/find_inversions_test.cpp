@@ -63,9 +63,9 @@ struct Loose {
     }
     Inversions find(int workers = 1) {
         const auto executor = make_executor(workers == 1 ? Backend::serial : available_backends().front(), workers);
-        return find_inversions(*executor,
-                               {node, volume, {}, sliver, blocks, max_speed, travel, displacement, position, velocity, push}, h,
-                               memory, {block_uninverted_until, uninverted_until});
+        return find_inversions(
+            *executor, {node, volume, {}, sliver, blocks, max_speed, travel, displacement, position, velocity, push}, h,
+            memory, {block_uninverted_until, uninverted_until});
     }
     /// The same by looking at every element.
     Inversions by_hand() const {
