@@ -80,8 +80,8 @@ struct Body {
     }
 
 private:
-    /// An implicit element makes no step unstable, whatever becomes of it; a sliver turns over by a motion that hardly
-    /// strains what is around it.
+    /// An implicit element makes no step unstable, whatever becomes of it; a sliver turns over by a motion that strains
+    /// much only what fills next to nothing.
     bool is_judged(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
