@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
@@ -104,4 +105,16 @@ TEST_CASE("a body that is thrown hard counts for what it makes of the steps", "[
         }
     CHECK(shortened_steps >= report.shortened);
     CHECK(std::ranges::is_sorted(report.step_limits, std::greater{}, &StepLimitReport::steps));
+}
+
+TEST_CASE("no step is shortened for slivers that turn over", "[scene]") {
+    World world;
+    const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.4, .friction = 0.4});
+    world.add_collider(Plane{});
+    world.add_body(test::sliver_box(0.1, 6, 0.01, 0.02),
+                   {.material = rubber, .position = {0, 0, 0.06}, .velocity = {0, 0, -1.5}});
+    REQUIRE(world.advance(0.1).ok());
+    const WorldReport report = world.report();
+    CHECK(report.inversions > 10);
+    for (const StepLimitReport& of : report.step_limits) CHECK(of.limit != StepLimit::inversion);
 }
