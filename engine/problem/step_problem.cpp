@@ -61,7 +61,7 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
         RigidPoints points{{nodes.begin(), nodes.end()},
                            {},
                            rigid.inverse_mass(r),
-                           rigid.inverse_inertia[r],
+                           rigid.spins.inverse_inertia[r],
                            rigid.nodes.radius(*nodes.begin())};
         for (const Index node : nodes)
             points.arm.push_back(rigid.position[static_cast<std::size_t>(node)] - rigid.center[r]);
@@ -110,7 +110,7 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         lumped.normal.push_back(step.contacts.normal[row]);
         const RigidInputs& rigid = step.contacts.rigid;
         const Vec3 rolling = rigid.nodes.rolling(step.contacts.stencil[row], step.contacts.normal[row],
-                                                 [&](std::size_t r) { return rigid.spin(r); });
+                                                 [&](std::size_t r) { return rigid.spins.kicked(r); });
         lumped.offset.push_back(contact.bias * step.contacts.normal[row] - step.contacts.surface_velocity[row] -
                                 midpoint_slip(step.contacts, static_cast<Index>(row), step.free_velocity) + rolling);
         lumped.friction.push_back(contact.friction.slide);

@@ -23,22 +23,19 @@ struct ContactMeasures {
 /// How spheres spin, before and after the solve: at a contact their surface has a velocity that their node has not.
 struct SphereSpins {
     RigidNodes nodes{};
-    // RigidBodyTable
-    std::span<const Mat3> inverse_inertia{};
-    std::span<const Vec3> angular_momentum{}, moment_kick{}, contact_moment{};
+    RigidSpins spins{};
+    std::span<const Vec3> contact_moment{};  // RigidBodyTable
 
     static SphereSpins bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                             const RigidBodyTable& rigid) {
         return {.nodes = RigidNodes::bind(binder, node, body, rigid),
-                .inverse_inertia = binder.read(rigid.inverse_inertia),
-                .angular_momentum = binder.read(rigid.angular_momentum),
-                .moment_kick = binder.read(rigid.moment_kick),
+                .spins = RigidSpins::bind(binder, rigid),
                 .contact_moment = binder.read(rigid.contact_moment)};
     }
 
-    Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
+    Vec3 before(std::size_t r) const { return spins.before(r); }
     Vec3 after(std::size_t r) const {
-        return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r] + contact_moment[r]);
+        return spins.inverse_inertia[r] * (spins.angular_momentum[r] + spins.moment_kick[r] + contact_moment[r]);
     }
 };
 

@@ -61,6 +61,23 @@ struct RigidNodes {
     }
 };
 
+/// How rigid bodies spin, by row of RigidBodyTable.
+struct RigidSpins {
+    std::span<const Mat3> inverse_inertia{};  // 1/(kg m^2), world
+    std::span<const Vec3> angular_momentum{}, moment_kick{};
+
+    static RigidSpins bind(const Binder& binder, const RigidBodyTable& rigid) {
+        return {.inverse_inertia = binder.read(rigid.inverse_inertia),
+                .angular_momentum = binder.read(rigid.angular_momentum),
+                .moment_kick = binder.read(rigid.moment_kick)};
+    }
+
+    /// rad/s, at the start of the step.
+    Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
+    /// rad/s, with the moment of forces.
+    Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
+};
+
 /// All of them, and what joints join; no node is of both kinds.
 struct NodeGroups {
     const NodeClusters* clusters = nullptr;  // null: none

@@ -31,7 +31,7 @@ struct RigidScene {
 
     RigidNodes nodes() const { return mass.empty() ? RigidNodes{} : RigidNodes{node_body, body_nodes, body_rigid}; }
     RigidInputs inputs() const {
-        return {nodes(), position, center, mass, inverse_inertia, momentum, angular_momentum, kick, moment_kick};
+        return {nodes(), position, center, mass, {inverse_inertia, angular_momentum, moment_kick}, momentum, kick};
     }
     /// The nodes first .. first + places - 1 of a scene of `count` nodes; at rest.
     void add(std::size_t count, Index first, std::span<const Vec3> places, const Vec3& at, Real weight,

@@ -56,7 +56,7 @@ void show_contact_problem(const WorldState& world, Real time) {
                                              model.implicit_nodes, scratch.coupling, scratch.joints);
     inputs.rigid.position = kept.position;
     inputs.rigid.center = kept.center;
-    inputs.rigid.angular_momentum = kept.angular_momentum;
+    inputs.rigid.spins.angular_momentum = kept.angular_momentum;
     inputs.implicit.rotation = kept.rotation;
     inputs.implicit.velocity = kept.deforming;
     inputs.implicit.velocity_before = kept.deforming_before;

@@ -22,8 +22,8 @@ struct RigidInputs {
     std::span<const Vec3> position{};  // m, by node
     std::span<const Vec3> center{};
     std::span<const Real> mass{};
-    std::span<const Mat3> inverse_inertia{};  // 1/(kg m^2), world
-    std::span<const Vec3> momentum{}, angular_momentum{}, kick{}, moment_kick{};
+    RigidSpins spins{};
+    std::span<const Vec3> momentum{}, kick{};
     // AttachmentTable, or no_index; empty: none is held. What deforms in a frame that is held has rows that stand still
     // for that, and its nodes all of their velocity (docs/methods/implicit_bodies.md 7)
     std::span<const Index> holder{};
@@ -32,9 +32,6 @@ struct RigidInputs {
     /// 1/kg
     Real inverse_mass(std::size_t r) const { return holder.empty() || holder[r] == no_index ? 1 / mass[r] : 0; }
     Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
-    Vec3 spin(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
-    /// rad/s, at the start of the step.
-    Vec3 spin_before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
 
     static RigidInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                             const RigidBodyTable& rigid) {
@@ -42,11 +39,9 @@ struct RigidInputs {
                 .position = binder.read(node.position),
                 .center = binder.read(rigid.center),
                 .mass = binder.read(rigid.mass),
-                .inverse_inertia = binder.read(rigid.inverse_inertia),
+                .spins = RigidSpins::bind(binder, rigid),
                 .momentum = binder.read(rigid.momentum),
-                .angular_momentum = binder.read(rigid.angular_momentum),
                 .kick = binder.read(rigid.kick),
-                .moment_kick = binder.read(rigid.moment_kick),
                 .holder = binder.read(rigid.holder)};
     }
 };

@@ -21,8 +21,9 @@ inline AroundKick around_kick(const RegionInputs& inputs, Index row, std::span<c
     }
     const Vec3& normal = inputs.normal[row];
     velocity.before +=
-        inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spin_before(r); });
-    velocity.now += inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spin(r); });
+        inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spins.before(r); });
+    velocity.now +=
+        inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spins.kicked(r); });
     if (inputs.implicit.any())
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0)

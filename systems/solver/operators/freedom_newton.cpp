@@ -176,7 +176,7 @@ void FreedomOperator::assemble(BodyEquations& equations) const {
             }
             const auto body = static_cast<std::size_t>(unknown[k].rigid);
             add_identity(block, 0, walk_.rigid().mass[body]);
-            const Mat3 inertia = walk_.rigid().inverse_inertia[body].inverse();
+            const Mat3 inertia = walk_.rigid().spins.inverse_inertia[body].inverse();
             for (Index c = 0; c < 3; ++c)
                 for (Index r = 0; r < 3; ++r) block.column(3 + c)[3 + r] = inertia(r, c);
         }

@@ -64,7 +64,7 @@ public:
     /// 1/kg, what an impulse on node `m` of an implicit body gives its node `n` in all.
     Mat3 response(Index n, Index m) const {
         const std::size_t r = body_of(m);
-        const Mat3 turned = rigid_->inverse_inertia[r] * cross_matrix(arm(m));
+        const Mat3 turned = rigid_->spins.inverse_inertia[r] * cross_matrix(arm(m));
         return implicit_->coupling->block(r, deforming_place(n), deforming_place(m)) +
                rigid_->inverse_mass(r) * Mat3::Identity() - cross_matrix(arm(n)) * turned;
     }

@@ -20,9 +20,10 @@ struct BodyMotion {
         const auto r = static_cast<std::size_t>(body);
         arm = point - rigid.center[r];
         velocity = rigid.velocity(r);
-        spin = rigid.spin(r);
+        spin = rigid.spins.kicked(r);
         if (moves)
-            spin_rate = rigid.inverse_inertia[r] * (rigid.angular_momentum[r] + rigid.moment_kick[r]).cross(spin);
+            spin_rate = rigid.spins.inverse_inertia[r] *
+                        (rigid.spins.angular_momentum[r] + rigid.spins.moment_kick[r]).cross(spin);
     }
     Vec3 turning() const { return spin.cross(arm); }
     Vec3 at_point() const { return velocity + turning(); }
@@ -79,12 +80,12 @@ struct BodyEnd {
         center = rigid.center[r];
         if (slot == no_index) {  // it is led
             center_next = center + stage.h * rigid.velocity(r);
-            turn = rotation_matrix(stage.h * rigid.spin(r));
+            turn = rotation_matrix(stage.h * rigid.spins.kicked(r));
             return;
         }
         const auto at = static_cast<std::size_t>(slot);
         const Vec3 spin = velocity[at + 1].head<3>();
-        const Mat3& inverse = rigid.inverse_inertia[r];
+        const Mat3& inverse = rigid.spins.inverse_inertia[r];
         const Vec3 rate = inverse * (inverse.inverse() * spin).cross(spin);
         center_next = center + stage.h * velocity[at].head<3>();
         turn = rotation_matrix(stage.h * (spin + stage.h / 2 * rate));
@@ -112,7 +113,7 @@ void add_term(const RegionStage& stage, const JointBlock& block, Index body, Rea
     RigidTerm& term = part.term[static_cast<std::size_t>(part.term_count++)];
     const auto place = std::find(rigid.begin(), rigid.end(), body) - rigid.begin();
     term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = Vec4::Zero(), .spin_step = {}};
-    const Mat3& inverse_inertia = stage.inputs.rigid.inverse_inertia[r];
+    const Mat3& inverse_inertia = stage.inputs.rigid.spins.inverse_inertia[r];
     if (block.turning) {
         term.turn = sign;
         term.spin_step = columns_of(sign * inverse_inertia);

@@ -84,7 +84,7 @@ private:
             const auto r = static_cast<std::size_t>(body);
             node_[count_] = node_[count_ + 1] = no_index;
             velocities()[count_] = padded(rigid.velocity(r));
-            velocities()[count_ + 1] = padded(rigid.spin(r));
+            velocities()[count_ + 1] = padded(rigid.spins.kicked(r));
             count_ += 2;
         }
         if (stage_.inputs.implicit.any())
@@ -174,7 +174,8 @@ private:
             RigidTerm& term = part.term[static_cast<std::size_t>(k)];
             const auto r = static_cast<std::size_t>(term.row);
             term.step = stage_.inputs.rigid.inverse_mass(r) > 0 ? term.weight / stage_.inputs.rigid.mass[r] : 0;
-            term.spin_step = columns_of(stage_.inputs.rigid.inverse_inertia[r] * cross_matrix(term.arm.head<3>()));
+            term.spin_step =
+                columns_of(stage_.inputs.rigid.spins.inverse_inertia[r] * cross_matrix(term.arm.head<3>()));
         }
         const Mat3 rigid = rigid_coupling(part, part);
         mobility += rigid;
@@ -445,7 +446,7 @@ Real push_work_of(const RegionStage& stage, const FreedomRegion& region, std::sp
     for (std::size_t k = 0; k < region.rigid.size(); ++k) {
         const auto r = static_cast<std::size_t>(region.rigid[k]);
         work -= rigid.kick[r].dot(push_velocity[2 * k].head<3>()) +
-                rigid.moment_kick[r].dot(push_velocity[2 * k + 1].head<3>());
+                rigid.spins.moment_kick[r].dot(push_velocity[2 * k + 1].head<3>());
     }
     return work;
 }

@@ -1,0 +1,25 @@
+// A world goes on with the same bits on any number of threads, cloned, and from a file.
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include "skerry/world.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skerry::test {
+
+/// `course(threads)` makes what has a world and moves it; `go_on(world)` moves that, and its copies, further.
+void check_same_bits(auto&& course, auto&& go_on) {
+    auto one = course(1), two = course(2);
+    CHECK(one.world.state_hash() == two.world.state_hash());
+    World copy = one.world.clone();
+    const TemporaryFolder folder;
+    one.world.save(folder.path() / "world.h5");
+    World loaded = World::load(folder.path() / "world.h5");
+    for (World* world : {&one.world, &two.world, &copy, &loaded}) {
+        go_on(*world);
+        CHECK(world->state_hash() == one.world.state_hash());
+    }
+}
+
+}  // namespace skerry::test
