@@ -75,6 +75,7 @@ private:
         } else {
             node = {inputs_.surface.vertices.node[candidate.first], no_index, no_index};
             feature.kind = Kind::node;
+            feature.kept = kept_of_spheres(pair_scale(inputs_, pair_.kind, pair_.first, pair_.second));
         }
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             feature.position[i] = inputs_.position[node[i]];
@@ -117,7 +118,7 @@ private:
                                                               : ContactKind::point_collider;
         const PairScale scale = pair_scale(inputs_, pair_.kind, pair_.first, pair_.second);
         ContactRow row =
-            contact_row(inputs_, pair_, numbered, kind, stencil, point, normal, std::max(along, Real(0)),
+            contact_row(inputs_, pair_, numbered, kind, stencil, point, normal, std::max(along, scale.radii),
                         scale.contact_distance, pair_surface(inputs_, pair_.kind, pair_.first, pair_.second));
         row.surface_velocity = collider_motion_.velocity + collider_motion_.angular_velocity.cross(arm);
         found_.push_back(row);

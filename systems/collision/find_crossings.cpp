@@ -62,7 +62,7 @@ public:
     std::uint64_t run(std::span<const NearCandidate> near, Real motion, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
-            if (motion > slow_fraction * at.distance && !(travel_bound < asleep_until_[at.candidate]))
+            if (motion > slow_fraction * (at.distance - scale_.radii) && !(travel_bound < asleep_until_[at.candidate]))
                 tested += wait(at);
         return tested + test_waiting();
     }
@@ -85,14 +85,14 @@ private:
                                           : point_triangle_approaches(inputs_, motion_, candidates_, waiting_);
         std::uint64_t tested = 0;
         for (std::size_t i = 0; i < waiting_count_; ++i) {
-            const Real least = (1 - lane_rounding) * distance_[i];
+            const Real least = (1 - lane_rounding) * distance_[i] - scale_.radii;
             if (approach[i] > slow_fraction * least) tested += test(candidates_[waiting_[i]], least);
         }
         waiting_count_ = 0;
         return tested;
     }
 
-    /// `least`: m, no distance is below it.
+    /// `least`: m, no distance of what they are the middles or parts of is below it.
     bool test(const Candidate& candidate, Real least) {
         const bool edges = is_edge_edge(candidate.feature);
         const FeaturePair kind = edges ? FeaturePair::edge_edge : FeaturePair::point_triangle;
@@ -102,8 +102,11 @@ private:
         const Real approach = greatest_approach(kind, displacement);
         if (!(approach > slow_fraction * least) || !can_move(node)) return false;
         for (std::size_t i = 0; i < 4; ++i) x[i] = inputs_.position[node[i]];
-        if (!(approach > slow_fraction * nearest(kind, node, x).offset.norm())) return false;
-        const std::optional<Real> time = time_of_contact(kind, x, displacement);
+        const Real apart = nearest(kind, node, x).offset.norm();
+        // of what is pressed into a sphere the middle must not get through
+        const KeptApart kept = apart > scale_.radii ? kept_of_spheres(scale_) : KeptApart{};
+        if (!(approach > slow_fraction * (apart - kept.distance))) return false;
+        const std::optional<Real> time = time_of_contact(kind, x, displacement, kept);
         if (!time || is_own_piece(edges, node)) return true;
         FourPoints met;
         for (std::size_t i = 0; i < 4; ++i) met[i] = x[i] + *time * displacement[i];
@@ -147,7 +150,7 @@ private:
         for (std::size_t a = 0; a < 4; ++a)
             along += met.stencil.weight[a] * normal.dot(inputs_.position[met.stencil.node[a]]);
         // features that turn by more than a right angle have not overlapped
-        const Real distance = std::max(along, Real(0));
+        const Real distance = std::max(along, scale_.radii);
         found_.push_back(contact_row(
             inputs_, {key_, kind_, first_, second_}, candidate,
             kind == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle, met.stencil,
@@ -176,13 +179,22 @@ struct PairReach {
     Real travel_bound;  // travel of both with it
 };
 
+/// m, how far what touches is from the collider's origin: against a plane, which has no end, only spheres are looked
+/// at.
+Real collider_extent(const CollisionInputs& inputs, Index body, Index collider) {
+    const ColliderGeometry& geometry = inputs.collider.geometry[collider];
+    if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
+    const Index middle = inputs.surface.vertices.node[inputs.body.vertices[body].begin];
+    return (inputs.position[middle] - inputs.collider.motion[collider].position).norm();
+}
+
 PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
     const BodyTable& body = inputs.body;
     const Index a = pairs.first[p], b = pairs.second[p];
     if (pairs.kind[p] == PairKind::collider) {
         const RigidMotion& collider = inputs.collider.motion[b];
         const Real turning = collider.angular_velocity.norm(),
-                   rim_speed = turning > 0 ? turning * collider_radius(inputs.collider.geometry[b]) : 0;
+                   rim_speed = turning > 0 ? turning * collider_extent(inputs, a, b) : 0;
         const Real motion =
             h * (body.frame_speed[a] + body.frame[a].velocity.norm() + collider.velocity.norm() + rim_speed);
         return {motion, pairs.travel[p] + motion};
@@ -192,10 +204,11 @@ PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index 
     return {motion, pairs.travel[p] + motion};
 }
 
-/// A plane is touched by nodes alone, which its contacts hold wherever they go.
+/// A plane is touched by nodes alone, which its contacts hold wherever they go. Into a sphere it would get on the way.
 bool can_be_crossed(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
     return pairs.kind[p] != PairKind::collider ||
-           collider_point_count(inputs.collider.geometry[pairs.second[p]].shape) > 0;
+           collider_point_count(inputs.collider.geometry[pairs.second[p]].shape) > 0 ||
+           inputs.body.sphere_radius[pairs.first[p]] > 0;
 }
 
 bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) {

@@ -15,10 +15,14 @@
 #include "systems/collision/narrow/point_triangle_contact.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/pair_look.h"
+#include "systems/geometry/passes_through.h"
 
 namespace skerry {
 
 namespace {
+
+// Faces around a place may seem to lie before it by rounding.
+constexpr Real sight_slack = 1e-6;
 
 /// Looks at a range of the candidates of two bodies.
 class PairContacts : PairLook {
@@ -31,11 +35,11 @@ public:
           can_meet_((pairs.travel_bound[p] - pairs.travel[p]) / slow_fraction),
           meeting_(near) {}
 
-    /// Returns the least distance of the features that were looked at, m.
+    /// Returns the least distance of what was looked at, m.
     Real run(Range range) {
         for_each_awake(range, [&](Index c) { settings_.use_budgets ? wait(c) : wake(c); });
         wake_waiting();
-        return std::sqrt(nearest_squared_);
+        return std::sqrt(nearest_squared_) - scale_.radii;
     }
 
 private:
@@ -57,7 +61,7 @@ private:
         const Real zone = edges_wait_ ? scale_.edge_depth : scale_.zone;
         for (std::size_t i = 0; i < waiting_count_; ++i) {
             const Real distance = found.distance[i];
-            if (distance < can_meet_) meeting_.push_back({pair_, waiting_[i], distance});
+            if (distance - scale_.radii < can_meet_) meeting_.push_back({pair_, waiting_[i], distance});
             const bool far = !(distance <= std::max(near_, zone));
             // Of surfaces that are apart nothing has come through the other.
             const bool out_of_reach = surfaces_ == Surfaces::apart && !within_reach(distance, found.speed[i]);
@@ -97,7 +101,12 @@ private:
         for (Index n : corner)
             speed_squared = std::max(speed_squared, (inputs_.velocity[node] - inputs_.velocity[n]).squaredNorm());
         if (!within_reach(contact.distance, std::sqrt(speed_squared))) return;
-        if (contact.side == Side::behind && !is_truly_behind(c, node, corner, std::abs(contact.distance))) return;
+        if (contact.side == Side::behind) {
+            const bool held = scale_.radii > 0 && surfaces_ == Surfaces::apart
+                                  ? is_in_sight(c, node, contact.closest.nearest)
+                                  : is_truly_behind(c, node, corner, std::abs(contact.distance));
+            if (!held) return;
+        }
         add(candidate, ContactKind::point_triangle,
             stencil_of_point({node, corner[0], corner[1], corner[2]}, contact.closest), contact.closest.nearest,
             contact.normal, contact.distance, scale_.contact_distance, Vec3::Zero());
@@ -113,6 +122,17 @@ private:
             return closest_point_on_triangle(inputs_.position[point], inputs_.position[n[0]], inputs_.position[n[1]],
                                              inputs_.position[n[2]])
                 .distance_squared;
+        });
+    }
+
+    /// Whether a sphere meets a place from behind because the body is inside out there: a face between its middle and
+    /// the place would hold it off. Others may be nearer: a sphere lies on many faces at once.
+    bool is_in_sight(Index c, Index middle, const Vec3& place) const {
+        const Vec3& from = inputs_.position[middle];
+        const Vec3 until = from + (1 - sight_slack) * (place - from);
+        return none_of_point(c, [&](Index i) {
+            const auto& n = inputs_.surface.triangles.node[candidates_[i].second];
+            return passes_through(from, until, inputs_.position[n[0]], inputs_.position[n[1]], inputs_.position[n[2]]);
         });
     }
 

@@ -45,7 +45,7 @@ private:
         const SurfacePoint nearest =
             distance_to_collider_part(geometry_, motion_, second_local(candidate.feature), inputs_.position[node]);
         asleep_until_[c] = travel_base_ + nearest.distance - scale_.contact_distance;
-        nearest_ = std::min(nearest_, nearest.distance);
+        nearest_ = std::min(nearest_, nearest.distance - scale_.radii);
         if (!(nearest.distance <= near_)) return;
         const Vec3 velocity = velocity_at(nearest.point);
         if (!within_reach(nearest.distance, speed_against(velocity, std::array{node}))) return;

@@ -75,14 +75,18 @@ protected:
     /// Whether no other triangle among the candidates of the same point is nearer than `depth`: all that are as near
     /// are candidates, in one row. `squared(i)`: distance of the point of candidate c to the triangle of candidate i.
     bool is_nearest(Index c, Real depth, auto&& squared) const {
+        const Real limit = depth - nearer_fraction * (depth + scale_.edge);
+        return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });
+    }
+
+    /// Whether something holds of no other candidate of the point of candidate c.
+    bool none_of_point(Index c, auto&& holds) const {
         const std::uint64_t group = point_of_feature(candidates_[c].feature);
         const Index count = static_cast<Index>(candidates_.size());
-        const Real limit = depth - nearer_fraction * (depth + scale_.edge);
-        const auto nearer = [&](Index i) { return limit > 0 && squared(i) < limit * limit; };
         for (Index i = c - 1; i >= 0 && point_of_feature(candidates_[i].feature) == group; --i)
-            if (nearer(i)) return false;
+            if (holds(i)) return false;
         for (Index i = c + 1; i < count && point_of_feature(candidates_[i].feature) == group; ++i)
-            if (nearer(i)) return false;
+            if (holds(i)) return false;
         return true;
     }
 

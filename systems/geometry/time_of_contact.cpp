@@ -35,17 +35,18 @@ Real greatest_approach(FeaturePair kind, const FourPoints& displacement) {
     return std::sqrt(own) + std::sqrt(other);
 }
 
-std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement) {
+std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
+                                    const KeptApart& kept) {
     const Real approach = greatest_approach(kind, displacement);
-    const Real start = distance(kind, position);
+    const Real start = distance(kind, position) - kept.distance, near = std::min(contact_slack * start, kept.near);
     Real time = 0, apart = start;
     for (int round = 0; round < most_rounds; ++round) {
-        if (!(apart > contact_slack * start) || !(start > 0)) return time;
+        if (!(apart > near) || !(start > 0)) return time;
         time += advance * apart / approach;  // infinite without motion
         if (!(time <= 1)) break;
         FourPoints x;
         for (std::size_t i = 0; i < 4; ++i) x[i] = position[i] + time * displacement[i];
-        apart = distance(kind, x);
+        apart = distance(kind, x) - kept.distance;
     }
     if (time <= 1) return time;
     return std::nullopt;

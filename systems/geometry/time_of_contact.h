@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "components/types.h"
@@ -20,11 +21,18 @@ inline constexpr Real contact_slack = 0.1;
 /// `displacement`. Common motion does not count.
 Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 
+/// How near two features may come where they are middles of spheres.
+struct KeptApart {
+    Real distance = 0;                                  // m, the radii
+    Real near = std::numeric_limits<Real>::infinity();  // m: what is further from that is not in contact
+};
+
 /// The time in [0, 1] at which features that move from `position` by `displacement` in straight lines are near contact,
 /// or nothing when they do not come as near. Additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional
 /// IPC, section 5): never later than the contact, and at that time they are nearer than `contact_slack` of the distance
-/// at the start. 0 when they touch at the start. Features that slide past each other very near for long (some thousand
-/// times their distance) are given up as contact at the time reached.
-std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement);
+/// at the start, all distances beyond the one that is kept. 0 when they touch at the start. Features that slide past
+/// each other very near for long (some thousand times their distance) are given up as contact at the time reached.
+std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
+                                    const KeptApart& kept = {});
 
 }  // namespace skerry

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "systems/geometry/closest_points.h"
 #include "systems/geometry/rotation.h"
 #include "tests/support/jittered_box.h"
 #include "tests/support/surfaces_cross.h"
@@ -225,21 +226,27 @@ Target random_target(std::mt19937_64& random, Targets targets) {
     }
 }
 
+/// What is shot: meshes that deform, or rigid spheres.
+enum class Bullets { meshes, spheres };
+
 /// One shot: everything about it follows from its number.
 class Shot {
 public:
-    Shot(std::uint64_t number, bool continuous, Flying flying, Targets targets)
-        : random_(seed + number), world_(settings(continuous)), flying_(flying) {
-        shot_ = random_shot(random_);
+    Shot(std::uint64_t number, bool continuous, Flying flying, Targets targets, Bullets bullets)
+        : random_(seed + number), world_(settings(continuous)), flying_(flying), bullets_(bullets) {
+        shot_ = bullets == Bullets::meshes ? random_shot(random_) : Named{"sphere", {}};
         target_ = random_target(random_, targets);
+        if (bullets == Bullets::spheres) radius_ = 0.002 * std::pow(20.0, fraction(random_));
+        if (bullets == Bullets::spheres && !target_.mesh.nodes.empty() && !target_.held)
+            target_dynamics_ = fraction(random_) < 0.3 ? BodyDynamics::rigid : BodyDynamics::explicit_elastic;
         frame_ = rotation_matrix(std::acos(-1.0) * fraction(random_) * random_direction(random_));
         speed_ = 3 * std::pow(100.0 / 3, fraction(random_));
         const Real own = std::pow(10.0, 4.7 + 4.3 * fraction(random_)),
                    other = std::pow(10.0, 4.7 + 4.3 * fraction(random_));
         build(own, other);
         std::ostringstream text;
-        text << "shot " << number << ": " << shot_.name << " (E " << own << " Pa) at " << speed_ << " m/s onto "
-             << target_.name << " (E " << other << " Pa)";
+        text << "shot " << number << ": " << shot_.name << " (E " << own << " Pa, " << radius_ << " m) at " << speed_
+             << " m/s onto " << target_.name << " (E " << other << " Pa)";
         outcome_.description = text.str();
     }
 
@@ -277,12 +284,13 @@ private:
             collider_ = world_.add_collider(target_.shape ? *target_.shape : Shape(target_.surface), placed);
             faces_ = target_.surface.triangles;
         } else {
-            target_body_ = world_.add_body(target_.mesh,
-                                           {.material = other, .rotation = rotation_vector(frame_), .name = "target"});
+            target_body_ = world_.add_body(target_.mesh, {.material = other,
+                                                          .rotation = rotation_vector(frame_),
+                                                          .dynamics = target_dynamics_,
+                                                          .name = "target"});
             if (target_.held) hold_rim();
             faces_.assign(world_.surface(target_body_).begin(), world_.surface(target_body_).end());
         }
-        radius_ = 0;
         for (const Vec3& x : shot_.mesh.nodes) radius_ = std::max(radius_, x.norm());
         const Real tilt = target_.steepest / 180 * std::acos(-1.0) * fraction(random_),
                    turn = 2 * std::acos(-1.0) * fraction(random_);
@@ -291,12 +299,15 @@ private:
         start_ = (target_.reach + 1.1 * radius_) / std::cos(tilt);
         flight_ = -speed_ * (frame_ * from);
         const Vec3 spin = 0.7 * speed_ / radius_ * fraction(random_) * random_direction(random_);
-        shot_body_ = world_.add_body(shot_.mesh, {.material = own,
-                                                  .position = frame_ * (aim + start_ * from),
-                                                  .rotation = 3 * fraction(random_) * random_direction(random_),
-                                                  .velocity = flying_ == Flying::shot ? flight_ : Vec3::Zero(),
-                                                  .angular_velocity = spin,
-                                                  .name = "shot"});
+        BodySettings shot{.material = own,
+                          .position = frame_ * (aim + start_ * from),
+                          .rotation = 3 * fraction(random_) * random_direction(random_),
+                          .velocity = flying_ == Flying::shot ? flight_ : Vec3::Zero(),
+                          .angular_velocity = spin,
+                          .name = "shot"};
+        if (bullets_ == Bullets::spheres) shot.dynamics = BodyDynamics::rigid;
+        shot_body_ =
+            bullets_ == Bullets::spheres ? world_.add_body(Sphere{radius_}, shot) : world_.add_body(shot_.mesh, shot);
     }
 
     void hold_rim() {
@@ -331,6 +342,14 @@ private:
     }
     bool overlaps() const {
         const std::vector<Vec3> target = target_positions();
+        if (bullets_ == Bullets::spheres) {
+            const Vec3 middle = world_.positions(shot_body_)[0];
+            return std::ranges::any_of(faces_, [&](const std::array<Index, 3>& face) {
+                const auto corner = [&](std::size_t k) { return target[static_cast<std::size_t>(face[k])]; };
+                return closest_point_on_triangle(middle, corner(0), corner(1), corner(2)).distance_squared <
+                       (1 - 1e-9) * radius_ * radius_;
+            });
+        }
         return crossings({world_.positions(shot_body_), world_.surface(shot_body_)}, {target, faces_}) > 0;
     }
 
@@ -340,6 +359,8 @@ private:
     Target target_;
     Mat3 frame_;
     Flying flying_;
+    Bullets bullets_;
+    BodyDynamics target_dynamics_ = BodyDynamics::explicit_elastic;
     BodyHandle shot_body_, target_body_;
     ColliderHandle collider_;
     Vec3 flight_ = Vec3::Zero();               // m/s, of the shot as seen from the target
@@ -353,10 +374,13 @@ struct Count {
     std::uint64_t shots = 0, touching = 0, tests = 0, stopped = 0, crossed = 0;
 };
 
-Count shoot(std::uint64_t shots, bool continuous, Flying flying = Flying::shot, Targets targets = Targets::all) {
+Count shoot(std::uint64_t shots, bool continuous, Flying flying = Flying::shot, Targets targets = Targets::all,
+            Bullets bullets = Bullets::meshes) {
     Count count;
     for (std::uint64_t n = 0; n < shots; ++n) {
-        const Outcome outcome = Shot(n, continuous, flying, targets).fly();
+        Outcome outcome = Shot(n, continuous, flying, targets, bullets).fly();
+        if (bullets == Bullets::spheres && outcome.failure.empty() && outcome.report.max_penetration > 0)
+            outcome.failure = "penetration " + std::to_string(outcome.report.max_penetration);
         ++count.shots;
         count.touching += outcome.report.max_contacts > 0;
         count.tests += outcome.report.crossing_tests;
@@ -394,6 +418,22 @@ TEST_CASE("of 1,000 shots at thin and sharp analytic colliders all are stopped",
 TEST_CASE("of 1,000 analytic colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
           "[scene][slow]") {
     check_all_stopped(shoot(1000, true, Flying::collider, Targets::shapes), 800, 300);
+}
+
+TEST_CASE("of 150 spheres at up to 100 m/s no surface comes into what they are shot at", "[scene]") {
+    check_all_stopped(shoot(150, true, Flying::shot, Targets::all, Bullets::spheres), 135, 50);
+}
+
+TEST_CASE("of 1,000 spheres at up to 100 m/s no surface comes into what they are shot at", "[scene][slow]") {
+    check_all_stopped(shoot(1000, true, Flying::shot, Targets::all, Bullets::spheres), 900, 300);
+}
+
+TEST_CASE("of 1,000 spheres at thin and sharp analytic colliders no surface comes into them", "[scene][slow]") {
+    check_all_stopped(shoot(1000, true, Flying::shot, Targets::shapes, Bullets::spheres), 900, 10);
+}
+
+TEST_CASE("of 1,000 mesh colliders that fly at spheres no surface comes into them", "[scene][slow]") {
+    check_all_stopped(shoot(1000, true, Flying::collider, Targets::surfaces, Bullets::spheres), 900, 0);
 }
 
 TEST_CASE("without the look at the motion of a step some of the shots come through", "[scene]") {

@@ -9,7 +9,6 @@
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/tree/box.h"
 #include "systems/geometry/rotation.h"
-#include "systems/geometry/time_of_contact.h"
 
 namespace skerry {
 
@@ -187,7 +186,7 @@ public:
         const Vec3 normal = rotation(time) * touch.normal;
         Real least = infinite;
         for (std::size_t i = 0; i < feature_.nodes(); ++i) {
-            const Real above = touch.normal.dot(nodes[i] - touch.point),
+            const Real above = touch.normal.dot(nodes[i] - touch.point) - feature_.kept.distance,
                        approach = greatest_turn(i) * (1 - time) / 2 - normal.dot(velocity(i, time));
             if (approach > 0) least = std::min(least, above / approach);
         }
@@ -229,7 +228,7 @@ Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& fea
     switch (feature.kind) {
         case TouchingFeature::Kind::node: {
             const SurfacePoint on = local_distance(geometry, nodes[0], feature.of_collider);
-            return of_surface(on, on.distance, {1, 0, 0});
+            return of_surface(on, on.distance - feature.kept.distance, {1, 0, 0});
         }
         case TouchingFeature::Kind::edge:
             return nearest_on_edge(geometry, feature.of_collider, nodes);
@@ -249,10 +248,10 @@ std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMo
     const Real speed = moving.greatest_speed();
     Nodes nodes = moving.at(0);
     Touch touch = nearest_touch(geometry, feature, nodes);
-    const Real start = touch.distance;
+    const Real start = touch.distance, near = std::min(contact_slack * start, feature.kept.near);
     if (!(start > 0)) return std::nullopt;
     Real time = 0;
-    for (int round = 0; round < most_rounds && touch.distance > contact_slack * start; ++round) {
+    for (int round = 0; round < most_rounds && touch.distance > near; ++round) {
         Real free = touch.distance / speed;  // infinite without motion
         if (lies_behind(geometry, feature, touch)) free = std::max(free, moving.time_before_plane(touch, nodes, time));
         time += advance * free;

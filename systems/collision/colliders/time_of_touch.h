@@ -6,6 +6,7 @@
 
 #include "components/collider_table.h"
 #include "systems/geometry/closest_points.h"
+#include "systems/geometry/time_of_contact.h"
 
 namespace skerry {
 
@@ -17,6 +18,7 @@ struct TouchingFeature {
     Index of_collider;                   // a node and an edge: the part; a face: the point, see collider_point
     std::array<Vec3, 3> position;        // m, world, at the start of the step; as many as the feature has nodes
     std::array<Vec3, 3> displacement{};  // m, in the step
+    KeptApart kept{};                    // of the sphere whose middle a node is
 
     std::size_t nodes() const { return static_cast<std::size_t>(kind) + 1; }
 };

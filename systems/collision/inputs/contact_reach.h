@@ -27,6 +27,7 @@
 
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
+#include "systems/geometry/time_of_contact.h"
 
 namespace skerry {
 
@@ -54,6 +55,7 @@ struct PairScale {
     Real face_depth;        // a point this deep behind a face is pushed out of it
     Real edge_depth;        // the same behind an edge or vertex, and for two edges
     Real zone;  // features nearer than this, on either side, are looked at in each step; of a collider see face_zone
+    Real radii = 0;  // of contact_distance, those of spheres, whose middles are the features
 };
 
 // Overlap is rare, the contact distance keeps surfaces apart. Deeper points may belong to the other side of a thin
@@ -64,6 +66,12 @@ inline constexpr Real edge_depth_fraction = 0.02;  // of the edge, or the contac
 /// A point of a collider that is nearer to a face than this, on either side, is looked at in each step, m.
 inline Real face_zone(const PairScale& scale) {
     return std::max(scale.contact_distance, scale.face_depth);
+}
+
+/// How near the middles of spheres may come in the motion of a step. Contacts stop them at the shell, which is not
+/// near; without one spheres touch by rounding, and only their middles are looked at.
+inline KeptApart kept_of_spheres(const PairScale& scale) {
+    return scale.radii > 0 && scale.shell > 0 ? KeptApart{scale.radii, contact_slack * scale.shell} : KeptApart{};
 }
 
 PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second);

@@ -120,9 +120,10 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     }
     const std::size_t region = static_cast<std::size_t>(contact.closest.region);
     if (contact.closest.region == TriangleRegion::face) {
-        if (height < -scale.face_depth) return contact;
-        contact.side = height >= 0 ? Side::outside : Side::behind;
         const bool turned = height < 0 && surfaces == Surfaces::apart;
+        // the middle of a sphere is as far behind a face that is inside out as before another
+        if (height < -scale.face_depth && !(turned && scale.radii > 0)) return contact;
+        contact.side = height >= 0 ? Side::outside : Side::behind;
         contact.distance = turned ? -height : height;
         contact.normal = turned ? Vec3(-face_normal) : face_normal;
         return contact;

@@ -1,25 +1,14 @@
 #include "systems/collision/search/surfaces_cross.h"
 
-#include <Eigen/Geometry>
 #include <limits>
 
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/tree/leaf_boxes.h"
+#include "systems/geometry/passes_through.h"
 
 namespace skerry {
 
 namespace {
-
-/// Six times the volume of a tetrahedron: its sign says on which side of abc the point d lies.
-Real orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    return (b - a).cross(c - a).dot(d - a);
-}
-
-bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-    if (!(orientation(a, b, c, p) * orientation(a, b, c, q) < 0)) return false;
-    const Real u = orientation(p, q, a, b), v = orientation(p, q, b, c), w = orientation(p, q, c, a);
-    return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
-}
 
 class CrossingSearch {
 public:

@@ -178,6 +178,39 @@ TEST_CASE("nodes and edges that come to touch a collider are found, and no other
         }
 }
 
+TEST_CASE("spheres that come to touch a collider are found before they do, and no others", "[unit]") {
+    Random random{19};
+    for (const Named& shape : shapes) {
+        Tally tally;
+        for (int trial = 0; trial < 200; ++trial) {
+            const Index part = trial % collider_part_count(shape.geometry.shape);
+            Scene scene = random_scene(random, Kind::node, part, inside(random, shape.geometry), trial % 3 == 0);
+            const Real radius = 0.2 * std::abs(random.number()),
+                       start = local_distance(shape.geometry, scene.at(0)[0], part).distance - radius;
+            scene.feature.kept = {radius, 1e-3};
+            const std::optional<Touch> touch = first_touch(shape.geometry, scene.motion, h, scene.feature);
+            INFO(shape.name << ", trial " << trial << ", radius " << radius);
+            if (!(start > 0)) {
+                CHECK(!touch);
+                continue;
+            }
+            Real nearest = start;
+            for (int t = 0; t <= times; ++t)
+                nearest = std::min(
+                    nearest,
+                    local_distance(shape.geometry, scene.at(static_cast<Real>(t) / times)[0], part).distance - radius);
+            if (nearest <= 0) REQUIRE(touch);
+            if (nearest > 1e-3 + greatest_approach(scene.motion, h, scene.feature) / times) CHECK(!touch);
+            ++(touch ? tally.touching : tally.free);
+            if (!touch) continue;
+            CHECK(touch->distance > 0);
+            CHECK(touch->distance <= 1e-3);
+        }
+        CHECK(tally.touching > 10);
+        CHECK(tally.free > 10);
+    }
+}
+
 TEST_CASE("points, ends and rims of colliders that come to touch a face are found, and no others", "[unit]") {
     Random random{18};
     int free = 0;

@@ -214,3 +214,26 @@ TEST_CASE("degenerate motions have the time of contact that they should", "[unit
         CHECK_FALSE(time_of_contact(point_triangle, x, {Vec3(0.5, 0.2, 0), none, none, none}));
     }
 }
+
+TEST_CASE("features that keep a distance are not nearer before the time, and then they are near it", "[unit]") {
+    INFO("seed " << seed);
+    Random random(seed);
+    constexpr int looks = 300;
+    for (FeaturePair kind : {FeaturePair::point_triangle, FeaturePair::edge_edge}) {
+        int met = 0, passed = 0;
+        for (int trial = 0; trial < 1000; ++trial) {
+            const FourPoints x = random_points(random, 1), d = random_points(random, 1);
+            const Real start = distance_at(kind, x, d, 0);
+            const KeptApart kept{start * 0.9 * std::abs(random.number()), trial % 2 ? 1e-3 * start : 1};
+            const std::optional<Real> time = time_of_contact(kind, x, d, kept);
+            for (int look = 0; look <= looks; ++look)
+                REQUIRE(distance_at(kind, x, d, time.value_or(1) * look / looks) > kept.distance);
+            ++(time ? met : passed);
+            if (time)
+                REQUIRE(distance_at(kind, x, d, *time) - kept.distance <=
+                        std::min(contact_slack * (start - kept.distance), kept.near));
+        }
+        CHECK(met > 100);
+        CHECK(passed > 100);
+    }
+}

@@ -1,0 +1,22 @@
+// Whether a segment goes through a triangle.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// Six times the volume of a tetrahedron: its sign says on which side of abc the point d lies.
+inline Real orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return (b - a).cross(c - a).dot(d - a);
+}
+
+/// Whether the ends of pq lie on both sides of abc, and it goes through the inside.
+inline bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+    if (!(orientation(a, b, c, p) * orientation(a, b, c, q) < 0)) return false;
+    const Real u = orientation(p, q, a, b), v = orientation(p, q, b, c), w = orientation(p, q, c, a);
+    return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+}
+
+}  // namespace skerry
