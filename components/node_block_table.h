@@ -7,6 +7,10 @@
 
 namespace skerry {
 
+// Nodes of a sphere that a step looks at: its middle, which contacts see, and corners around it, which tell how fast it
+// spins. The others draw it.
+inline constexpr Index sphere_step_nodes = 13;
+
 // fixed: sums over a body are sums over its blocks in order, whatever the worker count
 inline constexpr Index nodes_per_block = 256;
 
@@ -20,7 +24,8 @@ struct NodeBlockSums {
     Real dissipated;        // J, kinetic energy of deformation that damping takes out of the block
 };
 
-/// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next.
+/// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next. A sphere has one, of the
+/// nodes that a step looks at.
 struct NodeBlockTable {
     Column<Index> begin;  // first node
     Column<Index> end;    // one past the last node

@@ -7,6 +7,7 @@
 #include "skerry/forces.h"
 #include "skerry/query.h"
 #include "systems/geometry/closest_points.h"
+#include "systems/geometry/rotation.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/worlds.h"
 
@@ -134,6 +135,58 @@ TEST_CASE("the moment that friction has on a sphere is what spins it", "[scene]"
     CHECK(on.force().x() == Approx(-mu * mass * g).epsilon(1e-9));
     CHECK(about.y() == Approx(mu * mass * g * radius).epsilon(1e-9));
     CHECK(about.y() * 1e-3 / moment == Approx(s.spin(ball).y()).epsilon(1e-9));
+}
+
+TEST_CASE("what draws a sphere moves with it", "[scene]") {
+    for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
+        Settings settings = steps_of(1e-3, Vec3::Zero());
+        settings.integrator = integrator;
+        Spheres s(settings);
+        const Vec3 spin(0, 0, 3);
+        const BodyHandle ball = s.add({0, 0, 1}, {1, 0, 0}, spin);
+        const std::vector<Vec3> before(s.world.positions(ball).begin(), s.world.positions(ball).end());
+        REQUIRE(s.world.advance(0.2).ok());
+        const Mat3 turned = rotation_matrix(0.2 * spin);
+        const std::span<const Vec3> now = s.world.positions(ball), velocity = s.world.velocities(ball);
+        REQUIRE(now.size() > sphere_step_nodes);
+        for (std::size_t n = 0; n < now.size(); ++n) {
+            const Vec3 arm = turned * (before[n] - Vec3(0, 0, 1));
+            CHECK((now[n] - (Vec3(0.2, 0, 1) + arm)).norm() < 1e-12);
+            CHECK((velocity[n] - (Vec3(1, 0, 0) + spin.cross(arm))).norm() < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("loads on any of the nodes that draw a sphere move it", "[scene]") {
+    constexpr Real h = 1e-3;
+    Spheres s(steps_of(h, Vec3::Zero()));
+    const BodyHandle ball = s.add({0, 0, 1});
+    const std::size_t count = s.world.positions(ball).size(), last = count - 1;
+    REQUIRE(last > sphere_step_nodes);
+    std::vector<Vec3> load(count, Vec3::Zero());
+    load[last] = {3, -1, 2};
+    const Vec3 arm = s.world.positions(ball)[last] - Vec3(0, 0, 1);
+    s.world.set_loads(ball, load);
+    REQUIRE(s.world.advance(h).ok());
+    CHECK((s.velocity(ball) - h / mass * load[last]).norm() < 1e-12);
+    CHECK((s.spin(ball) - h / moment * arm.cross(load[last])).norm() < 1e-12);
+    REQUIRE(s.world.advance(0.1).ok());
+    const WorldReport report = s.world.report();
+    CHECK(report.energy_error < 0.01 * report.energy.kinetic);
+    CHECK(report.momentum_error < 1e-9);
+}
+
+TEST_CASE("a sphere that spins in one place moves, and does not come to rest", "[scene]") {
+    Settings settings = steps_of(1e-3, Vec3::Zero());
+    settings.sleep_speed = 0.1;
+    settings.sleep_time = 0.01;
+    Spheres s(settings);
+    const BodyHandle ball = s.add({0, 0, 1}, Vec3::Zero(), {2, 0, 0}),
+                     still = s.add({1, 0, 1}, Vec3::Zero(), {0.5, 0, 0});
+    REQUIRE(s.world.advance(0.1).ok());
+    CHECK(!s.world.asleep(ball));
+    CHECK(s.world.asleep(still));
+    CHECK(s.spin(ball).x() == Approx(2));
 }
 
 TEST_CASE("a sphere stays what it is when bodies before it go", "[scene]") {

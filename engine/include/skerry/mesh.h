@@ -42,7 +42,8 @@ Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 /// lie on the sphere.
 Mesh ball(Real radius, int resolution);
 
-/// What a rigid sphere is drawn with: its first node is in the middle, and its faces are flat.
+/// What a rigid sphere is drawn with: its first node is in the middle, the next twelve are the corners of an
+/// icosahedron, all others lie between these on the sphere. Its faces are flat, a tetrahedron each.
 Mesh sphere_picture(Real radius);
 
 /// A solid cylinder of the given radius and height: `resolution` elements across the diameter (odd: the next even

@@ -124,7 +124,24 @@ Mesh ball(Real radius, int resolution) {
 
 Mesh sphere_picture(Real radius) {
     constexpr int resolution = 8;
-    return ball(radius, resolution);
+    const SurfaceMesh skin = boundary(ball(radius, resolution));
+    // the corners of the icosahedron are where five faces meet, and not six
+    std::vector<int> faces(skin.nodes.size(), 0);
+    for (const auto& triangle : skin.triangles)
+        for (const Index n : triangle) ++faces[static_cast<std::size_t>(n)];
+    Mesh picture;
+    picture.nodes.push_back(Vec3::Zero());
+    std::vector<Index> row(skin.nodes.size());
+    for (const bool corners : {true, false})
+        for (std::size_t n = 0; n < skin.nodes.size(); ++n) {
+            if ((faces[n] == 5) != corners) continue;
+            row[n] = static_cast<Index>(picture.nodes.size());
+            picture.nodes.push_back(skin.nodes[n]);
+        }
+    for (const auto& [a, b, c] : skin.triangles)
+        picture.tetrahedra.push_back(
+            {0, row[static_cast<std::size_t>(a)], row[static_cast<std::size_t>(b)], row[static_cast<std::size_t>(c)]});
+    return picture;
 }
 
 }  // namespace skerry::mesh

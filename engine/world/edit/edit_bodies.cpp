@@ -37,11 +37,12 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
         nodes.velocity[n] = nodes.velocity_next[n] = nodes.push_out[n] = nodes.force[n] = nodes.load[n] = Vec3::Zero();
         nodes.body[n] = row;
     }
-    for (std::size_t first = begin; first < end; first += nodes_per_block) {
+    const std::size_t looked_at = body.sphere_radius > 0 ? std::min<std::size_t>(begin + sphere_step_nodes, end) : end;
+    for (std::size_t first = begin; first < looked_at; first += nodes_per_block) {
         const std::size_t block = model.node_blocks.begin.size();
         model.node_blocks.for_each_column([block](const char*, auto& column, ColumnRole) { column.resize(block + 1); });
         model.node_blocks.begin[block] = static_cast<Index>(first);
-        model.node_blocks.end[block] = static_cast<Index>(std::min<std::size_t>(first + nodes_per_block, end));
+        model.node_blocks.end[block] = static_cast<Index>(std::min<std::size_t>(first + nodes_per_block, looked_at));
         model.node_blocks.body[block] = row;
     }
     return appended(begin, end);
@@ -207,6 +208,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const auto row = static_cast<Index>(b);
     bodies.for_each_column([b](const char*, auto& column, ColumnRole) { column.resize(b + 1); });
 
+    const auto first_block = static_cast<Index>(model.node_blocks.begin.size());
     const Range nodes = append_nodes(model, body, row);
     stiffness_sum.resize(model.nodes.position.size());
     set_masses_and_motion(model, body, nodes);
@@ -227,9 +229,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.sphere_radius[b] = body.sphere_radius;
     bodies.collider[b] = body.collider;
     bodies.nodes[b] = nodes;
-    bodies.node_blocks[b] = {
-        static_cast<Index>(model.node_blocks.begin.size()) - (nodes.size() + nodes_per_block - 1) / nodes_per_block,
-        static_cast<Index>(model.node_blocks.begin.size())};
+    bodies.node_blocks[b] = {first_block, static_cast<Index>(model.node_blocks.begin.size())};
     bodies.blocks[b] = blocks;
     bodies.element_nodes[b] = rows.elements.nodes;
     bodies.tetrahedron_blocks[b] = rows.tetrahedra;

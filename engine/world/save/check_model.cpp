@@ -164,7 +164,10 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
                               "blocks of at most 256 nodes that follow each other");
             next = blocks.end[k];
         }
-        if (next != nodes.end) file.complain("/node_blocks/end", std::to_string(next), "all nodes of a body");
+        const Index last =
+            model.bodies.sphere_radius[b] > 0 ? std::min(nodes.begin + sphere_step_nodes, nodes.end) : nodes.end;
+        if (next != last)
+            file.complain("/node_blocks/end", std::to_string(next), "all nodes of a body, or 13 of a sphere");
         for (Index t = model.bodies.tetrahedron_blocks[b].begin; t < model.bodies.tetrahedron_blocks[b].end; ++t)
             for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("/tetrahedra/node", corner, nodes, t);
         for (Index k = rows.begin; k < rows.end; ++k)

@@ -75,7 +75,8 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             make(w.scratch.cluster_kick), make(w.scratch.cluster_work), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
-    g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep),
+    g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies,
+            inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep, m.loaded),
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h),
             outputs<RigidKicks>(m.rigid_bodies, n));
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
@@ -162,7 +163,7 @@ void list_strains(WorldState& w, TaskGraph& g) {
 void list_turns(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
-            inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep),
+            inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep, m.loaded),
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidImpulses>(m.rigid_bodies),
             inputs<ElasticMotion>(m.implicit_nodes), read(m.nodes.position), value(w.scratch.parameters.h),
             outputs<RigidTurns>(m.rigid_bodies, m.nodes));
@@ -226,9 +227,10 @@ void list_commit(WorldState& w, TaskGraph& g) {
             inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h), value(p.integrator),
             outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
     RigidBodyTable& r = w.model.rigid_bodies;
-    g.stage("dynamics/move_rigid_bodies", move_rigid_bodies, inputs<RigidBodies>(r, b, n, w.model.any_asleep),
-            inputs<RigidImpulses>(r), inputs<ElasticMotion>(w.model.implicit_nodes), read(r.center_next),
-            read(r.rotation_next), outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
+    g.stage("dynamics/move_rigid_bodies", move_rigid_bodies,
+            inputs<RigidBodies>(r, b, n, w.model.any_asleep, w.model.loaded), inputs<RigidImpulses>(r),
+            inputs<ElasticMotion>(w.model.implicit_nodes), read(r.center_next), read(r.rotation_next),
+            outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c, w.model.joints),

@@ -65,11 +65,11 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             if (!asked && displacement <= longest_displacement * bodies.body_mean_edge[b]) continue;
             out.displacement[b] = 0;
             out.frame[b].offset = Vec3::Zero();
-            out.frame[b].velocity = mean_velocity(bodies.velocity, bodies.body_nodes[b]);
+            const Range nodes = bodies.nodes(b);
+            out.frame[b].velocity = mean_velocity(bodies.velocity, nodes);
             // the search of the next step reckons with this frame (step_reach.cpp)
-            out.frame_speed[b] = greatest_speed(bodies.velocity, bodies.body_nodes[b], out.frame[b].velocity);
-            const auto first = static_cast<std::ptrdiff_t>(bodies.body_nodes[b].begin),
-                       last = static_cast<std::ptrdiff_t>(bodies.body_nodes[b].end);
+            out.frame_speed[b] = greatest_speed(bodies.velocity, nodes, out.frame[b].velocity);
+            const auto first = static_cast<std::ptrdiff_t>(nodes.begin), last = static_cast<std::ptrdiff_t>(nodes.end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);
         }
     });

@@ -15,19 +15,28 @@ namespace skerry {
 struct DisplacementInputs {
     std::span<const Real> block_displacement_squared;  // m^2, NodeBlockTable; of the positions now
     std::span<const Range> body_node_blocks;           // BodyTable
-    std::span<const Range> body_nodes;
-    std::span<const Real> body_mean_edge;  // m
-    std::span<const Vec3> position;        // m, now
-    std::span<const Vec3> velocity;        // m/s, now
+    std::span<const Index> block_begin, block_end;     // NodeBlockTable
+    std::span<const Real> body_mean_edge;              // m
+    std::span<const Vec3> position;                    // m, now
+    std::span<const Vec3> velocity;                    // m/s, now
 
     static DisplacementInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                                    const NodeTable& node) {
         return {.block_displacement_squared = binder.read(block.displacement_squared),
                 .body_node_blocks = binder.read(body.node_blocks),
-                .body_nodes = binder.read(body.nodes),
+                .block_begin = binder.read(block.begin),
+                .block_end = binder.read(block.end),
                 .body_mean_edge = binder.read(body.mean_edge),
                 .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity)};
+    }
+
+    /// In blocks: all, or of a sphere some.
+    Range nodes(std::size_t body) const {
+        const Range blocks = body_node_blocks[body];
+        if (blocks.size() == 0) return {0, 0};
+        return {block_begin[static_cast<std::size_t>(blocks.begin)],
+                block_end[static_cast<std::size_t>(blocks.end - 1)]};
     }
 };
 

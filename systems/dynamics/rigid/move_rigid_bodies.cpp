@@ -100,7 +100,8 @@ bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         out.moment_kick[r] = h * moment;
         const RigidField field{bodies.center[r], (bodies.momentum[r] + out.kick[r]) / bodies.mass[r],
                                out.inverse_inertia[r] * (bodies.angular_momentum[r] + out.moment_kick[r])};
-        for_each_node(bodies.nodes(r), [&](std::size_t n) { out.velocity_next[n] = field.at(forces.position[n]); });
+        for_each_node(bodies.step_nodes(r),
+                      [&](std::size_t n) { out.velocity_next[n] = field.at(forces.position[n]); });
     });
     return true;
 }
@@ -126,7 +127,7 @@ bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         }
         const RigidPlace place(bodies, r, out.center_next[r], out.rotation_next[r]);
         const ShapeNext shape(bodies, elastic, r);
-        for_each_node(bodies.nodes(r),
+        for_each_node(bodies.step_nodes(r),
                       [&](std::size_t n) { out.velocity_next[n] = (place.of(shape.at(n)) - position[n]) / h; });
     });
     return true;

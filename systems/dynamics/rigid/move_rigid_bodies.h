@@ -2,11 +2,13 @@
 // step is taken (docs/methods/rigid_bodies.md 2).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
 #include "components/body_table.h"
 #include "components/implicit_node_table.h"
+#include "components/node_block_table.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
 #include "jobs/access.h"
@@ -21,6 +23,7 @@ struct RigidBodies {
     std::span<const Index> body;
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
+    std::span<const Real> body_sphere_radius;   // BodyTable; empty: all nodes of spheres are looked at, too
     std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: none is
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
@@ -30,11 +33,13 @@ struct RigidBodies {
     std::span<const Real> inverse_mass;   // 1/kg, by node
     std::span<const Index> holder;        // AttachmentTable, or no_index
 
+    /// `loaded`: some node has a load, so that what loads do is asked of every node.
     static RigidBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
-                            const NodeTable& node, const bool& any_asleep) {
+                            const NodeTable& node, const bool& any_asleep, const bool& loaded) {
         return {.body = binder.read(rigid.body),
                 .body_nodes = binder.read(of_body.nodes),
                 .body_implicit = binder.read(of_body.implicit),
+                .body_sphere_radius = binder.read_if(!binder.value(loaded), of_body.sphere_radius),
                 .body_asleep = binder.read_if(binder.value(any_asleep), of_body.asleep),
                 .mass = binder.read(rigid.mass),
                 .moments = binder.read(rigid.moments),
@@ -54,6 +59,12 @@ struct RigidBodies {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
     }
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
+    /// Those whose velocities are asked for before the step is taken.
+    Range step_nodes(std::size_t r) const {
+        const Range all = nodes(r);
+        const bool is_drawn = !body_sphere_radius.empty() && body_sphere_radius[static_cast<std::size_t>(body[r])] > 0;
+        return is_drawn ? Range{all.begin, std::min(all.begin + sphere_step_nodes, all.end)} : all;
+    }
     /// Rows of ImplicitNodeTable.
     Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
     /// Whether it is a frame that an attachment leads, in which nodes have momenta of their own.

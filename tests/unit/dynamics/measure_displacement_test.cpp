@@ -12,7 +12,8 @@ namespace {
 
 /// One body of some nodes in blocks of its own.
 struct Cloud {
-    std::vector<Range> node_blocks{{0, 2}}, nodes{{0, 300}};
+    std::vector<Range> node_blocks{{0, 2}};
+    std::vector<Index> block_begin{0, 256}, block_end{256, 300};
     std::vector<Real> mean_edge{1}, squared = std::vector<Real>(2), frame_speed{0}, displacement{0}, travel{0};
     std::vector<std::uint8_t> rebase{0};
     std::vector<Vec3> position = std::vector<Vec3>(300, Vec3::Zero()), origin = position;
@@ -28,8 +29,8 @@ struct Cloud {
         const Vec3 offset = frame[0].offset + seconds * frame[0].velocity;
         squared = {block_displacement_squared(part(position, 0, 256), part(origin, 0, 256), offset),
                    block_displacement_squared(part(position, 256, 44), part(origin, 256, 44), offset)};
-        measure_displacement(*executor, {squared, node_blocks, nodes, mean_edge, position, velocity}, seconds,
-                             {origin, rebase, frame, frame_speed, displacement, travel});
+        measure_displacement(*executor, {squared, node_blocks, block_begin, block_end, mean_edge, position, velocity},
+                             seconds, {origin, rebase, frame, frame_speed, displacement, travel});
     }
 };
 

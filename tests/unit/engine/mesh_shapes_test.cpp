@@ -203,3 +203,21 @@ TEST_CASE("sizes that are not positive and meshes too large to index are refused
     fine.cells_per_leg = 2000000;
     CHECK_THROWS_AS(mesh::table(fine), std::invalid_argument);
 }
+
+TEST_CASE("what draws a sphere begins with its middle and corners around it, and lies on it", "[unit]") {
+    const Mesh picture = mesh::sphere_picture(2);
+    CHECK(picture.nodes.size() == 163);
+    CHECK(picture.tetrahedra.size() == 320);
+    CHECK(picture.nodes[0] == Vec3::Zero());
+    for (std::size_t n = 1; n < picture.nodes.size(); ++n) CHECK(picture.nodes[n].norm() == Approx(2));
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t n = 1; n <= 12; ++n) sum += picture.nodes[n];
+    CHECK(sum.norm() < 1e-12);
+    // of any direction some corner is near
+    for (const Vec3& x : picture.nodes) {
+        Real most = 0;
+        for (std::size_t n = 1; n <= 12; ++n) most = std::max(most, x.dot(picture.nodes[n]));
+        if (!x.isZero(0)) CHECK(most > 0.75 * 4);
+    }
+    check_sound(picture);
+}
