@@ -262,6 +262,12 @@ private:
         if (!body.contains("pin") && !body.contains("self_contact") && of_frames_.chance(0.35))
             body["dynamics"] = name_of(of_frames_.chance(0.5) ? BodyDynamics::rigid : BodyDynamics::implicit_elastic);
         if (!body.contains("dynamics") && of_meshes_.chance(0.1)) body["dynamics"] = name_of(BodyDynamics::automatic);
+        if (!body.contains("pin") && !body.contains("self_contact") && of_spheres_.chance(0.25)) {
+            body.erase("mesh");
+            body.erase("element");
+            body["shape"] = {{"sphere", {{"radius", size / 2}}}};
+            body["dynamics"] = name_of(BodyDynamics::rigid);
+        }
         return body;
     }
 
@@ -316,6 +322,7 @@ private:
     // lists of their own: other draws stay as they were before
     RandomNumbers of_frames_{~seed_};
     RandomNumbers of_meshes_{~seed_ * 3};
+    RandomNumbers of_spheres_{~seed_ * 5};
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material
     Real wave_speed_ = 0;               // m/s, of it

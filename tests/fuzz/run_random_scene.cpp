@@ -75,10 +75,16 @@ private:
             world_.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000, .friction = 0});
         const Mesh mesh = random.chance(0.5) ? mesh::ball(scene_.length / 2, random.count(1, 4))
                                              : mesh::box(scene_.length * Vec3::Ones(), {2, 1, 3});
-        world_.add_body(mesh, {.material = material,
-                               .position = anywhere(random),
-                               .velocity = random.within(0, scene_.speed) * random.direction(),
-                               .self_contact = random.chance(0.5)});
+        BodySettings body{.material = material,
+                          .position = anywhere(random),
+                          .velocity = random.within(0, scene_.speed) * random.direction(),
+                          .self_contact = random.chance(0.5)};
+        if (!body.self_contact && random.chance(0.4)) {
+            body.dynamics = BodyDynamics::rigid;
+            world_.add_body(Sphere{scene_.length / 2}, body);
+        } else {
+            world_.add_body(mesh, body);
+        }
     }
 
     void attach(BodyHandle body, RandomNumbers& random) {

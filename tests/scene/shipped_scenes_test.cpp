@@ -140,6 +140,26 @@ TEST_CASE("the legs of the table stick and slip in turn while it creeps down the
     CHECK(world.energy().kinetic < 1);
 }
 
+TEST_CASE("steel balls sink into a soft bed and come to rest on it, without an overlap", "[scene]") {
+    Scene scene = open_scene("steel_balls");
+    World& world = scene.world;
+    REQUIRE(world.bodies().size() == 49);
+    Real peak = 0;
+    play(world, scene.seconds, [&](const StepReport&) { peak = std::max(peak, world.energy().kinetic); });
+    const WorldReport report = world.report();
+    CHECK(report.max_penetration == 0);
+    CHECK(report.energy.kinetic < 1e-3 * peak);
+    CHECK(report.energy_error_share < 0.01);
+    int sunk = 0;
+    for (const BodyHandle body : world.bodies()) {
+        const Vec3 at = world.center_of_mass(body);
+        CHECK(at.z() > 0);
+        CHECK(at.head<2>().norm() < 0.36);
+        sunk += world.name(body) != "bed" && at.z() < 0.1255;  // a bed that gave nothing would hold it up there
+    }
+    CHECK(sunk >= 16);
+}
+
 TEST_CASE("bodies from mesh files drop and lie still", "[scene][slow]") {
     Scene scene = open_scene("mesh_drop");
     play(scene.world, scene.seconds, [](const StepReport&) {});
