@@ -46,6 +46,7 @@ Real World::mass(BodyHandle body) const {
 }
 
 Vec3 World::center_of_mass(BodyHandle body) const {
+    state_->settle();
     const Range nodes = state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "center_of_mass"))];
     Vec3 moment = Vec3::Zero();
     Real mass = 0;

@@ -16,6 +16,7 @@
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"
 #include "engine/world/validate.h"
+#include "systems/dynamics/rigid/move_rigid_bodies.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -68,7 +69,16 @@ void WorldState::require_between_steps(const char* call) const {
         .raise();
 }
 
+void WorldState::draw() {
+    if (!drawn_behind) return;
+    drawn_behind = false;
+    draw_spheres(*executor,
+                 RigidBodies::bind({}, model.rigid_bodies, model.bodies, model.nodes, model.any_asleep, model.loaded),
+                 model.nodes.position, model.nodes.velocity);
+}
+
 void WorldState::settle() {
+    draw();
     if (!edits.places.empty()) edits.places.wake_near(model);
     if (!edits.rows) return;
     if (edits.elements) {

@@ -41,14 +41,17 @@ struct WorldState {
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
     OpenEdits edits;
-    bool advancing = false;  // what it calls back must not change what it goes over
+    bool advancing = false;     // what it calls back must not change what it goes over
+    bool drawn_behind = false;  // nodes that only draw spheres are where they were some steps ago: within advance alone
 
     /// Refuses a call from what advance calls back.
     void require_between_steps(const char* call) const;
     /// Takes out what is gone, derives what is new, wakes what rests beside either. It is left until somebody needs
     /// it, so that many changes in a row cost it once. Called by whatever goes over all rows, hands out what lies in
-    /// them or asks who rests, functions that only look included; one row is found without.
+    /// them or asks who rests, functions that only look included; one row is found without. Draws spheres, too.
     void settle();
+    /// Puts what only draws spheres where it belongs.
+    void draw();
 
 private:
     void erase_gone_rows();

@@ -157,6 +157,30 @@ TEST_CASE("what draws a sphere moves with it", "[scene]") {
     }
 }
 
+TEST_CASE("spheres are drawn for whoever looks in the middle of a call, and as if nobody had", "[scene]") {
+    const auto course = [](bool looks, bool may_rest) {
+        Settings settings = steps_of(1e-3);
+        settings.sleep = may_rest;  // draws in every step
+        settings.sleep_time = 1000;
+        Spheres s(settings);
+        s.world.add_collider(Plane{});
+        const BodyHandle ball = s.add({0, 0, 0.11}, {1, 0, 0}, {2, -1, 3});
+        int steps = 0;
+        const auto look = [&](const StepReport&) {
+            if (!looks || ++steps % 3 != 0) return;
+            CHECK((s.world.positions(ball)[100] - s.place(ball)).norm() == Approx(radius));
+            const Vec3 arm = s.world.positions(ball)[100] - s.place(ball);
+            CHECK((s.world.velocities(ball)[100] - s.velocity(ball) - s.spin(ball).cross(arm)).norm() < 1e-12);
+        };
+        if (looks) s.world.watch_steps(look);
+        REQUIRE(s.world.advance(0.1).ok());
+        CHECK((steps > 50) == looks);
+        return s.world.state_hash();
+    };
+    CHECK(course(true, false) == course(false, false));
+    CHECK(course(true, true) == course(false, true));
+}
+
 TEST_CASE("loads on any of the nodes that draw a sphere move it", "[scene]") {
     constexpr Real h = 1e-3;
     Spheres s(steps_of(h, Vec3::Zero()));

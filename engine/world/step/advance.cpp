@@ -198,6 +198,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
+    // unless loads or who may come to rest ask for all nodes in every step
+    world.scratch.parameters.draws_late = !model.loaded && !world.scratch.parameters.sleep.on();
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     // by what is called back: the call ends between two steps all the same
     std::exception_ptr thrown;
@@ -244,12 +246,14 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (outcome != StepOutcome::committed) continue;
         report.crossed += static_cast<Index>(world.cache.crossings.let_through - let_through);
         report.step_size = plan.h;
+        world.drawn_behind = world.scratch.parameters.draws_late;
         add_to_report(world, report);
         note_inversions(world, report);
         note_limit(world, report);
         left = plan.steps > 1 ? left - plan.h : 0;
         world.record.balance.work += follow_stiffening(model);
         if (keep_watch(world)) {
+            world.draw();
             if (clock.offset == 0)
                 look_at_balance(world);
             else
@@ -269,6 +273,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     } else {
         drift(0);
     }
+    world.draw();
     world.query_trees.forget();
     if (left == 0) clock.time = end;
     if (look_at_end) look_at_balance(world);

@@ -230,7 +230,7 @@ void list_commit(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/move_rigid_bodies", move_rigid_bodies,
             inputs<RigidBodies>(r, b, n, w.model.any_asleep, w.model.loaded), inputs<RigidImpulses>(r),
             inputs<ElasticMotion>(w.model.implicit_nodes), read(r.center_next), read(r.rotation_next),
-            outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
+            value(p.draws_late), outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c, w.model.joints),

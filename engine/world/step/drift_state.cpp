@@ -52,7 +52,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
                       Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
     move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.loaded),
-                      RigidImpulses::bind({}, r), ElasticMotion::bind({}, i), r.center_next, r.rotation_next,
+                      RigidImpulses::bind({}, r), ElasticMotion::bind({}, i), r.center_next, r.rotation_next, false,
                       RigidMoves::bind({}, r, n, i));
     measure_displacement_of(executor, model, seconds, search);
     add_collider_travel(std::abs(seconds), search.collider_extent, c);

@@ -135,7 +135,7 @@ bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
 
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
-                       std::span<const Mat3> rotation_next, const RigidMoves& out) {
+                       std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out) {
     if (bodies.size() == 0) return false;
     for_each_body(executor, bodies, [&](std::size_t r) {
         if (bodies.asleep(r)) return;
@@ -150,7 +150,7 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         out.momentum[r] = led ? Vec3(Vec3::Zero()) : momentum;
         out.angular_momentum[r] = led ? Vec3(Vec3::Zero()) : angular_momentum;
         const ShapeNext shape(bodies, elastic, r);
-        for_each_node(bodies.nodes(r), [&](std::size_t n) {
+        for_each_node(draws_late ? bodies.step_nodes(r) : bodies.nodes(r), [&](std::size_t n) {
             out.position[n] = place.of(shape.at(n));
             if (!shape.deforms()) {
                 out.velocity[n] = field.at(out.position[n]);
@@ -167,6 +167,20 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         });
     });
     return true;
+}
+
+void draw_spheres(Executor& executor, const RigidBodies& bodies, std::span<Vec3> position, std::span<Vec3> velocity) {
+    for_each_body(executor, bodies, [&](std::size_t r) {
+        const Range drawn{bodies.step_nodes(r).end, bodies.nodes(r).end};
+        if (drawn.size() == 0 || bodies.asleep(r)) return;
+        const RigidPlace place(bodies, r, bodies.center[r], bodies.rotation[r]);
+        const RigidField field{bodies.center[r], bodies.momentum[r] / bodies.mass[r],
+                               spin_of(bodies.rotation[r], bodies.moments[r], bodies.angular_momentum[r])};
+        for_each_node(drawn, [&](std::size_t n) {
+            position[n] = place.of(bodies.rest_position[n]);
+            velocity[n] = field.at(position[n]);
+        });
+    });
 }
 
 }  // namespace skerry

@@ -168,10 +168,13 @@ struct RigidMoves {
 };
 
 /// Commits: the bodies that do not rest, and their nodes, are where they were turned to (`center_next`,
-/// `rotation_next`), and go on with the momenta that the step gave them. Parallel over bodies. Returns false where
-/// there is none (skipped).
+/// `rotation_next`), and go on with the momenta that the step gave them; `draws_late`: of spheres only step_nodes, the
+/// others wait for draw_spheres. Parallel over bodies. Returns false where there is none (skipped).
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
-                       std::span<const Mat3> rotation_next, const RigidMoves& out);
+                       std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out);
+
+/// Puts the nodes that only draw spheres where they would be by now. Parallel over bodies.
+void draw_spheres(Executor& executor, const RigidBodies& bodies, std::span<Vec3> position, std::span<Vec3> velocity);
 
 }  // namespace skerry
