@@ -74,8 +74,9 @@ struct BodyTable {
     Column<LevelMask> active;
     // at rest: left out of the step until something touches it
     Column<std::uint8_t> asleep;
-    // s, for how long the body has been still (update_sleep.h); and, while the limits are the engine's own, how far a
-    // node has come since it was at its still_position, m: in this half of sleep_time and in the one before
+    // s, for how long the body has been still (update_sleep.h); and, with the engine's own limits, how far a node has
+    // come from its still_position, m: in this half of sleep_time, below 0 once it has come nearer again; in the one
+    // before
     Column<Real> still_time;
     Column<Real> drift, drift_before;
     // m, how far its shape has come from that at the still_position in this half; and in the one before, where it went

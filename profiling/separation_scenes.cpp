@@ -30,6 +30,7 @@ Settings settings_of(const Handling& handling, ContactRegions mode) {
     settings.contact_regions = mode;
     settings.method = handling.method;
     settings.warm_start = handling.warm_start;
+    settings.sleep = false;  // what has settled is to be solved
     return settings;
 }
 

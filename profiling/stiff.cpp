@@ -49,6 +49,7 @@ Settings settings_of(const Case& one, const Vec3& gravity) {
     settings.threads = 1;
     settings.gravity = gravity;
     settings.step_size = one.step;
+    settings.sleep = false;  // what is static is compared closer than a thousandth
     settings.tolerance = one.tolerance;
     settings.method = one.method;
     return settings;

@@ -220,10 +220,9 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step in which F of an element changes by more (Frobenius norm) is tried again, shorter",
                   .limits = above(0)})
-            .key(
-                "sleep", &S::sleep,
-                {.meaning = "bodies that hardly move for sleep_time, and do not move more and more, rest with all that "
-                            "they touch, until something presses on them; false by default: they go on moving"})
+            .key("sleep", &S::sleep,
+                 {.meaning = "bodies that hardly move for sleep_time, and neither more and more nor on and on, rest "
+                             "with all that they touch, until something presses on them; false: they go on moving"})
             .key("sleep_speed", &S::sleep_speed,
                  {.meaning = "above 0: bodies slower than this for sleep_time rest, in place of what sleep says",
                   .unit = "m/s",

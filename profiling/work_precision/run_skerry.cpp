@@ -16,6 +16,7 @@ struct Built {
 Built build(const PrecisionScene& scene, Settings settings, Real step) {
     settings.gravity = scene.gravity.front().gravity;
     settings.backend = Backend::serial;
+    settings.sleep = false;  // as in the peers
     if (step > 0) settings.step_size = step;
     Built built{World(settings), {}};
     World& world = built.world;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "skerry/joint.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
@@ -296,6 +297,48 @@ TEST_CASE("a block that begins to tip over is never put to rest", "[scene]") {
         }
         CHECK(world.center_of_mass(block).z() < 0.1);
     }
+}
+
+TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling, carried, or by a motor", "[scene]") {
+    constexpr Real speed = 1e-4;  // m/s: 2 to 7 times slower than what comes too far to be still
+    enum What { on_ice, rolling, carried, by_motor };
+    const auto what = GENERATE(on_ice, rolling, carried, by_motor);
+    CAPTURE(what);
+    World world;
+    const auto material =
+        world.add_material({.young_modulus = 1e6, .density = 500, .friction = what == on_ice ? 0.0 : 0.5});
+    const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
+    BodySettings settings{.material = material, .velocity = {speed, 0, 0}, .contact_distance = 0.002};
+    BodyHandle body;
+    if (what == rolling) {
+        settings.position = {0, 0, 0.1 + 0.001};
+        settings.angular_velocity = {0, speed / 0.1, 0};
+        settings.dynamics = BodyDynamics::rigid;
+        body = world.add_body(Sphere{0.1}, settings);
+    } else {
+        settings.position = {0, 0, what == on_ice ? 0.051 : 1};
+        if (what == by_motor) settings.dynamics = BodyDynamics::rigid;
+        body = world.add_body(mesh, settings);
+    }
+    if (what == on_ice || what == rolling) world.add_collider(Plane{});
+    if (what == carried) {
+        std::vector<Vec3> lift;
+        for (const Real mass : node_masses(world, body, mesh, 500)) lift.push_back(-mass * world.settings().gravity);
+        world.set_loads(body, lift);
+    }
+    if (what == by_motor)
+        Joints(world).add({.kind = JointKind::hinge,
+                           .first = body,
+                           .point = {0, 0, 1},
+                           .axis = {0, 0, 1},
+                           .motor = JointMotor{.speed = speed / 0.1, .strength = 10}});
+    for (int i = 0; i < 40; ++i) {
+        REQUIRE(world.advance(0.1).ok());
+        REQUIRE_FALSE(world.asleep(body));
+    }
+    const Vec3 way = what == by_motor ? Vec3(world.pose(body).rotation.z() * 0.1, 0, 0)
+                                      : Vec3(world.center_of_mass(body) - settings.position);
+    CHECK(way.x() == Approx(4 * speed).epsilon(0.02));
 }
 
 TEST_CASE("while all look still regions are solved to 1e-5, before that to the tolerance, with the same bits",

@@ -23,12 +23,13 @@ inline MaterialSettings lossless(MaterialSettings material) {
     return material;
 }
 
-/// Contacts solved until the error of the step is all that is left.
+/// Contacts solved until the error of the step is all that is left: rest would leave a thousandth of what is static.
 inline Settings accurate(const Vec3& gravity = {0, 0, -standard_gravity}, Real tolerance = 1e-8) {
     Settings settings;
     settings.gravity = gravity;
     settings.tolerance = tolerance;
     settings.max_iterations = 20000;
+    settings.sleep = false;
     return settings;
 }
 

@@ -166,9 +166,10 @@ struct Settings {
     Real max_strain_step = 0.2;  // a step in which F of an element changes by more (Frobenius norm) is refused
     // A body that has been still for sleep_time is put to rest, together with all that it touches: it is left out of
     // the step, with its contacts as they were, until something presses on it or changes it. With `sleep` a body is
-    // still that hardly moves, and does not move more and more (docs/methods/skipping.md 3.1); where sleep_speed is
-    // above 0, one all of whose nodes are slower than that.
-    bool sleep = false;
+    // still that hardly moves, and neither more and more nor on and on: what stands is a thousandth of its deflection
+    // from its place at most (docs/methods/skipping.md 3.1). Where sleep_speed is above 0, one all of whose nodes are
+    // slower than that.
+    bool sleep = true;
     Real sleep_speed = 0;   // m/s, >= 0
     Real sleep_time = 0.5;  // s, >= 0
     // Skip what cannot have come close, and steps in which nothing moves; off searches everything.

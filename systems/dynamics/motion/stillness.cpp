@@ -52,20 +52,23 @@ public:
         const bool ends = halves(still) > halves(before);
         if (!ends && looks_due(part(still)) == looks_due(part(before))) return;
         Real &drift = state_.drift[body_], &shape_drift = state_.shape_drift[body_];
-        const Real shape_now = shape_distance(positions(), part_of_body(state_.still_position));
-        const bool goes_one_way = shape_now >= shape_drift;
-        drift = std::max(drift, drift_now());
+        const Real now = drift_now(), shape_now = shape_distance(positions(), part_of_body(state_.still_position));
+        const bool comes_back = drift < 0 || now < drift, goes_one_way = shape_now >= shape_drift;
+        const Real furthest = std::max(std::abs(drift), now);
+        drift = comes_back ? -furthest : furthest;
         shape_drift = std::max(shape_drift, shape_now);
-        if (drift > limits::drift * edge) {
+        if (furthest > limits::drift * edge) {
             still = 0;
         } else if (ends) {
             const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
             const bool first = before < half;
-            if (!first && drift > limits::growth * least)
+            // what has been further away at each look may go on at one speed, on ice or by a motor
+            const bool goes_on = !comes_back && furthest > limits::noise * edge;
+            if (!first && furthest > limits::growth * least)
                 still = 0;
-            else if (!first && !(is_balanced(half) && has_its_shape(goes_one_way)))
+            else if (!first && (goes_on || !is_balanced(half) || !has_its_shape(goes_one_way)))
                 still = half;  // the next half is compared with this one
-            state_.drift_before[body_] = drift;
+            state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
             begin_half();
         }
@@ -77,8 +80,8 @@ private:
     /// half; the sum of the drifts bounds it.
     bool is_balanced(Real half) const {
         const bool held = bodies_.pinned_count[body_] > 0;  // damped towards rest, not towards its rigid motion
-        const Real damped = held ? state_.drift[body_] : state_.shape_drift[body_];
-        const Real acceleration = (state_.drift[body_] + state_.drift_before[body_]) / (half * half);
+        const Real drift = std::abs(state_.drift[body_]), damped = held ? drift : state_.shape_drift[body_];
+        const Real acceleration = (drift + state_.drift_before[body_]) / (half * half);
         return acceleration + damping() * damped / half <= limits::imbalance * settings_.gravity;
     }
 

@@ -100,14 +100,28 @@ TEST_CASE("what is fast, or comes far slowly, is not still", "[unit]") {
     CHECK_FALSE(rests(0.02, 3, [](Real t) { return 3e-6 * std::sin(2000 * t); }));
     // as a whole by 5e-3 edges in half of the time, at 0.4 mm/s
     CHECK_FALSE(rests(0.02, 3, [](Real t) { return 4e-4 * t; }));
+}
+
+TEST_CASE("what goes on at one speed is not still down to the noise, whether it trembles or not", "[unit]") {
+    constexpr Real edge = 0.02;                         // m
+    for (const Real speed : {12e-3, 1e-3, 1e-4}) {      // edges a second
+        for (const Real tremble : {0.0, speed / 80}) {  // edges; it comes two and a half times as far between two looks
+            CAPTURE(speed, tremble);
+            CHECK_FALSE(
+                rests(edge, 10, [&](Real t) { return edge * (0.9 * speed * t + tremble * std::sin(300 * t)); }));
+        }
+    }
     // the error that the page states
-    CHECK(rests(0.02, 3, [](Real t) { return 0.9 * 12e-3 * 0.02 * t; }));
+    CHECK(rests(edge, 3, [](Real t) { return 0.9 * 8e-5 * edge * t; }));
 }
 
 TEST_CASE("what begins to slide is not still though it has hardly moved", "[unit]") {
     const Real edge = 1;  // m: in the second quarter of a second it comes two thirds as far as is allowed
     CHECK_FALSE(rests(edge, 5, [](Real t) { return 0.02 * t * t / 2; }));
     CHECK_FALSE(rests(edge, 5, [](Real t) { return 1e-5 * (std::exp(4 * t) - 1); }));
+    // the error that the page states: 2e-5 edges in the second quarter of a second
+    CHECK_FALSE(rests(edge, 5, [](Real t) { return 2.3e-4 * t * t / 2; }));
+    CHECK(rests(edge, 5, [](Real t) { return 1.9e-4 * t * t / 2; }));
 }
 
 TEST_CASE("an oscillation that is back at evenly spread looks is seen", "[unit]") {
