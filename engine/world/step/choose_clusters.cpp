@@ -8,6 +8,7 @@
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
+#include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -54,10 +55,19 @@ struct Kept {
     }
 };
 
+/// Which tetrahedra of a body implicit elements cover.
 void note_leeway(Model& model, std::size_t b) {
-    find_leeway(model.body_records[b].element_tetrahedra,
-                rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]),
-                rows_of(model.tetrahedra.leeway, model.bodies.tetrahedron_blocks[b]));
+    const std::span<ElementLane> of = rows_of(model.tetrahedra.leeway, model.bodies.tetrahedron_blocks[b]);
+    const ElementLane one{{1, 1, 1, 1, 1, 1, 1, 1}};
+    std::ranges::fill(of, one);
+    const std::span<const ElementLane> modulus = rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]);
+    const Ragged<Index>& covered = model.body_records[b].element_tetrahedra;
+    for (std::size_t place = 0; place < covered.size(); ++place)
+        if (modulus[place / element_lanes][place % element_lanes] > 0)
+            for (const Index t : covered[place]) {
+                const auto at = static_cast<std::size_t>(t);
+                of[at / element_lanes][at % element_lanes] = implicit_leeway;
+            }
 }
 
 struct Found {
