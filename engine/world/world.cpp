@@ -69,12 +69,12 @@ void WorldState::require_between_steps(const char* call) const {
         .raise();
 }
 
-void WorldState::draw() {
+void WorldState::draw(bool resting) {
     if (!drawn_behind) return;
     drawn_behind = false;
     draw_spheres(*executor,
                  RigidBodies::bind({}, model.rigid_bodies, model.bodies, model.nodes, model.any_asleep, model.loaded),
-                 model.nodes.position, model.nodes.velocity);
+                 resting, model.nodes.position, model.nodes.velocity);
 }
 
 void WorldState::settle() {

@@ -50,8 +50,8 @@ struct WorldState {
     /// it, so that many changes in a row cost it once. Called by whatever goes over all rows, hands out what lies in
     /// them or asks who rests, functions that only look included; one row is found without. Draws spheres, too.
     void settle();
-    /// Puts what only draws spheres where it belongs.
-    void draw();
+    /// Puts what only draws spheres where it belongs; `resting`: some came to rest in the last step.
+    void draw(bool resting = false);
 
 private:
     void erase_gone_rows();

@@ -198,8 +198,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
-    // unless loads or who may come to rest ask for all nodes in every step
-    world.scratch.parameters.draws_late = !model.loaded && !world.scratch.parameters.sleep.on();
+    world.scratch.parameters.draws_late = !model.loaded;  // loads ask for all nodes in every step
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     // by what is called back: the call ends between two steps all the same
     std::exception_ptr thrown;
@@ -247,6 +246,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         report.crossed += static_cast<Index>(world.cache.crossings.let_through - let_through);
         report.step_size = plan.h;
         world.drawn_behind = world.scratch.parameters.draws_late;
+        if (world.scratch.findings.rest.bodies > 0) world.draw(true);
         add_to_report(world, report);
         note_inversions(world, report);
         note_limit(world, report);

@@ -103,7 +103,7 @@ private:
 
     template <class T>
     std::span<T> part_of_body(std::span<T> column) const {
-        const Range nodes = bodies_.nodes[body_];
+        const Range nodes = bodies_.telling_nodes(body_);
         return column.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
     }
     std::span<const Vec3> positions() const { return part_of_body(bodies_.position); }
@@ -114,7 +114,8 @@ private:
     }
     Real drift_now() const {
         Real squared = 0;
-        for (Index n = bodies_.nodes[body_].begin; n < bodies_.nodes[body_].end; ++n)
+        const Range nodes = bodies_.telling_nodes(body_);
+        for (Index n = nodes.begin; n < nodes.end; ++n)
             squared = std::max(squared, (bodies_.position[n] - state_.still_position[n]).squaredNorm());
         return std::sqrt(squared);
     }

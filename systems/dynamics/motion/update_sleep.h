@@ -13,6 +13,7 @@
 #include "components/implicit_node_table.h"
 #include "components/joint_table.h"
 #include "components/material_table.h"
+#include "components/node_block_table.h"
 #include "components/node_table.h"
 #include "components/options.h"
 #include "components/rigid_body_table.h"
@@ -97,6 +98,7 @@ struct RestInputs {
     std::span<const Vec3> rigid_moments = {};
     std::span<const Mat3> rigid_rotation = {};
     std::span<const Index> rigid_holder = {};  // empty: none is held
+    std::span<const Real> body_sphere_radius = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
                            const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid) {
@@ -119,9 +121,16 @@ struct RestInputs {
                 .rigid_mass = binder.read(rigid.mass),
                 .rigid_moments = binder.read(rigid.moments),
                 .rigid_rotation = binder.read(rigid.rotation),
-                .rigid_holder = binder.read(rigid.holder)};
+                .rigid_holder = binder.read(rigid.holder),
+                .body_sphere_radius = binder.read(body.sphere_radius)};
     }
 
+    /// Those that tell whether the body moves: nodes that only draw a sphere may be behind.
+    Range telling_nodes(std::size_t b) const {
+        const Range all = nodes[b];
+        const bool is_sphere = !body_sphere_radius.empty() && body_sphere_radius[b] > 0;
+        return is_sphere ? Range{all.begin, std::min(all.begin + sphere_step_nodes, all.end)} : all;
+    }
     /// Row of RigidBodyTable, or no_index.
     Index rigid(std::size_t b) const {
         return body_rigid.empty() || body_rigid[b].size() == 0 ? no_index : body_rigid[b].begin;

@@ -169,10 +169,11 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
     return true;
 }
 
-void draw_spheres(Executor& executor, const RigidBodies& bodies, std::span<Vec3> position, std::span<Vec3> velocity) {
+void draw_spheres(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
+                  std::span<Vec3> velocity) {
     for_each_body(executor, bodies, [&](std::size_t r) {
         const Range drawn{bodies.step_nodes(r).end, bodies.nodes(r).end};
-        if (drawn.size() == 0 || bodies.asleep(r)) return;
+        if (drawn.size() == 0 || (bodies.asleep(r) && !resting)) return;
         const RigidPlace place(bodies, r, bodies.center[r], bodies.rotation[r]);
         const RigidField field{bodies.center[r], bodies.momentum[r] / bodies.mass[r],
                                spin_of(bodies.rotation[r], bodies.moments[r], bodies.angular_momentum[r])};

@@ -174,7 +174,9 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
                        std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out);
 
-/// Puts the nodes that only draw spheres where they would be by now. Parallel over bodies.
-void draw_spheres(Executor& executor, const RigidBodies& bodies, std::span<Vec3> position, std::span<Vec3> velocity);
+/// Puts the nodes that only draw spheres where they would be by now, also of spheres at rest where `resting`. Parallel
+/// over bodies.
+void draw_spheres(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
+                  std::span<Vec3> velocity);
 
 }  // namespace skerry
