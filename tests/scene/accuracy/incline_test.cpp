@@ -19,6 +19,7 @@ Settings on_incline(Real degrees, ContactRegions regions = ContactRegions::separ
     settings.contact_regions = regions;
     settings.tolerance = 1e-10;
     settings.max_iterations = 20000;
+    settings.sleep = false;  // friction is to hold the block, not rest
     return settings;
 }
 
