@@ -160,7 +160,7 @@ TEST_CASE("what draws a sphere moves with it", "[scene]") {
 TEST_CASE("spheres are drawn for whoever looks in the middle of a call, and as if nobody had", "[scene]") {
     const auto course = [](bool looks, bool may_rest) {
         Settings settings = steps_of(1e-3);
-        settings.sleep = may_rest;  // draws in every step
+        settings.sleep = may_rest;
         settings.sleep_time = 1000;
         Spheres s(settings);
         s.world.add_collider(Plane{});
@@ -207,10 +207,17 @@ TEST_CASE("a sphere that spins in one place moves, and does not come to rest", "
     Spheres s(settings);
     const BodyHandle ball = s.add({0, 0, 1}, Vec3::Zero(), {2, 0, 0}),
                      still = s.add({1, 0, 1}, Vec3::Zero(), {0.5, 0, 0});
+    std::vector<Vec3> before;
+    for (const Vec3& of : s.world.positions(still)) before.push_back(of - Vec3(1, 0, 1));
     REQUIRE(s.world.advance(0.1).ok());
     CHECK(!s.world.asleep(ball));
     CHECK(s.world.asleep(still));
     CHECK(s.spin(ball).x() == Approx(2));
+    // drawn as it was put to rest
+    const std::span<const Vec3> x = s.world.positions(still);
+    const Mat3 turned = rotation_matrix(s.world.pose(still).rotation);
+    CHECK(s.world.pose(still).rotation.norm() > 1e-3);
+    for (std::size_t n = 0; n < x.size(); ++n) CHECK((x[n] - s.place(still) - turned * before[n]).norm() < 1e-12);
 }
 
 TEST_CASE("a sphere stays what it is when bodies before it go", "[scene]") {
