@@ -56,10 +56,13 @@ struct ElementSchedule {
     /// The same of a block that is not touched.
     Real duration_of_level(std::size_t block) const {
         if (asleep(block)) return 0;
-        if (level.empty()) return 1;
+        return level.empty() ? 1 : active.duration[level_in_world(block)];
+    }
+    /// Of a block that is not touched, where blocks have levels.
+    std::size_t level_in_world(std::size_t block) const {
         const auto of_body = static_cast<std::size_t>(body[block]);
         const std::size_t own = std::size_t{level[block]} + body_level[of_body];
-        return active.duration[body_cap.empty() ? own : std::min(own, std::size_t{body_cap[of_body]})];
+        return body_cap.empty() ? own : std::min(own, std::size_t{body_cap[of_body]});
     }
     /// Whether nothing in begin .. end - 1 is due, where two looks can tell: blocks of a body are sorted by level.
     bool none_active(std::size_t begin, std::size_t end) const {

@@ -20,14 +20,15 @@ using namespace skerry::test;
 namespace {
 
 struct Options {
-    double seconds = 60;        // of wall time, for all
-    std::uint64_t seed = 1;     // of the first scene
-    std::uint64_t scenes = 0;   // 0: as many as the time allows
-    double scene_seconds = 20;  // of CPU time, after which a scene is cut short
-    double hang_seconds = 200;  // of CPU time, after which a scene counts as hung
-    int compare_every = 8;      // every so many scenes is run again on other threads
-    bool list = false;          // one line a scene
-    std::filesystem::path out;  // where scenes that failed are put
+    double seconds = 60;                   // of wall time, for all
+    std::uint64_t seed = 1;                // of the first scene
+    std::uint64_t scenes = 0;              // 0: as many as the time allows
+    double scene_seconds = 20;             // of CPU time, after which a scene is cut short
+    double hang_seconds = 200;             // of CPU time, after which a scene counts as hung
+    int compare_every = 8;                 // every so many scenes is run again on other threads
+    bool list = false;                     // one line a scene
+    std::filesystem::path out;             // where scenes that failed are put
+    std::vector<std::string> assignments;  // in all scenes, SceneOverrides
 };
 
 class Clock {
@@ -48,15 +49,17 @@ Verdict run_here(const RandomScene& scene, bool compare, const Options& options)
     const TemporaryFolder folder;
     char text[512];
     try {
-        const SceneRun run = run_random_scene(scene, folder.path(), {}, options.scene_seconds);
+        const SceneRun run =
+            run_random_scene(scene, folder.path(), {.assignments = options.assignments}, options.scene_seconds);
         // without the time limit of the clock both runs end at the same step
         if (compare && run.end != SceneEnd::cut_short) {
-            const SceneOverrides other{.threads = 4, .backend = Backend::threads};
+            const SceneOverrides other{.threads = 4, .backend = Backend::threads, .assignments = options.assignments};
             const SceneRun again = run_random_scene(scene, folder.path(), other);
             if (again.hash != run.hash || again.steps != run.steps) return {"failed", "other bits on other threads"};
         }
-        std::snprintf(text, sizeof text, "steps %" PRIu64 " contacts %d growth %.3g %s", run.steps,
-                      static_cast<int>(run.max_contacts), run.energy_growth, run.message.c_str());
+        std::snprintf(text, sizeof text, "steps %" PRIu64 " contacts %d growth %.3g energy off by %.3g %% %s",
+                      run.steps, static_cast<int>(run.max_contacts), run.energy_growth, 100 * run.energy_error_share,
+                      run.message.c_str());
         const char* const kinds[] = {"ok", "refused", "cut_short"};
         return {kinds[static_cast<int>(run.end)], text};
     } catch (const std::exception& error) {
@@ -106,6 +109,7 @@ int main(int argc, char** argv) {
     app.add_option("--hang-seconds", options.hang_seconds, "CPU time after which a scene counts as hung");
     app.add_option("--compare-every", options.compare_every,
                    "every so many scenes is run again on four threads; 0: none");
+    app.add_option("--set", options.assignments, "PLACE=VALUE in every scene, such as settings.multirate=true");
     app.add_option("--out", options.out, "folder for the scenes that failed, as JSON");
     app.add_flag("--list", options.list, "one line a scene");
     CLI11_PARSE(app, argc, argv);

@@ -232,6 +232,7 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
         }
     }
     run.hash = world.state_hash();
+    run.energy_error_share = world.report().energy_error_share;
     return run;
 }
 

@@ -19,7 +19,8 @@ struct SceneRun {
     std::string message;  // of the refusal
     std::uint64_t steps = 0, hash = 0;
     Index max_contacts = 0;
-    Real energy_growth = 0;  // of a passive scene: the highest energy so far over what it started with
+    Real energy_growth = 0;       // of a passive scene: the highest energy so far over what it started with
+    Real energy_error_share = 0;  // WorldReport, at the end
 };
 
 /// Builds the scene in `folder` and runs it. Throws std::runtime_error that says what is wrong: a number that is not

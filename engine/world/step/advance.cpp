@@ -160,10 +160,19 @@ private:
 
 }  // namespace
 
-Real lag_between_steps(const WorldState& world) {
-    const Settings& settings = world.model.settings;
-    if (settings.integrator != Integrator::symplectic_euler || settings.multirate) return 0;
-    return (world.record.counters.steps > 0 ? world.scratch.parameters.h : trusted_step(world.model)) / 2;
+VelocityLag lag_between_steps(const WorldState& world) {
+    const Integrator integrator = world.model.settings.integrator;
+    VelocityLag lag;
+    if (integrator == Integrator::forward_euler) return lag;
+    const StepCycle& cycle = world.clock.cycle;
+    const Real half = (world.record.counters.steps > 0 ? world.scratch.parameters.h : trusted_step(world.model)) / 2;
+    for (std::size_t l = 0; l < lag.of_level.size(); ++l) {
+        const bool at_start = l == 0 || cycle.levels == 0;  // of the time that an impulse stands for
+        lag.of_level[l] = (at_start ? half : 0) - cycle.lead[l];
+        // positions have drifted back by as much
+        if (integrator == Integrator::leapfrog) lag.of_level[l] -= half;
+    }
+    return lag;
 }
 
 StepReport World::advance(Real dt) {

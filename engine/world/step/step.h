@@ -54,8 +54,8 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
 Real added_energy(const Model& model);
 
 // advance.cpp
-/// s, by which velocities are older than positions between steps, where all are by the same; else 0.
-Real lag_between_steps(const WorldState& world);
+/// Between steps.
+VelocityLag lag_between_steps(const WorldState& world);
 
 // plan_step.cpp
 struct StepPlan {
