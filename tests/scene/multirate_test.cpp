@@ -80,7 +80,7 @@ World mixed_bar(Integrator integrator = Integrator::symplectic_euler) {
     for (const auto& t : mesh.tetrahedra) {
         Real height = 0;
         for (const Index corner : t) height += mesh.nodes[static_cast<std::size_t>(corner)].z();
-        mesh.label.push_back(height > 0 ? 1 : 0);
+        mesh.label.push_back(height > 0.2 ? 1 : 0);
     }
     world.add_body(mesh, {.material = soft,
                           .materials = {{0, soft}, {1, stiff}},
@@ -92,9 +92,10 @@ World mixed_bar(Integrator integrator = Integrator::symplectic_euler) {
 }
 
 /// A soft ball with slivers, thrown at the floor at a speed at which its elements are flat before a coarse impulse.
-World thrown_slivers() {
+World thrown_slivers(bool clusters) {
     Settings settings;
     settings.multirate = true;
+    settings.clusters = clusters;
     World world(settings);
     const auto material = world.add_material({.young_modulus = 5e4, .poisson_ratio = 0.45, .density = 900});
     world.add_collider(Plane{});
@@ -279,13 +280,89 @@ TEST_CASE("energy of multirate adds up in a body half of which is a hundred time
 }
 
 TEST_CASE("energy of multirate adds up in an impact that is quick for coarse elements", "[scene]") {
-    World world = thrown_slivers();
+    const bool clusters = GENERATE(false, true);
+    World world = thrown_slivers(clusters);
     REQUIRE(world.advance(0.04).ok());
     const WorldReport report = world.report();
     INFO(report.energy_error << " J, " << 100 * report.energy_error_share << " %, shortened " << report.shortened);
-    REQUIRE(report.level_elements.size() >= 3);
+    if (clusters)
+        REQUIRE(report.clusters > 0);
+    else
+        REQUIRE(report.level_elements.size() >= 3);
     REQUIRE(report.max_contacts > 5);
     CHECK(report.energy_error_share < 0.01);
+}
+
+TEST_CASE("with multirate slivers become implicit where that saves more than levels", "[scene]") {
+    // what bounds the steps of all: as without multirate, to the bit
+    std::vector<std::uint64_t> steps;
+    std::vector<Vec3> corner;
+    for (const bool multirate : {false, true}) {
+        Settings settings;
+        settings.gravity = Vec3::Zero();
+        settings.multirate = multirate;
+        World world(settings);
+        const auto material = world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3}));
+        const auto body = world.add_body(sliver_mesh(), {.material = material, .element = ElementKind::linear});
+        stir(world, body, sliver_mesh());
+        REQUIRE(world.advance(0.02).ok());
+        const WorldReport report = world.report();
+        CHECK(report.clusters > 0);
+        if (multirate) CHECK(report.level_elements.size() == 1);
+        steps.push_back(report.steps);
+        corner.push_back(world.positions(body)[0]);
+    }
+    CHECK(steps[0] == steps[1]);
+    CHECK(corner[0] == corner[1]);
+}
+
+TEST_CASE("a soft body with slivers has clusters for the sake of its own steps under a stiff one", "[scene]") {
+    const auto run = [](bool multirate, Integrator integrator) {
+        Settings settings;
+        settings.multirate = multirate;
+        settings.integrator = integrator;
+        World world(settings);
+        const auto soft = world.add_material(
+            test::lossless({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
+        const auto stiff = world.add_material(
+            test::lossless({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
+        world.add_collider(Plane{});
+        world.add_body(sliver_mesh(),
+                       {.material = soft, .position = {0, 0, 0.052}, .element = ElementKind::linear, .name = "soft"});
+        world.add_body(mesh::ball(0.04, 4), {.material = stiff,
+                                             .position = {0.01, 0, 0.15},
+                                             .velocity = {0.2, 0, -0.5},
+                                             .element = ElementKind::linear,
+                                             .name = "stiff"});
+        REQUIRE(world.advance(0.1).ok());
+        return world;
+    };
+    const auto integrator = GENERATE(Integrator::symplectic_euler, Integrator::leapfrog);
+    const World world = run(true, integrator), single = run(false, integrator);
+    const WorldReport report = world.report(), without = single.report();
+    CHECK(report.clusters > 0);
+    CHECK(report.max_contacts > 5);
+    CHECK(report.element_impulses < report.element_steps / 2);
+    CHECK(report.energy_error_share < 0.01);
+    CHECK(report.max_penetration <= without.max_penetration + 1e-5);
+    for (std::size_t i = 0; i < world.bodies().size(); ++i)
+        CHECK((world.center_of_mass(world.bodies()[i]) - single.center_of_mass(single.bodies()[i])).norm() < 5e-4);
+}
+
+TEST_CASE("smoothed elements have one level, since they would gain energy with several", "[scene]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.clusters = false;
+    settings.multirate = true;
+    World world(settings);
+    const auto material = world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3}));
+    const auto kind = GENERATE(ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
+    stir(world, world.add_body(sliver_mesh(), {.material = material, .element = kind}), sliver_mesh());
+    const Real start = total_energy(world);
+    REQUIRE(world.advance(0.02).ok());
+    CHECK(world.report().level_elements.size() == 1);
+    CHECK(world.report().energy_error_share < 1e-3);
+    CHECK(total_energy(world) < 1.01 * start);
 }
 
 TEST_CASE("the viscosity of fine elements among coarse is told as dissipated", "[scene]") {

@@ -8,6 +8,7 @@
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
+#include "engine/world/step/step.h"
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/element_levels.h"
@@ -159,8 +160,28 @@ AppendedElements append_elements_of(Model& model, const ElementList& list, std::
     return appended;
 }
 
-/// Elements by level, so that blocks have one level.
-void sort_by_level(Model& model, const ElementList& list, std::span<Real> stiffness_sum, BodyRows& rows) {
+/// Smoothed elements gain energy where neighbours have impulses at several rates.
+bool may_have_levels(const Model& model, std::span<const MaterialZone> zones) {
+    return model.settings.multirate && !zones.empty() &&
+           std::ranges::all_of(zones, [](const MaterialZone& zone) { return zone.kind == ElementKind::linear; });
+}
+
+/// Whether elements of these levels, whose level 0 stands `step` (s), cost so much less than those of one, some of them
+/// implicit where that is allowed, that their viscosity and coarser steps are worth it.
+bool levels_pay(const Model& model, const NewBody& body, std::span<const std::uint8_t> level, Real step) {
+    constexpr Real least_gain = 1.25;
+    std::array<Index, element_level_count> count{};
+    for (const std::uint8_t l : level) ++count[l];
+    const Real least = least_gain * cost_of_levels(count, 1) / step;
+    if (least > element_cost * static_cast<Real>(level.size()) / step) return false;  // one level stands longer steps
+    NewBody of_one_level = body;
+    of_one_level.element = ElementKind::linear;
+    return least <= cost_without_levels(model, of_one_level);
+}
+
+/// Elements by level, where levels pay, so that blocks have one level.
+void sort_by_level(Model& model, const NewBody& body, const ElementList& list, std::span<Real> stiffness_sum,
+                   BodyRows& rows) {
     const Range blocks = rows.elements.blocks;
     std::vector<std::uint8_t> at_place(rows.elements.element.size()), level(list.size());
     const ElementInputs elements = model.all_elements();
@@ -171,6 +192,7 @@ void sort_by_level(Model& model, const ElementList& list, std::span<Real> stiffn
         if (const Index e = rows.elements.element[place]; e != no_index)
             level[static_cast<std::size_t>(e)] = at_place[place];
     if (std::all_of(level.begin(), level.end(), [](std::uint8_t l) { return l == 0; })) return;
+    if (!levels_pay(model, body, level, step)) return;
 
     erase_rows(model.element_nodes, rows.elements.nodes);
     erase_rows(model.elements, blocks);
@@ -219,7 +241,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
     const ElementList list = elements_of({body.tetrahedra, body.nodes, body.rotation}, zones);
     rows.elements = append_elements_of(model, list, {}, rows);
-    if (model.settings.multirate && !zones.empty()) sort_by_level(model, list, stiffness_sum, rows);
+    if (may_have_levels(model, zones)) sort_by_level(model, body, list, stiffness_sum, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;

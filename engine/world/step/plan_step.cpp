@@ -14,9 +14,6 @@ namespace skerry {
 
 namespace {
 
-/// 64 steps: what is coarser gains less than the nodes and contacts cost, which move in every step.
-constexpr int most_cycle_levels = 6;
-
 /// For which elements stay touched beside a contact that is no more: what bounces comes back
 constexpr std::uint8_t touched_cycles = 8;
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "jobs/reduce.h"
+#include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/elements/element_block.h"
 
 namespace skerry {
@@ -39,7 +40,9 @@ Real longest_of_block(const ImpulseLimitInputs& inputs, std::size_t block, Real 
     const auto first = static_cast<std::size_t>(inputs.element_first[block]);
     const BlockNodes nodes{&inputs.element_node[first], &inputs.element_gradient[first], inputs.element_count[block]};
     const LaneMat3<Real8> change = deformation_gradient(nodes, inputs.velocity_next);
-    const Real8 rate_squared = inner_product(change, change);
+    const Real8 one = Real8{} + 1.0, implicit = one / (implicit_leeway * implicit_leeway);
+    const Real8 rate_squared =
+        inner_product(change, change) * (load(inputs.element_implicit_modulus[block]) > 0.0 ? implicit : one);
     Real most = 0;
     for (std::size_t l = 0; l < element_lanes; ++l) most = std::max(most, rate_squared[l]);
     const Real rate = std::sqrt(most);

@@ -24,7 +24,8 @@ struct ImpulseLimitInputs {
     std::span<const std::uint8_t> element_level, element_touched;
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> element_gradient;
-    std::span<const Vec3> velocity_next;  // m/s
+    std::span<const ElementLane> element_implicit_modulus;  // Pa; implicit ones have leeway (check_state.h)
+    std::span<const Vec3> velocity_next;                    // m/s
 
     static ImpulseLimitInputs bind(const Binder& binder, const BodyTable& body, const ElementBlockTable& element,
                                    const ElementNodeTable& element_node, const NodeTable& node) {
@@ -40,6 +41,7 @@ struct ImpulseLimitInputs {
                 .element_touched = binder.read(element.touched),
                 .element_node = binder.read(element_node.node),
                 .element_gradient = binder.read(element_node.gradient),
+                .element_implicit_modulus = binder.read(element.implicit_modulus),
                 .velocity_next = binder.read(node.velocity_next)};
     }
 };

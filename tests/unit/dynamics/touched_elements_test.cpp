@@ -196,6 +196,7 @@ TEST_CASE("impulses are as long as the strain rate of each element allows", "[un
                                         body.elements.touched,
                                         body.element_nodes.node,
                                         body.element_nodes.gradient,
+                                        body.elements.implicit_modulus,
                                         body.velocity};
         Column<Real> parts;
         std::vector<Real> longest{-1};
