@@ -20,6 +20,7 @@ struct Pile {
     int bodies = 12, cells = 6;
     Real share = 0.01, flatness = 0.02;
     Real seconds = 0.3;
+    bool linear = false, multirate = false, clusters = true;
 };
 
 struct Outcome {
@@ -30,7 +31,7 @@ struct Outcome {
 
 World make_world(const Pile& pile, bool slivers) {
     constexpr Real size = 0.1;
-    World world({.threads = 1});
+    World world({.multirate = pile.multirate, .clusters = pile.clusters, .threads = 1});
     const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.4, .friction = 0.4});
     world.add_collider(Plane{});
     for (int i = 0; i < pile.bodies; ++i) {
@@ -38,7 +39,10 @@ World make_world(const Pile& pile, bool slivers) {
         const Mesh mesh = slivers ? test::sliver_box(size, pile.cells, pile.share, pile.flatness, seed)
                                   : test::mirrored_box(size, pile.cells);
         const Vec3 place(0.3 * size * (i % 3), 0.3 * size * (i / 3 % 2), size * (1 + 1.4 * i));
-        world.add_body(mesh, {.material = rubber, .position = place, .velocity = {0, 0, -0.5 * i}});
+        world.add_body(mesh, {.material = rubber,
+                              .position = place,
+                              .velocity = {0, 0, -0.5 * i},
+                              .element = pile.linear ? ElementKind::linear : ElementKind::smoothed});
     }
     return world;
 }
@@ -76,6 +80,9 @@ int main(int argc, char** argv) {
     app.add_option("--share", pile.share, "of the tetrahedra that become flat");
     app.add_option("--flatness", pile.flatness, "their altitude over what it was");
     app.add_option("--seconds", pile.seconds, "s, simulated");
+    app.add_flag("--linear", pile.linear, "linear elements");
+    app.add_flag("--multirate", pile.multirate, "with the setting multirate, whose elements are linear");
+    app.add_flag("!--no-clusters", pile.clusters, "without the setting clusters");
     app.add_option("--rounds", rounds, "runs of each, in turns; the median counts");
     CLI11_PARSE(app, argc, argv);
     Outcome without{"without", {}, {}}, with{"with", {}, {}};

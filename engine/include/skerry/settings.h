@@ -146,7 +146,7 @@ struct Settings {
     // elements that stand longer steps get impulses less often (docs/integration.md)
     bool multirate = false;
     // The few elements that would make all steps several times shorter couple the nodes around them instead
-    // (docs/methods/clusters.md). Not with multirate, forward_euler and paper_algorithm_1.
+    // (docs/methods/clusters.md). Not with forward_euler and paper_algorithm_1.
     bool clusters = true;
     Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
     int threads = 0;                       // 0: those of the caller's task arena
