@@ -148,7 +148,8 @@ TEST_CASE("leapfrog restarted at ten random moments goes on with the bits of the
 
 TEST_CASE("clusters restarted at five random moments go on with the bits of the run that was not",
           "[determinism][clusters]") {
-    check_restarts({[] { return thrown_slivers(); }, 0.003, 12}, 5, 4, 6);
+    const bool multirate = GENERATE(false, true);
+    check_restarts({[multirate] { return thrown_slivers(Settings{.multirate = multirate}); }, 0.003, 12}, 5, 4, 6);
 }
 
 TEST_CASE("forward Euler, global regions and a set step are saved", "[determinism]") {

@@ -67,6 +67,31 @@ World stiff_on_soft(bool multirate, Backend backend = Backend::automatic, int th
     return world;
 }
 
+/// The ball on a soft box with slivers: without these its steps could be as much longer as those of the block.
+World ball_on_slivers(bool multirate, Integrator integrator = Integrator::symplectic_euler,
+                      Backend backend = Backend::automatic, int threads = 0) {
+    Settings settings;
+    settings.integrator = integrator;
+    settings.multirate = multirate;
+    settings.backend = backend;
+    settings.threads = threads;
+    World world(settings);
+    const auto rubber = [&](Real modulus) {
+        return world.add_material(
+            test::lossless({.young_modulus = modulus, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
+    };
+    world.add_collider(Plane{});
+    world.add_body(
+        sliver_mesh(),
+        {.material = rubber(2e4), .position = {0, 0, 0.052}, .element = ElementKind::linear, .name = "soft"});
+    world.add_body(mesh::ball(0.04, 4), {.material = rubber(1e7),
+                                         .position = {0.01, 0, 0.15},
+                                         .velocity = {0.2, 0, -0.5},
+                                         .element = ElementKind::linear,
+                                         .name = "stiff"});
+    return world;
+}
+
 /// A bar on end that falls onto its soft end; the other quarter, a hundred times as stiff, has steps ten times as
 /// short.
 World mixed_bar(Integrator integrator = Integrator::symplectic_euler) {
@@ -318,28 +343,10 @@ TEST_CASE("with multirate slivers become implicit where that saves more than lev
 }
 
 TEST_CASE("a soft body with slivers has clusters for the sake of its own steps under a stiff one", "[scene]") {
-    const auto run = [](bool multirate, Integrator integrator) {
-        Settings settings;
-        settings.multirate = multirate;
-        settings.integrator = integrator;
-        World world(settings);
-        const auto soft = world.add_material(
-            test::lossless({.young_modulus = 2e4, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
-        const auto stiff = world.add_material(
-            test::lossless({.young_modulus = 1e7, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
-        world.add_collider(Plane{});
-        world.add_body(sliver_mesh(),
-                       {.material = soft, .position = {0, 0, 0.052}, .element = ElementKind::linear, .name = "soft"});
-        world.add_body(mesh::ball(0.04, 4), {.material = stiff,
-                                             .position = {0.01, 0, 0.15},
-                                             .velocity = {0.2, 0, -0.5},
-                                             .element = ElementKind::linear,
-                                             .name = "stiff"});
-        REQUIRE(world.advance(0.1).ok());
-        return world;
-    };
     const auto integrator = GENERATE(Integrator::symplectic_euler, Integrator::leapfrog);
-    const World world = run(true, integrator), single = run(false, integrator);
+    World world = ball_on_slivers(true, integrator), single = ball_on_slivers(false, integrator);
+    REQUIRE(world.advance(0.1).ok());
+    REQUIRE(single.advance(0.1).ok());
     const WorldReport report = world.report(), without = single.report();
     CHECK(report.clusters > 0);
     CHECK(report.max_contacts > 5);
@@ -385,11 +392,14 @@ TEST_CASE("multirate steps have the same bits for 1, 2 and 4 workers", "[scene][
     };
     const std::uint64_t slivers = hash(sliver_world(true, MaterialModel::corotational, Backend::serial, 1));
     const std::uint64_t scene = hash(stiff_on_soft(true, Backend::serial, 1));
+    constexpr auto euler = Integrator::symplectic_euler;
+    const std::uint64_t clusters = hash(ball_on_slivers(true, euler, Backend::serial, 1));
     for (Backend backend : available_backends())
         for (int threads : {1, 2, 4}) {
             INFO(name_of(backend) << " with " << threads);
             CHECK(hash(sliver_world(true, MaterialModel::corotational, backend, threads)) == slivers);
             CHECK(hash(stiff_on_soft(true, backend, threads)) == scene);
+            CHECK(hash(ball_on_slivers(true, euler, backend, threads)) == clusters);
         }
 }
 
