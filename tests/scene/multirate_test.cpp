@@ -373,6 +373,36 @@ TEST_CASE("smoothed elements have one level, since they would gain energy with s
     CHECK(total_energy(world) < 1.01 * start);
 }
 
+TEST_CASE("short calls pump up nothing that stands a few steps", "[scene]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.multirate = true;
+    World world(settings);
+    const auto rubber = [&](Real modulus) {
+        return world.add_material(test::lossless({.young_modulus = modulus, .poisson_ratio = 0.3}));
+    };
+    // one tetrahedron, whose bound is sharp; soft ones have own steps of 4.05 of the stiff one
+    Mesh mesh;
+    mesh.nodes = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    const auto stiff = rubber(16.4e5), soft = rubber(1e5);
+    world.add_body(mesh, {.material = stiff, .position = {1, 0, 0}, .element = ElementKind::linear});
+    for (int i = 0; i < 4; ++i)
+        stir(world,
+             world.add_body(mesh, {.material = soft, .position = {0, 0.5 * i, 0}, .element = ElementKind::linear}),
+             mesh, 0.02);
+    const Real start = total_energy(world), h = world.stable_step();
+    const int steps = GENERATE(5, 7, 13);
+    INFO("calls of " << steps << " steps");
+    // A cycle of four steps and one of what is left, over and over, were in time with the highest modes.
+    for (int call = 0; call < 400; ++call) {
+        REQUIRE(world.advance(0.999 * steps * h).ok());
+        REQUIRE(total_energy(world) < 2 * start);
+    }
+    CHECK(10 * world.report().element_impulses < 9 * world.report().element_steps);
+    CHECK(world.report().energy_error_share < 0.01);
+}
+
 TEST_CASE("the viscosity of fine elements among coarse is told as dissipated", "[scene]") {
     World world = sliver_world(true);
     const Real start = total_energy(world);

@@ -204,6 +204,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     const Real end = clock.time + dt;
     Real left = dt;
     Tries tries = first_tries(world);
+    int levels_of_call = -1;
     world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
@@ -239,7 +240,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             blame(world, report);
             break;
         }
-        const StepPlan plan = plan_step(model, clock.cycle, left, tries.at_most());
+        const StepPlan plan = plan_step(model, clock.cycle, left, tries.at_most(), levels_of_call);
         keep_shapes(model, steps_per_round(world));
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);

@@ -6,6 +6,7 @@
 // (asynchronous variational integrators: Lew, Marsden, Ortiz, West 2003). Nodes and contacts move on in every step.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/world/step/step.h"
 #include "systems/dynamics/elements/touched_elements.h"
@@ -93,8 +94,30 @@ bool in_step(const StepCycle& cycle, Real h) {
     return std::ranges::all_of(cycle.lead, [&](Real lead) { return std::abs(lead) <= rounding * h; });
 }
 
-/// Gives bodies their levels for a cycle of steps of length h, of which `steps` are left.
-void begin_cycle(Model& model, StepCycle& cycle, Real h, Real steps) {
+/// Steps that fill whole cycles.
+Real in_whole_cycles(Real steps, int levels) {
+    return std::ldexp(std::ceil(std::ldexp(steps, -levels)), levels);
+}
+
+/// The length of cycles, all alike, for which a call of at least so many steps costs least.
+int cheapest_levels(const StepCycle& cycle, int top, Real steps) {
+    int best = 0;
+    Real least = std::numeric_limits<Real>::infinity();
+    for (int levels = 0; levels <= top; ++levels) {
+        Real cost = 0;
+        for (int l = 0; l < step_level_count; ++l)
+            cost += static_cast<Real>(cycle.elements[static_cast<std::size_t>(l)]) *
+                    (element_cost - impulse_cost + std::ldexp(impulse_cost, -std::min(l, levels)));
+        cost *= in_whole_cycles(steps, levels);
+        if (cost <= least) best = levels;
+        least = std::min(least, cost);
+    }
+    return best;
+}
+
+/// Gives bodies their levels for a cycle, and cuts what is left of the call into whole ones.
+void begin_cycle(Model& model, StepCycle& cycle, Real left, int& levels_of_call, StepPlan& plan) {
+    const Real h = plan.h;
     cycle.index = cycle.levels = 0;
     cycle.h = h;
     // After a cycle that was broken off step by step, until those that are behind have caught up and those that are
@@ -107,14 +130,17 @@ void begin_cycle(Model& model, StepCycle& cycle, Real h, Real steps) {
         model.bodies.level_cap[b] = static_cast<std::uint8_t>(cap_of_body(model, b, h));
         top = std::max(top, count_elements(model, b, cycle));
     }
-    // A cycle ends no later than the time asked for.
-    const int fitting = static_cast<int>(std::log2(steps));
-    cycle.levels = std::min({top, fitting, most_cycle_levels});
+    top = std::min(top, most_cycle_levels);
+    if (levels_of_call < 0) levels_of_call = cheapest_levels(cycle, top, plan.steps);
+    cycle.levels = std::min(top, levels_of_call);
+    // Shorter cycles for the rest of each call would be in time with some modes (docs/methods/stable_step.md 7.7).
+    plan.steps = in_whole_cycles(plan.steps, cycle.levels);
+    cycle.h = plan.h = left / plan.steps;
 }
 
 }  // namespace
 
-StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit) {
+StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit, int& levels_of_call) {
     const bool between = cycle.index == 0;
     StepPlan plan;
     plan.stable = trusted_step(model, &plan.stiffest);
@@ -122,7 +148,7 @@ StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit) {
     // A remainder of rounding size joins the last step.
     plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
     plan.h = left / plan.steps;
-    if (between) begin_cycle(model, cycle, plan.h, plan.steps);
+    if (between) begin_cycle(model, cycle, left, levels_of_call, plan);
     return plan;
 }
 

@@ -76,8 +76,8 @@ struct StepPlan {
     Index stiffest = no_index;  // row of BodyTable: whose stable step is the shortest
 };
 /// The next step of a call that has `left` seconds to go, where no step may be longer than `fast_limit`. Begins a cycle
-/// between two.
-StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit);
+/// between two, of at most 2^levels_of_call steps; below zero, as at the start of a call: to be chosen.
+StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit, int& levels_of_call);
 /// Which levels are due in the step of length parameters.h, and which levels of each body that means.
 void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameters& parameters);
 /// After a step, with multirate: which nodes its contacts act on.
