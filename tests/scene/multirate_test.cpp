@@ -4,30 +4,13 @@
 #include <algorithm>
 
 #include "jobs/executor.h"
-#include "tests/support/sliver_box.h"
+#include "tests/support/multirate_worlds.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
 using namespace skerry::test;
 
 namespace {
-
-constexpr Real box_size = 0.1, flatness = 0.04;
-constexpr int box_cells = 8;
-
-const Mesh& sliver_mesh() {
-    static const Mesh mesh = sliver_box(box_size, box_cells, 0.02, flatness);
-    return mesh;
-}
-
-/// A smooth motion that strains the whole box by some per cent and turns it.
-void stir(World& world, BodyHandle body, const Mesh& mesh, Real speed = 0.3) {
-    std::vector<Vec3> velocity;
-    for (const Vec3& x : mesh.nodes)
-        velocity.push_back(speed * Vec3(std::sin(30 * x.y()), 20 * x.z(), std::cos(25 * x.x())) +
-                           Vec3(1, 2, 3).cross(x));
-    world.set_velocities(body, velocity);
-}
 
 World sliver_world(bool multirate, MaterialModel model = MaterialModel::stable_neo_hookean,
                    Backend backend = Backend::automatic, int threads = 0) {
@@ -60,31 +43,6 @@ World stiff_on_soft(bool multirate, Backend backend = Backend::automatic, int th
     world.add_body(mesh::box({0.2, 0.2, 0.1}, {6, 6, 3}),
                    {.material = soft, .position = {0, 0, 0.052}, .element = ElementKind::linear, .name = "soft"});
     world.add_body(mesh::ball(0.04, 4), {.material = stiff,
-                                         .position = {0.01, 0, 0.15},
-                                         .velocity = {0.2, 0, -0.5},
-                                         .element = ElementKind::linear,
-                                         .name = "stiff"});
-    return world;
-}
-
-/// The ball on a soft box with slivers: without these its steps could be as much longer as those of the block.
-World ball_on_slivers(bool multirate, Integrator integrator = Integrator::symplectic_euler,
-                      Backend backend = Backend::automatic, int threads = 0) {
-    Settings settings;
-    settings.integrator = integrator;
-    settings.multirate = multirate;
-    settings.backend = backend;
-    settings.threads = threads;
-    World world(settings);
-    const auto rubber = [&](Real modulus) {
-        return world.add_material(
-            test::lossless({.young_modulus = modulus, .poisson_ratio = 0.3, .friction = 0.4, .damping = 2}));
-    };
-    world.add_collider(Plane{});
-    world.add_body(
-        sliver_mesh(),
-        {.material = rubber(2e4), .position = {0, 0, 0.052}, .element = ElementKind::linear, .name = "soft"});
-    world.add_body(mesh::ball(0.04, 4), {.material = rubber(1e7),
                                          .position = {0.01, 0, 0.15},
                                          .velocity = {0.2, 0, -0.5},
                                          .element = ElementKind::linear,
@@ -139,11 +97,6 @@ Real rms_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
     Real sum = 0;
     for (std::size_t n = 0; n < a.size(); ++n) sum += (a[n] - b[n]).squaredNorm();
     return std::sqrt(sum / static_cast<Real>(a.size()));
-}
-
-Real total_energy(const World& world) {
-    const Energy energy = world.energy();
-    return energy.kinetic + energy.elastic;
 }
 
 }  // namespace
@@ -317,90 +270,6 @@ TEST_CASE("energy of multirate adds up in an impact that is quick for coarse ele
         REQUIRE(report.level_elements.size() >= 3);
     REQUIRE(report.max_contacts > 5);
     CHECK(report.energy_error_share < 0.01);
-}
-
-TEST_CASE("with multirate slivers become implicit where that saves more than levels", "[scene]") {
-    // what bounds the steps of all: as without multirate, to the bit
-    std::vector<std::uint64_t> steps;
-    std::vector<Vec3> corner;
-    for (const bool multirate : {false, true}) {
-        Settings settings;
-        settings.gravity = Vec3::Zero();
-        settings.multirate = multirate;
-        World world(settings);
-        const auto material = world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3}));
-        const auto body = world.add_body(sliver_mesh(), {.material = material, .element = ElementKind::linear});
-        stir(world, body, sliver_mesh());
-        REQUIRE(world.advance(0.02).ok());
-        const WorldReport report = world.report();
-        CHECK(report.clusters > 0);
-        if (multirate) CHECK(report.level_elements.size() == 1);
-        steps.push_back(report.steps);
-        corner.push_back(world.positions(body)[0]);
-    }
-    CHECK(steps[0] == steps[1]);
-    CHECK(corner[0] == corner[1]);
-}
-
-TEST_CASE("a soft body with slivers has clusters for the sake of its own steps under a stiff one", "[scene]") {
-    const auto integrator = GENERATE(Integrator::symplectic_euler, Integrator::leapfrog);
-    World world = ball_on_slivers(true, integrator), single = ball_on_slivers(false, integrator);
-    REQUIRE(world.advance(0.1).ok());
-    REQUIRE(single.advance(0.1).ok());
-    const WorldReport report = world.report(), without = single.report();
-    CHECK(report.clusters > 0);
-    CHECK(report.max_contacts > 5);
-    CHECK(report.element_impulses < report.element_steps / 2);
-    CHECK(report.energy_error_share < 0.01);
-    CHECK(report.max_penetration <= without.max_penetration + 1e-5);
-    for (std::size_t i = 0; i < world.bodies().size(); ++i)
-        CHECK((world.center_of_mass(world.bodies()[i]) - single.center_of_mass(single.bodies()[i])).norm() < 5e-4);
-}
-
-TEST_CASE("smoothed elements have one level, since they would gain energy with several", "[scene]") {
-    Settings settings;
-    settings.gravity = Vec3::Zero();
-    settings.clusters = false;
-    settings.multirate = true;
-    World world(settings);
-    const auto material = world.add_material(test::lossless({.young_modulus = 1e5, .poisson_ratio = 0.3}));
-    const auto kind = GENERATE(ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
-    stir(world, world.add_body(sliver_mesh(), {.material = material, .element = kind}), sliver_mesh());
-    const Real start = total_energy(world);
-    REQUIRE(world.advance(0.02).ok());
-    CHECK(world.report().level_elements.size() == 1);
-    CHECK(world.report().energy_error_share < 1e-3);
-    CHECK(total_energy(world) < 1.01 * start);
-}
-
-TEST_CASE("short calls pump up nothing that stands a few steps", "[scene]") {
-    Settings settings;
-    settings.gravity = Vec3::Zero();
-    settings.multirate = true;
-    World world(settings);
-    const auto rubber = [&](Real modulus) {
-        return world.add_material(test::lossless({.young_modulus = modulus, .poisson_ratio = 0.3}));
-    };
-    // one tetrahedron, whose bound is sharp; soft ones have own steps of 4.05 of the stiff one
-    Mesh mesh;
-    mesh.nodes = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
-    mesh.tetrahedra = {{0, 1, 2, 3}};
-    const auto stiff = rubber(16.4e5), soft = rubber(1e5);
-    world.add_body(mesh, {.material = stiff, .position = {1, 0, 0}, .element = ElementKind::linear});
-    for (int i = 0; i < 4; ++i)
-        stir(world,
-             world.add_body(mesh, {.material = soft, .position = {0, 0.5 * i, 0}, .element = ElementKind::linear}),
-             mesh, 0.02);
-    const Real start = total_energy(world), h = world.stable_step();
-    const int steps = GENERATE(5, 7, 13);
-    INFO("calls of " << steps << " steps");
-    // A cycle of four steps and one of what is left, over and over, were in time with the highest modes.
-    for (int call = 0; call < 400; ++call) {
-        REQUIRE(world.advance(0.999 * steps * h).ok());
-        REQUIRE(total_energy(world) < 2 * start);
-    }
-    CHECK(10 * world.report().element_impulses < 9 * world.report().element_steps);
-    CHECK(world.report().energy_error_share < 0.01);
 }
 
 TEST_CASE("the viscosity of fine elements among coarse is told as dissipated", "[scene]") {
