@@ -74,7 +74,8 @@ struct ElementBlockTable {
     Column<Index> material;                     // row of MaterialTable
     Column<ElementPart> part;
     Column<std::uint8_t> opens_patch;  // 1: the block is the first of a patch
-    // s, stress of the strain rate over that of the strain; 0 but for fine elements among coarse
+    // s, stress of the strain rate over that of the strain of fine elements among coarse, or over modulus and strain of
+    // the implicit ones that the block has; else 0
     Column<Real> viscous_time;
     // within the body: impulses come every 2^level of the body's steps (step_levels.h)
     Column<std::uint8_t> level;

@@ -39,11 +39,12 @@ private:
         with(implicit_modulus_, rows(model.elements.implicit_modulus, blocks));
         with(relaxation_rate_, rows(model.elements.relaxation_rate, blocks));
         with(own_frequency_, rows(model.elements.own_frequency, blocks));
+        with(viscous_time_, rows(model.elements.viscous_time, blocks));
         with(relaxing_share_, rows(model.elements.relaxing_share, blocks));
     }
 
     std::size_t body_;
-    std::vector<Real> mass_, inverse_mass_, relaxing_share_;
+    std::vector<Real> mass_, inverse_mass_, relaxing_share_, viscous_time_;
     std::vector<ElementForm> mass_form_;
     std::vector<ElementLane> mass_share_, implicit_modulus_, relaxation_rate_, own_frequency_;
     Real rest_step_ = 0, stable_step_ = 0;

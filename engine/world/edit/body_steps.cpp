@@ -145,6 +145,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     start_mass_shares(model.all_elements(), blocks, rows_of(elements.mass_share, blocks));
     std::ranges::fill(rows_of(elements.mass_form, blocks), ElementForm{});
     std::ranges::fill(rows_of(elements.implicit_modulus, blocks), ElementLane{});
+    if (model.bodies.cluster_step[b] > 0) std::ranges::fill(rows_of(elements.viscous_time, blocks), Real(0));
     std::ranges::fill(rows_of(elements.relaxation_rate, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.own_frequency, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.relaxing_share, blocks), Real(0));

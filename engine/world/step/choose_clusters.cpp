@@ -8,7 +8,6 @@
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
-#include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -61,19 +60,15 @@ struct Kept {
     }
 };
 
-/// Which tetrahedra of a body implicit elements cover.
-void note_leeway(Model& model, std::size_t b) {
-    const std::span<ElementLane> of = rows_of(model.tetrahedra.leeway, model.bodies.tetrahedron_blocks[b]);
-    const ElementLane one{{1, 1, 1, 1, 1, 1, 1, 1}};
-    std::ranges::fill(of, one);
-    const std::span<const ElementLane> modulus = rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]);
-    const Ragged<Index>& covered = model.body_records[b].element_tetrahedra;
-    for (std::size_t place = 0; place < covered.size(); ++place)
-        if (modulus[place / element_lanes][place % element_lanes] > 0)
-            for (const Index t : covered[place]) {
-                const auto at = static_cast<std::size_t>(t);
-                of[at / element_lanes][at % element_lanes] = implicit_leeway;
-            }
+/// What goes with being implicit: leeway of tetrahedra, viscosity.
+void note_implicit(Model& model, std::size_t b) {
+    find_leeway(model.body_records[b].element_tetrahedra,
+                rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]),
+                rows_of(model.tetrahedra.leeway, model.bodies.tetrahedron_blocks[b]));
+    const Range blocks = model.bodies.blocks[b];
+    const std::span<Real> time = rows_of(model.elements.viscous_time, blocks);
+    find_viscous_times(rows_of(model.elements.implicit_modulus, blocks), model.bodies.cluster_step[b], time);
+    model.patches.viscous_impulse.resize(model.elements.first.size());
 }
 
 struct Found {
@@ -107,7 +102,7 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     start_mass_shares(model.all_elements(), blocks, share);
     std::ranges::fill(rows_of(model.elements.implicit_modulus, blocks), ElementLane{});
     model.bodies.cluster_step[b] = 0;
-    note_leeway(model, b);
+    note_implicit(model, b);
     kernels().find_mass_shares(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.mass, stiffness_sum,
                                share);
     choose_mass_forms(model, static_cast<Index>(b), model.nodes.rest_position, stiffness_sum);
@@ -171,7 +166,7 @@ void take_over(Model& model, std::size_t b, const Kept& elements, Real step, std
     elements.put_back(model, b);
     share_masses(model, b);
     model.bodies.cluster_step[b] = step;
-    note_leeway(model, b);
+    note_implicit(model, b);
     model.bodies.rest_step[b] = std::min(step, step_of(model, b, model.nodes.rest_position, stiffness_sum));
 }
 
@@ -279,7 +274,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
         cost_of(model, entries + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {
         share_masses(model, body);
         model.bodies.cluster_step[body] = step;
-        note_leeway(model, body);
+        note_implicit(model, body);
         return true;
     }
     kept.put_back(model, body);

@@ -26,9 +26,8 @@ Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::s
     const auto of_patch = [&](const Range& blocks) {
         Real work = 0;
         const auto first = static_cast<std::size_t>(blocks.begin), last = static_cast<std::size_t>(blocks.end);
-        if (!(elements.viscous_time[first] > 0)) return work;
         for (std::size_t b = first; b < last; ++b) {
-            if (elements.schedule.duration(b) == 0) continue;
+            if (!(elements.viscous_time[b] > 0) || elements.schedule.duration(b) == 0) continue;
             const BlockNodes nodes = elements.nodes_of(b);
             work += (work_on(impulse[b], deformation_gradient(nodes, velocity)) +
                      work_on(impulse[b], deformation_gradient(nodes, velocity_next))) /

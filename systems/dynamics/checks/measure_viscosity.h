@@ -1,4 +1,5 @@
-// What the viscosity of fine elements among coarse takes (docs/methods/stable_step.md 7.4).
+// What viscosity takes of fine elements among coarse (docs/methods/stable_step.md 7.4) and of implicit ones
+// (docs/methods/clusters.md 2).
 #pragma once
 
 #include <span>

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "components/ragged.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 
 namespace skerry {
@@ -23,11 +24,20 @@ struct ImplicitShare {
 enum class ImplicitSearch { anew, more };
 
 /// Shares the masses of a body anew, so that every explicit element stands `step` (s) in the shape that it has, and
-/// makes implicit those for which no sharing does. Implicit elements have `headroom` times the stiffness that they have
-/// now. `mass_share` and `modulus` are those of the inputs. Sequential.
+/// makes implicit as few as it takes: those that need most of the masses of their nodes go first. Implicit elements
+/// have `headroom` times the stiffness that they have now. `mass_share` and `modulus` are those of the inputs.
+/// Sequential.
 ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                      std::span<const Real> mass, Real step, Real headroom, ImplicitSearch search,
                                      std::span<Real> stiffness_sum, const ImplicitOutputs& out);
+
+/// How much faster than others tetrahedra may deform: those that none but implicit elements cover by implicit_leeway,
+/// and they may turn over. `tetrahedra`: of each element, those that it covers.
+void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, std::span<ElementLane> leeway);
+
+/// s, by block: for those with implicit elements the time that, times the modulus that these are taken to have, is
+/// their viscosity; 0 for others. `step`: that of the body's clusters, s.
+void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time);
 
 /// The largest factor by which an implicit element of the body is stiffer now than it is taken to be; 0 without any.
 Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

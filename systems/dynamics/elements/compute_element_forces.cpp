@@ -33,6 +33,16 @@ LaneMat3<T> viscous_stress(const MaterialConstants& material, Real time, const L
     return multiply(F, S);
 }
 
+/// Stress of the strain rate in implicit elements, F E' viscosity/|F|^2: at most viscosity |F'| however much they are
+/// deformed, which their inertia is made for (docs/methods/clusters.md 2).
+template <class T>
+LaneMat3<T> bounded_viscous_stress(const T& viscosity, const LaneMat3<T>& F, const LaneMat3<T>& F_rate) {
+    constexpr Real tiny = 1e-6;  // |F|^2 of a point, and of lanes that are left over
+    const LaneMat3<T> product = multiply(transposed(F), F_rate);
+    const T scale = viscosity / (2.0 * inner_product(F, F) + tiny);
+    return multiply(F, scale * (product + transposed(product)));
+}
+
 /// A block of elements in this step, of which a part is computed at a time.
 struct Block {
     const ElementInputs& elements;
@@ -105,6 +115,19 @@ struct Block {
         });
     }
 
+    bool has_implicit() const {
+        return !elements.implicit_modulus.empty() &&
+               std::ranges::any_of(elements.implicit_modulus[block].lane, [](Real modulus) { return modulus > 0; });
+    }
+
+    LaneMat3<KernelReal> viscous_stress_of(const LaneMat3<KernelReal>& F, const LaneMat3<KernelReal>& F_rate,
+                                           std::size_t part) const {
+        const Real time = elements.viscous_time[block];
+        if (!has_implicit()) return viscous_stress(material, time, F, F_rate);
+        return bounded_viscous_stress(KernelReal(time * part_of<KernelReal>(elements.implicit_modulus, part)), F,
+                                      F_rate);
+    }
+
     void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t part, ElementViscousImpulse& impulse) const {
         const KernelReal scale = (duration * h) * part_of<KernelReal>(elements.volume, part);
         const KernelReal entry[9] = {stress.c0.x, stress.c0.y, stress.c0.z, stress.c1.x, stress.c1.y,
@@ -122,8 +145,7 @@ struct Block {
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
                 const LaneMat3<KernelReal> of_rate =
-                    viscous_stress(material, elements.viscous_time[block], F[part],
-                                   deformation_gradient(elements.nodes_of(block), part, velocity));
+                    viscous_stress_of(F[part], deformation_gradient(elements.nodes_of(block), part, velocity), part);
                 if (!viscous_impulse.empty()) keep_impulse(of_rate, part, viscous_impulse[block]);
                 P[part] = P[part] + of_rate;
             }

@@ -27,7 +27,8 @@ struct ElementInputs {
     std::span<const Real> relaxing_share = {};
     std::span<const ElementStrain> viscous_strain = {};
     ElementSchedule schedule = {};
-    std::span<const ElementForm> mass_form = {};  // 1/(kg m^2); empty: elements go by mass_share
+    std::span<const ElementForm> mass_form = {};         // 1/(kg m^2); empty: elements go by mass_share
+    std::span<const ElementLane> implicit_modulus = {};  // Pa; 0: an explicit element; empty: all are
 
     std::size_t blocks() const { return first.size(); }
     BlockNodes nodes_of(std::size_t block) const {
@@ -65,7 +66,8 @@ struct ElementInputs {
                              .body_cap = binder.read(body.level_cap),
                              .touched = binder.read(element.touched),
                              .body_has_touched = binder.read(body.has_touched)},
-                .mass_form = binder.read(element.mass_form)};
+                .mass_form = binder.read(element.mass_form),
+                .implicit_modulus = binder.read(element.implicit_modulus)};
     }
 };
 
