@@ -142,6 +142,13 @@ struct ElementPatches {
     Column<PaddedVec3> force;      // N, by slot, what the patch does to the node; scratch
     // by block, of those that are viscous and due; none where nothing is viscous; scratch
     Column<ElementViscousImpulse> viscous_impulse;
+    Column<std::uint8_t> viscous;  // by block: whether it has one in this step; as many rows; scratch
+
+    /// Room for what is viscous.
+    void resize_viscous(std::size_t blocks) {
+        viscous_impulse.resize(blocks);
+        viscous.resize(blocks);
+    }
 };
 
 /// The rows of ElementNodeTable that a block of elements has. `node`: where its nodes are in the list of positions that

@@ -197,8 +197,8 @@ void list_checks(WorldState& w, TaskGraph& g) {
                                     read(m.patches.viscous_impulse));
     g.stage_with_result("dynamics/measure_viscosity", found.viscous, kernels().measure_viscosity,
                         inputs<ElementInputs>(m.elements, m.element_nodes, m.materials, b, p.active, m.any_asleep),
-                        read(m.patches.blocks), read(m.patches.viscous_impulse), read(n.velocity),
-                        read(n.velocity_next), make(w.scratch.viscous_parts), if_viscous);
+                        read(m.patches.blocks), read(m.patches.viscous_impulse), read(m.patches.viscous),
+                        read(n.velocity), read(n.velocity_next), make(w.scratch.viscous_parts), if_viscous);
     const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
                                 value(m.loaded), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,

@@ -68,7 +68,7 @@ void note_implicit(Model& model, std::size_t b) {
     const Range blocks = model.bodies.blocks[b];
     const std::span<Real> time = rows_of(model.elements.viscous_time, blocks);
     find_viscous_times(rows_of(model.elements.implicit_modulus, blocks), model.bodies.cluster_step[b], time);
-    model.patches.viscous_impulse.resize(model.elements.first.size());
+    model.patches.resize_viscous(model.elements.first.size());
 }
 
 struct Found {

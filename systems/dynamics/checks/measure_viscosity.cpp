@@ -21,13 +21,13 @@ Real work_on(const ElementViscousImpulse& impulse, const LaneMat3<Real8>& rate) 
 }  // namespace
 
 Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::span<const Range> patches,
-                       std::span<const ElementViscousImpulse> impulse, std::span<const Vec3> velocity,
-                       std::span<const Vec3> velocity_next, Column<Real>& partial) {
+                       std::span<const ElementViscousImpulse> impulse, std::span<const std::uint8_t> viscous,
+                       std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, Column<Real>& partial) {
     const auto of_patch = [&](const Range& blocks) {
         Real work = 0;
         const auto first = static_cast<std::size_t>(blocks.begin), last = static_cast<std::size_t>(blocks.end);
         for (std::size_t b = first; b < last; ++b) {
-            if (!(elements.viscous_time[b] > 0) || elements.schedule.duration(b) == 0) continue;
+            if (!(elements.viscous_time[b] > 0) || !viscous[b] || elements.schedule.duration(b) == 0) continue;
             const BlockNodes nodes = elements.nodes_of(b);
             work += (work_on(impulse[b], deformation_gradient(nodes, velocity)) +
                      work_on(impulse[b], deformation_gradient(nodes, velocity_next))) /

@@ -269,7 +269,7 @@ void build_patches(const ElementBlockTable& blocks, std::size_t node_count, Elem
     sort_by_row(patches.node, node_count, patches.slots_of_node);
     const std::span<const Real> viscous_time = blocks.viscous_time.span().subspan(first_block);
     if (!patches.viscous_impulse.empty() || std::ranges::any_of(viscous_time, [](Real time) { return time > 0; }))
-        patches.viscous_impulse.resize(blocks.first.size());
+        patches.resize_viscous(blocks.first.size());
 }
 
 void truncate_patches(Index block_count, Index node_count, ElementPatches& patches) {
@@ -279,7 +279,7 @@ void truncate_patches(Index block_count, Index node_count, ElementPatches& patch
     const std::size_t slots = kept > 0 ? static_cast<std::size_t>(patches.slots[kept - 1].end) : 0;
     patches.blocks.resize(kept);
     patches.touched.resize(kept);
-    if (!patches.viscous_impulse.empty()) patches.viscous_impulse.resize(static_cast<std::size_t>(block_count));
+    if (!patches.viscous_impulse.empty()) patches.resize_viscous(static_cast<std::size_t>(block_count));
     patches.slots.resize(kept);
     patches.node.resize(slots);
     patches.level.resize(slots);

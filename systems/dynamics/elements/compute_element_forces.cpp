@@ -120,12 +120,36 @@ struct Block {
                std::ranges::any_of(elements.implicit_modulus[block].lane, [](Real modulus) { return modulus > 0; });
     }
 
-    LaneMat3<KernelReal> viscous_stress_of(const LaneMat3<KernelReal>& F, const LaneMat3<KernelReal>& F_rate,
-                                           std::size_t part) const {
-        const Real time = elements.viscous_time[block];
-        if (!has_implicit()) return viscous_stress(material, time, F, F_rate);
-        return bounded_viscous_stress(KernelReal(time * part_of<KernelReal>(elements.implicit_modulus, part)), F,
-                                      F_rate);
+    /// Pa s, of implicit elements that are stretched or pressed by much; 0 of the others. Returns whether any is.
+    bool viscosity_of_implicit(const Parts<LaneMat3<KernelReal>>& F, Parts<KernelReal>& viscosity) const {
+        constexpr Real stretched = 6, pressed = 0.3;  // |F|^2, 3 at rest; det F, 1 at rest
+        ElementLane lanes{};
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const KernelReal of_modulus =
+                elements.viscous_time[block] * part_of<KernelReal>(elements.implicit_modulus, part);
+            const auto calm = (inner_product(F[part], F[part]) < stretched) & (determinant(F[part]) > pressed);
+            viscosity[part] = calm ? KernelReal{} : of_modulus;
+            store_part(viscosity[part], lanes, part);
+        }
+        return std::ranges::any_of(lanes.lane, [](Real of) { return of > 0; });
+    }
+
+    /// Adds the stress of the strain rate where there is one, and keeps its impulse.
+    void add_viscous_stress(const Parts<LaneMat3<KernelReal>>& F, std::span<const Vec3> velocity,
+                            const PatchForces& patches, Parts<LaneMat3<KernelReal>>& P) const {
+        const bool implicit = has_implicit();
+        Parts<KernelReal> viscosity;
+        const bool acts = !implicit || viscosity_of_implicit(F, viscosity);
+        if (!patches.viscous.empty()) patches.viscous[block] = acts;
+        if (!acts) return;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);
+            const LaneMat3<KernelReal> of_rate =
+                implicit ? bounded_viscous_stress(viscosity[part], F[part], rate)
+                         : viscous_stress(material, elements.viscous_time[block], F[part], rate);
+            if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, part, patches.viscous_impulse[block]);
+            P[part] = P[part] + of_rate;
+        }
     }
 
     void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t part, ElementViscousImpulse& impulse) const {
@@ -137,18 +161,14 @@ struct Block {
 
     [[gnu::always_inline]] void add_forces(std::span<const Vec3> velocity, std::span<const ElementRotation> rotation,
                                            const ElementMemory& next, ElementLane& dissipated,
-                                           std::span<ElementViscousImpulse> viscous_impulse) const {
+                                           const PatchForces& patches) const {
         Parts<LaneMat3<KernelReal>> F;
         for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
         Parts<LaneMat3<KernelReal>> P = elastic_stress(F, rotation, next);
+        if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0)
+            add_viscous_stress(F, velocity, patches, P);
         Parts<KernelReal> volume;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
-                const LaneMat3<KernelReal> of_rate =
-                    viscous_stress_of(F[part], deformation_gradient(elements.nodes_of(block), part, velocity), part);
-                if (!viscous_impulse.empty()) keep_impulse(of_rate, part, viscous_impulse[block]);
-                P[part] = P[part] + of_rate;
-            }
             if (material.relaxes() && !next.viscous_strain.empty())
                 P[part] = P[part] + relax(F[part], part, next.viscous_strain[block], dissipated);
             volume[part] = duration * part_of<KernelReal>(elements.volume, part);
@@ -200,7 +220,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 ElementLane dissipated{};
                 if (duration > 0) {
                     const Block block{elements, b, nodes, x, force, elements.material_of(b), duration, h};
-                    block.add_forces(velocity, rotation, next, dissipated, patches.viscous_impulse);
+                    block.add_forces(velocity, rotation, next, dissipated, patches);
                 }
                 if (!next.relaxed.empty()) next.relaxed[b] = sum_of(dissipated);
             }

@@ -79,7 +79,8 @@ struct PatchForces {
     std::span<PaddedVec3> position;                         // m, by slot; scratch
     std::span<PaddedVec3> force;                            // N, by slot
     std::span<const std::uint8_t> touched = {};             // by patch: some block of it is; empty: none
-    std::span<ElementViscousImpulse> viscous_impulse = {};  // by block; empty: nobody wants to know
+    std::span<ElementViscousImpulse> viscous_impulse = {};  // by block; empty: nothing is viscous
+    std::span<std::uint8_t> viscous = {};                   // by block: whether it has one in this step
 
     static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
         return {.blocks = binder.read(patches.blocks),
@@ -89,7 +90,8 @@ struct PatchForces {
                 .position = binder.write(patches.position),
                 .force = binder.write(patches.force),
                 .touched = binder.read(patches.touched),
-                .viscous_impulse = binder.write(patches.viscous_impulse)};
+                .viscous_impulse = binder.write(patches.viscous_impulse),
+                .viscous = binder.write(patches.viscous)};
     }
 };
 
