@@ -145,9 +145,9 @@ struct ElementPatches {
     Column<std::uint8_t> viscous;  // by block: whether it has one in this step; as many rows; scratch
 
     /// Room for what is viscous.
-    void resize_viscous(std::size_t blocks) {
-        viscous_impulse.resize(blocks);
-        viscous.resize(blocks);
+    void resize_viscous(std::size_t count) {
+        viscous_impulse.resize(count);
+        viscous.resize(count);
     }
 };
 

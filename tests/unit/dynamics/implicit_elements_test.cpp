@@ -2,6 +2,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
@@ -9,6 +10,7 @@
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "tests/support/elastic_body.h"
+#include "tests/support/jittered_box.h"
 #include "tests/support/sliver_box.h"
 
 using namespace skerry;
@@ -219,4 +221,85 @@ TEST_CASE("tetrahedra have leeway that none but implicit elements cover", "[unit
         CAPTURE(t);
         CHECK(leeway[t / element_lanes][t % element_lanes] == (t < 2 ? implicit_leeway : 1));
     }
+}
+
+namespace {
+
+/// What viscosity adds to the forces of a box: those of moving nodes less those of nodes at rest.
+std::vector<Vec3> viscous_forces(SliverBox& box, std::vector<std::uint8_t>& viscous) {
+    const auto executor = make_executor(Backend::serial, 1);
+    ElementInputs inputs = box.body.inputs();
+    std::vector<Real> time(inputs.blocks());
+    find_viscous_times(box.body.elements.implicit_modulus, box.cluster_step[0], time);
+    inputs.implicit_modulus = box.body.elements.implicit_modulus;
+    std::vector<ElementViscousImpulse> impulse(inputs.blocks());
+    viscous.assign(inputs.blocks(), 0);
+    PatchForces patches = box.body.patch_forces();
+    patches.viscous_impulse = impulse;
+    patches.viscous = viscous;
+    std::vector<Vec3> without;
+    for (const bool with : {false, true}) {
+        if (with) inputs.viscous_time = time;
+        compute_element_forces(
+            *executor, inputs, box.body.position, box.body.velocity, 1e-4, box.body.elements.rotation,
+            {box.body.elements.rotation_next, box.body.elements.viscous_strain_next, box.body.elements.relaxed},
+            patches);
+        box.body.gather();
+        if (!with) without = box.body.force;
+    }
+    std::vector<Vec3> added = box.body.force;
+    for (std::size_t n = 0; n < added.size(); ++n) added[n] -= without[n];
+    return added;
+}
+
+Real largest(const std::vector<Vec3>& of) {
+    Real found = 0;
+    for (const Vec3& one : of) found = std::max(found, one.norm());
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("implicit elements far from rest are viscous: they lose energy, no momentum, and as much as is stable",
+          "[unit][clusters]") {
+    const auto kind = GENERATE(ElementKind::linear, ElementKind::edge_node_smoothed);
+    INFO(name_of(kind));
+    SliverBox box(MaterialModel::stable_neo_hookean, kind, 3);
+    const std::vector<Vec3> rest = box.body.position;
+    std::mt19937_64 random(3);
+    std::vector<std::uint8_t> viscous;
+    const auto stir = [&] {
+        for (Vec3& v : box.body.velocity) v = random_vector(random);
+    };
+    stir();
+    CHECK(largest(viscous_forces(box, viscous)) == 0);
+    CHECK(std::ranges::count(viscous, 1) == 0);
+
+    for (std::size_t n = 0; n < rest.size(); ++n) box.body.position[n] = Vec3(4, 0.9, 0.8).asDiagonal() * rest[n];
+    std::vector<Vec3> added = viscous_forces(box, viscous);
+    CHECK(std::ranges::count(viscous, 1) > 0);
+    Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero();
+    Real power = 0, sum = 0, allowed = 0;
+    for (std::size_t n = 0; n < added.size(); ++n) {
+        momentum += added[n];
+        moment += box.body.position[n].cross(added[n]);
+        power += added[n].dot(box.body.velocity[n]);
+        sum += added[n].norm();
+    }
+    for (std::size_t e = 0; e < element_lanes * box.body.elements.first.size(); ++e) {
+        const Real modulus = box.body.elements.implicit_modulus[e / element_lanes][e % element_lanes];
+        if (!(modulus > 0)) continue;
+        Mat3 rate = Mat3::Zero();
+        for (std::size_t k = 0; k < box.body.node_count(e); ++k)
+            rate += box.body.velocity[box.body.node(e, k)] * box.body.gradient(e, k).transpose();
+        allowed += 0.1 * box.cluster_step[0] * modulus * box.body.volume(e) * rate.squaredNorm();
+    }
+    CHECK(power < 0);
+    CHECK(-power < allowed);
+    CHECK(momentum.norm() < 1e-12 * sum);
+    CHECK(moment.norm() < 1e-12 * sum);
+
+    const Vec3 spin(1, -2, 3);
+    for (std::size_t n = 0; n < rest.size(); ++n) box.body.velocity[n] = spin.cross(box.body.position[n]);
+    CHECK(largest(viscous_forces(box, viscous)) < 1e-9 * largest(added));
 }
