@@ -51,9 +51,10 @@ struct BodyTable {
     Column<Index> tetrahedron_count;
     Column<Index> pinned_count;     // nodes without freedom
     Column<Real> contact_distance;  // m, thickness of the contact shell; two bodies keep the mean of theirs
-    // m, of a rigid body that is a sphere: its surface is its first node, its middle, that far away. 0: it has
-    // triangles
-    Column<Real> sphere_radius;
+    // Of a rigid body that is round: its core is its first nodes, the middle of a sphere or the two ends of the axis of
+    // a capsule, and its surface is as far from the core as its radius, m. 0: it has triangles
+    Column<Index> core_nodes;
+    Column<Real> round_radius;
     Column<Real> mean_edge;     // m, of the surface at rest
     Column<Real> min_altitude;  // m, of the elements at rest
     Column<Real> rest_step;     // s, stable step of the rest shape
@@ -116,7 +117,8 @@ struct BodyTable {
         visit("tetrahedron_count", tetrahedron_count, ColumnRole::state);
         visit("pinned_count", pinned_count, ColumnRole::state);
         visit("contact_distance", contact_distance, ColumnRole::state);
-        visit("sphere_radius", sphere_radius, ColumnRole::state);
+        visit("core_nodes", core_nodes, ColumnRole::state);
+        visit("round_radius", round_radius, ColumnRole::state);
         visit("mean_edge", mean_edge, ColumnRole::state);
         visit("min_altitude", min_altitude, ColumnRole::state);
         visit("rest_step", rest_step, ColumnRole::state);

@@ -1,15 +1,25 @@
 // One row per block of neighbouring nodes of one body.
 #pragma once
 
+#include <algorithm>
+
 #include "components/column.h"
 #include "components/column_role.h"
+#include "components/range.h"
 #include "components/types.h"
 
 namespace skerry {
 
-// Nodes of a sphere that a step looks at: its middle, which contacts see, and corners around it, which tell how fast it
+// Nodes of a round body that a step looks at: its core, which contacts see, and some around it, which tell how fast it
 // spins. The others draw it.
-inline constexpr Index sphere_step_nodes = 13;
+inline constexpr Index sphere_step_nodes = 13;   // the middle, and the corners of an icosahedron
+inline constexpr Index capsule_step_nodes = 12;  // two ends of the axis, a pole and four at the rim around either
+
+/// Of all nodes of a body those that a step looks at; `core_nodes`: as in BodyTable.
+inline Range step_nodes_of(Range all, Index core_nodes) {
+    if (core_nodes == 0) return all;
+    return {all.begin, std::min(all.begin + (core_nodes == 1 ? sphere_step_nodes : capsule_step_nodes), all.end)};
+}
 
 // fixed: sums over a body are sums over its blocks in order, whatever the worker count
 inline constexpr Index nodes_per_block = 256;
@@ -24,8 +34,8 @@ struct NodeBlockSums {
     Real dissipated;        // J, kinetic energy of deformation that damping takes out of the block
 };
 
-/// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next. A sphere has one, of the
-/// nodes that a step looks at.
+/// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next. A round body has
+/// one, of the nodes that a step looks at.
 struct NodeBlockTable {
     Column<Index> begin;  // first node
     Column<Index> end;    // one past the last node

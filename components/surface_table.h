@@ -12,6 +12,9 @@ namespace skerry {
 
 /// Boundary triangles, counter-clockwise seen from outside. Each vertex and each edge of a body is owned by exactly one
 /// of its triangles (the lowest that has it), so that a pair of close triangles yields each pair of features once.
+///
+/// A round body has one without area, its core: three times the middle of a sphere, or both ends of the axis of a
+/// capsule, the second twice. Of the latter the first side is an edge; other sides have none (no_index).
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k joins node k and node (k + 1) % 3
@@ -30,9 +33,15 @@ struct TriangleTable {
     }
 };
 
+/// Whether a triangle is the core of a round body.
+inline bool is_core(const std::array<Index, 3>& node) {
+    return node[1] == node[2];
+}
+
 struct EdgeTable {
-    Column<std::array<Index, 2>> node;      // rows of NodeTable, the lower first
-    Column<std::array<Index, 2>> triangle;  // rows of TriangleTable; the second is no_index on an open boundary
+    Column<std::array<Index, 2>> node;  // rows of NodeTable, the lower first
+    Column<std::array<Index, 2>>
+        triangle;  // rows of TriangleTable; the second is no_index on an open boundary, and of a core
 
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::derived);

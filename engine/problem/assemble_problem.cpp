@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "engine/problem/gather_blocks.h"
 #include "skerry/problem.h"
@@ -73,7 +74,8 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
     };
     const auto arm_of = [&](const RigidPoints& body, const Touch& touch) {
         return Vec3(body.arm[static_cast<std::size_t>(touch.node)] -
-                    body.radius / touch.weight * contacts.normal[static_cast<std::size_t>(touch.contact)]);
+                    std::copysign(body.radius, touch.weight) *
+                        contacts.normal[static_cast<std::size_t>(touch.contact)]);
     };
     for (const RigidPoints& body : contacts.rigid) {
         const std::vector<Touch> touches = find.of(body.node);

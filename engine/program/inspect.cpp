@@ -233,7 +233,11 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
 /// "192 tetrahedra (smoothed), mean edge 0.05 m", or "a sphere of 0.1 m (rigid)".
 std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
     const std::string how(kind.sets_step() ? name_of(kind.bound.element) : name_of(kind.dynamics));
-    if (body.sphere) return "a sphere of radius " + with_unit(body.sphere->radius, "m") + " (" + how + ")";
+    if (const auto& sphere = body.shape.sphere)
+        return "a sphere of radius " + with_unit(sphere->radius, "m") + " (" + how + ")";
+    if (const auto& capsule = body.shape.capsule)
+        return "a capsule of radius " + with_unit(capsule->radius, "m") + " and length " +
+               with_unit(capsule->length, "m") + " (" + how + ")";
     return grouped(kind.mesh.tetrahedra) + " tetrahedra (" + how + "), mean edge " +
            with_unit(kind.mesh.mean_edge, "m");
 }
@@ -384,7 +388,9 @@ int inspect_scene(const InspectOptions& options) {
                          {"dynamics", name_of(kind.dynamics)},
                          {"materials", materials},
                          {"mesh", mesh_json(kind.mesh)}};
-            if (const auto& sphere = plan.bodies[kind.body].sphere) body["sphere_radius"] = sphere->radius;
+            const BodyShapeEntry& shape = plan.bodies[kind.body].shape;
+            if (shape.sphere) body["sphere_radius"] = shape.sphere->radius;
+            if (shape.capsule) body["capsule"] = {{"radius", shape.capsule->radius}, {"length", shape.capsule->length}};
             if (kind.sets_step())
                 body.update({{"stable_dt", kind.bound.step},
                              {"element", name_of(kind.bound.element)},

@@ -77,8 +77,9 @@ Scene build_scene(const ScenePlan& plan) {
         settings.material = materials[body.material];
         for (const auto& [label, row] : body.materials) settings.materials.emplace(label, materials[row]);
         bodies.push_back(called_at(body.place, [&] {
-            return body.sphere ? world.add_body(*body.sphere, settings)
-                               : world.add_body(plan.meshes[body.mesh], settings);
+            if (body.shape.sphere) return world.add_body(*body.shape.sphere, settings);
+            if (body.shape.capsule) return world.add_body(*body.shape.capsule, settings);
+            return world.add_body(plan.meshes[body.mesh], settings);
         }));
         pins.emplace_back();
         for (const PinPlan& pin : body.pins)

@@ -29,6 +29,11 @@ Mesh make_mesh(const MeshEntry& entry) {
     return mesh;
 }
 
+Mesh picture_of(const BodyShapeEntry& shape) {
+    return shape.sphere ? mesh::sphere_picture(shape.sphere->radius)
+                        : mesh::capsule_picture(shape.capsule->radius, shape.capsule->length);
+}
+
 SurfaceMesh make_surface(const MeshEntry& entry) {
     if (!entry.file) return mesh::boundary(make_mesh(entry));
     SurfaceMesh surface = called_at(entry.place, [&] { return mesh::read_surface(entry.file->path.string()); });
@@ -118,8 +123,7 @@ std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan
 /// `names` are those of the bodies so far.
 void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>& names, ScenePlan& plan) {
     const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
-    const Mesh& mesh = plan.meshes.emplace_back(entry.mesh ? make_mesh(*entry.mesh)
-                                                           : mesh::sphere_picture(entry.shape->sphere.radius));
+    const Mesh& mesh = plan.meshes.emplace_back(entry.mesh ? make_mesh(*entry.mesh) : picture_of(*entry.shape));
     const std::vector<std::pair<int, std::size_t>> materials = find_materials_by_label(plan, entry, mesh);
     std::vector<PinPlan> pins;
     for (const PinEntry& pin : entry.pin.items) pins.push_back(plan_pin(pin, mesh));
@@ -144,7 +148,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>
         body.settings.element = entry.element;
         body.settings.name = copies ? name + "_" + std::to_string(copy) : name;
         body.mesh = plan.meshes.size() - 1;
-        if (entry.shape) body.sphere = entry.shape->sphere;
+        if (entry.shape) body.shape = *entry.shape;
         body.material = material;
         body.materials = materials;
         body.pins = pins;

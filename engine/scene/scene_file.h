@@ -76,7 +76,8 @@ struct RepeatEntry {
     int seed = 1;
 };
 struct BodyShapeEntry {
-    Sphere sphere;
+    std::optional<Sphere> sphere;
+    std::optional<Capsule> capsule;
 };
 struct BodyEntry {
     std::string name;

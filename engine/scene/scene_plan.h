@@ -20,8 +20,8 @@ struct PinPlan {
 };
 struct BodyPlan {
     BodySettings settings;  // handles of materials come when it is built
-    std::size_t mesh = 0;   // of ScenePlan::meshes; of a sphere: what draws it
-    std::optional<Sphere> sphere{};
+    std::size_t mesh = 0;   // of ScenePlan::meshes; of a shape: what draws it
+    BodyShapeEntry shape{};
     std::size_t material = 0;                            // of ScenePlan::materials
     std::vector<std::pair<int, std::size_t>> materials;  // of ScenePlan::materials, by label
     std::vector<PinPlan> pins;

@@ -206,9 +206,10 @@ const Rule<Bucket>& rule_of<Bucket>() {
 
 template <>
 const Rule<BodyShapeEntry>& rule_of<BodyShapeEntry>() {
-    static const auto rule =
-        Rule<BodyShapeEntry>("body_shape", "The shape of a rigid body without a mesh.")
-            .key("sphere", &BodyShapeEntry::sphere, {.meaning = "a solid sphere", .required = true});
+    static const auto rule = Rule<BodyShapeEntry>("body_shape", "The shape of a rigid body without a mesh.")
+                                 .key("sphere", &BodyShapeEntry::sphere, {.meaning = "a solid sphere"})
+                                 .key("capsule", &BodyShapeEntry::capsule, {.meaning = "a solid capsule"})
+                                 .exactly_one({"sphere", "capsule"});
     return rule;
 }
 

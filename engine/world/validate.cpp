@@ -239,14 +239,31 @@ void validate(const Mesh& mesh, const BodySettings& body) {
     require_start(body, object);
 }
 
+namespace {
+
+/// `shape`: "sphere", ...
+void require_round(const std::string& shape, const BodySettings& body, const std::string& object) {
+    if (body.dynamics != BodyDynamics::rigid)
+        refuse(object, "dynamics", std::string(name_of(body.dynamics)), "rigid: a " + shape + " does not deform");
+    if (body.self_contact) refuse(object, "self_contact", "true of a " + shape, "false");
+    if (!body.materials.empty())
+        refuse(object, "materials", "materials by label", "none: a " + shape + " has one material");
+    require_start(body, object);
+}
+
+}  // namespace
+
 void validate(const Sphere& sphere, const BodySettings& body) {
     const std::string object = titled("body", body.name);
     ShapeCheck{object}(sphere);
-    if (body.dynamics != BodyDynamics::rigid)
-        refuse(object, "dynamics", std::string(name_of(body.dynamics)), "rigid: a sphere does not deform");
-    if (body.self_contact) refuse(object, "self_contact", "true of a sphere", "false");
-    if (!body.materials.empty()) refuse(object, "materials", "materials by label", "none: a sphere has one material");
-    require_start(body, object);
+    require_round("sphere", body, object);
+}
+
+void validate(const Capsule& capsule, const BodySettings& body) {
+    const std::string object = titled("body", body.name);
+    ShapeCheck{object}(capsule);
+    require(capsule.length > 0, object, "length", capsule.length, "a length > 0 (m): without one it is a sphere");
+    require_round("capsule", body, object);
 }
 
 void validate(const Motion& motion, const std::string& object) {

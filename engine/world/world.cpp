@@ -72,9 +72,9 @@ void WorldState::require_between_steps(const char* call) const {
 void WorldState::draw(bool resting) {
     if (!drawn_behind) return;
     drawn_behind = false;
-    draw_spheres(*executor,
-                 RigidBodies::bind({}, model.rigid_bodies, model.bodies, model.nodes, model.any_asleep, model.loaded),
-                 resting, model.nodes.position, model.nodes.velocity);
+    draw_round_bodies(
+        *executor, RigidBodies::bind({}, model.rigid_bodies, model.bodies, model.nodes, model.any_asleep, model.loaded),
+        resting, model.nodes.position, model.nodes.velocity);
 }
 
 void WorldState::settle() {
@@ -165,8 +165,13 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
 
 namespace {
 
-/// `sphere_radius`: m, of a sphere that the mesh draws; 0: the body is what the mesh fills.
-BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySettings& body, Real sphere_radius) {
+/// What a mesh only draws, as in BodyTable; the body is what the mesh fills where it has no core.
+struct RoundCore {
+    Index nodes = 0;
+    Real radius = 0;  // m
+};
+
+BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySettings& body, const RoundCore& core = {}) {
     Model& model = state.model;
     const Index material = model.row(body.material, "add_body");
     const std::vector<Index> tetrahedron_material = materials_of_tetrahedra(model, mesh, body);
@@ -181,7 +186,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
                   .tetrahedron_material = tetrahedron_material,
                   .collider = no_index,
                   .contact_distance = body.contact_distance.value_or(-1),
-                  .sphere_radius = sphere_radius,
+                  .core_nodes = core.nodes,
+                  .round_radius = core.radius,
                   .nodes = mesh.nodes,
                   .tetrahedra = mesh.tetrahedra,
                   .triangles = {},
@@ -218,12 +224,17 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
 
 BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     validate(mesh, body);
-    return add_valid_body(*state_, mesh, body, 0);
+    return add_valid_body(*state_, mesh, body);
 }
 
 BodyHandle World::add_body(const Sphere& sphere, const BodySettings& body) {
     validate(sphere, body);
-    return add_valid_body(*state_, mesh::sphere_picture(sphere.radius), body, sphere.radius);
+    return add_valid_body(*state_, mesh::sphere_picture(sphere.radius), body, {1, sphere.radius});
+}
+
+BodyHandle World::add_body(const Capsule& capsule, const BodySettings& body) {
+    validate(capsule, body);
+    return add_valid_body(*state_, mesh::capsule_picture(capsule.radius, capsule.length), body, {2, capsule.radius});
 }
 
 ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& collider) {
@@ -255,13 +266,13 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                       .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
                       .hint = {}}
                 .raise();
-    if (model.bodies.sphere_radius[b] > 0)
+    if (model.bodies.core_nodes[b] > 0)
         Complaint{.file = {},
                   .object = "attach",
                   .field = "body",
-                  .found = "the sphere '" + model.body_records[b].name + "'",
+                  .found = std::string("the ") + model.round_name(b) + " '" + model.body_records[b].name + "'",
                   .expected = "a body with a mesh",
-                  .hint = "a sphere that is led is a collider"}
+                  .hint = std::string("a ") + model.round_name(b) + " that is led is a collider"}
             .raise();
     const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
     if (model.has_frame(b) && !hold_whole(model, b, nodes))

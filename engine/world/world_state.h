@@ -42,15 +42,15 @@ struct WorldState {
     TaskGraph graph;
     OpenEdits edits;
     bool advancing = false;     // what it calls back must not change what it goes over
-    bool drawn_behind = false;  // nodes that only draw spheres are where they were some steps ago: within advance alone
+    bool drawn_behind = false;  // nodes that only draw round bodies are behind: within advance alone
 
     /// Refuses a call from what advance calls back.
     void require_between_steps(const char* call) const;
     /// Takes out what is gone, derives what is new, wakes what rests beside either. It is left until somebody needs
     /// it, so that many changes in a row cost it once. Called by whatever goes over all rows, hands out what lies in
-    /// them or asks who rests, functions that only look included; one row is found without. Draws spheres, too.
+    /// them or asks who rests, functions that only look included; one row is found without. Draws round bodies, too.
     void settle();
-    /// Puts what only draws spheres where it belongs; `resting`: some came to rest in the last step.
+    /// Puts what only draws round bodies where it belongs; `resting`: some came to rest in the last step.
     void draw(bool resting = false);
 
 private:

@@ -24,9 +24,9 @@ std::array<Index, 2> edge_nodes(const std::array<Index, 3>& node, std::size_t k)
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// Of a sphere: three times its middle, without edges.
-bool is_point(const std::array<Index, 3>& node) {
-    return node[0] == node[1] && node[1] == node[2];
+/// Whether side k is an edge: of the core of a round body the first at most.
+bool has_edge(const std::array<Index, 3>& node, std::size_t k) {
+    return !is_core(node) || (k == 0 && node[0] != node[1]);
 }
 
 /// Rows of `sorted` start at `first`.
@@ -71,7 +71,8 @@ void append_edges(const std::vector<std::array<Index, 2>>& node, Range triangles
         surface.edges.triangle.push_back({no_index, no_index});
     }
     for (Index t = triangles.begin; t < triangles.end; ++t)
-        for (std::size_t k = 0; k < 3 && !is_point(surface.triangles.node[t]); ++k) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!has_edge(surface.triangles.node[t], k)) continue;
             auto& around = surface.edges.triangle[surface.triangles.edge[t][k]];
             if (around[0] == no_index) {
                 around[0] = t;
@@ -124,7 +125,7 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
     for (const BoundaryTriangle& triangle : triangles)
         for (std::size_t k = 0; k < 3; ++k) {
             vertex.push_back(triangle.node[k]);
-            if (!is_point(triangle.node)) edge.push_back(edge_nodes(triangle.node, k));
+            if (has_edge(triangle.node, k)) edge.push_back(edge_nodes(triangle.node, k));
         }
     keep_unique(vertex);
     keep_unique(edge);
@@ -139,7 +140,7 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
         for (std::size_t k = 0; k < 3; ++k) {
             node[k] = first_node + triangle.node[k];
             edge_row[k] =
-                is_point(triangle.node) ? no_index : row_of(edge, edge_nodes(triangle.node, k), ranges.edges.begin);
+                has_edge(triangle.node, k) ? row_of(edge, edge_nodes(triangle.node, k), ranges.edges.begin) : no_index;
             vertex_row[k] = row_of(vertex, triangle.node[k], ranges.vertices.begin);
         }
         surface.triangles.node.push_back(node);

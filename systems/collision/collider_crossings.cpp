@@ -75,8 +75,9 @@ private:
         } else {
             node = {inputs_.surface.vertices.node[candidate.first], no_index, no_index};
             feature.kind = Kind::node;
-            feature.kept = kept_of_spheres(pair_scale(inputs_, pair_.kind, pair_.first, pair_.second));
         }
+        if (feature.kind != Kind::face)
+            feature.kept = kept_of_radii(pair_scale(inputs_, pair_.kind, pair_.first, pair_.second));
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             feature.position[i] = inputs_.position[node[i]];
             feature.displacement[i] = motion_.of(node[i]);

@@ -24,8 +24,8 @@ ContactRow contact_row(const CollisionInputs& inputs, const ContactPair& pair, c
     row.first_body = turned ? pair.second : pair.first;
     row.second_body = collider ? no_index : turned ? pair.first : pair.second;
     row.collider = collider ? pair.second : inputs.body.collider[pair.second];
-    const Real of_first = inputs.body.sphere_radius[row.first_body],
-               of_second = collider ? 0 : inputs.body.sphere_radius[row.second_body];
+    const Real of_first = inputs.body.round_radius[row.first_body],
+               of_second = collider ? 0 : inputs.body.round_radius[row.second_body];
     row.point = point + of_second * normal;
     row.distance = distance - (of_first + of_second);
     return row;

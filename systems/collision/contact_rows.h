@@ -17,7 +17,7 @@ struct ContactPair {
 };
 
 /// A contact of two bodies or of a body with a collider (which has no velocity yet). `point`, `distance` and
-/// `contact_distance` are of the features: a sphere is its middle.
+/// `contact_distance` are of the features: a round body is its core.
 ContactRow contact_row(const CollisionInputs& inputs, const ContactPair& pair, const Candidate& candidate,
                        ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
                        Real contact_distance, const SurfaceProperties& surface);

@@ -103,8 +103,8 @@ private:
         if (!(approach > slow_fraction * least) || !can_move(node)) return false;
         for (std::size_t i = 0; i < 4; ++i) x[i] = inputs_.position[node[i]];
         const Real apart = nearest(kind, node, x).offset.norm();
-        // of what is pressed into a sphere the middle must not get through
-        const KeptApart kept = apart > scale_.radii ? kept_of_spheres(scale_) : KeptApart{};
+        // of what is pressed into a round body the core must not get through
+        const KeptApart kept = apart > scale_.radii ? kept_of_radii(scale_) : KeptApart{};
         if (!(approach > slow_fraction * (apart - kept.distance))) return false;
         const std::optional<Real> time = time_of_contact(kind, x, displacement, kept);
         if (!time || is_own_piece(edges, node)) return true;
@@ -179,13 +179,16 @@ struct PairReach {
     Real travel_bound;  // travel of both with it
 };
 
-/// m, how far what touches is from the collider's origin: against a plane, which has no end, only spheres are looked
-/// at.
+/// m, how far what touches is from the collider's origin: against a plane, which has no end, only round bodies are
+/// looked at.
 Real collider_extent(const CollisionInputs& inputs, Index body, Index collider) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
-    const Index middle = inputs.surface.vertices.node[inputs.body.vertices[body].begin];
-    return (inputs.position[middle] - inputs.collider.motion[collider].position).norm();
+    const Index first = inputs.body.nodes[body].begin;
+    Real furthest = 0;
+    for (Index n = first; n < first + inputs.body.core_nodes[body]; ++n)
+        furthest = std::max(furthest, (inputs.position[n] - inputs.collider.motion[collider].position).norm());
+    return furthest;
 }
 
 PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
@@ -204,11 +207,12 @@ PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index 
     return {motion, pairs.travel[p] + motion};
 }
 
-/// A plane is touched by nodes alone, which its contacts hold wherever they go. Into a sphere it would get on the way.
+/// A plane is touched by nodes alone, which its contacts hold wherever they go. Into a round body it would get on the
+/// way.
 bool can_be_crossed(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
     return pairs.kind[p] != PairKind::collider ||
            collider_point_count(inputs.collider.geometry[pairs.second[p]].shape) > 0 ||
-           inputs.body.sphere_radius[pairs.first[p]] > 0;
+           inputs.body.round_radius[pairs.first[p]] > 0;
 }
 
 bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) {

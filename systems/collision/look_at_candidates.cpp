@@ -95,8 +95,8 @@ private:
             inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_, surfaces_);
         nearest_squared_ = std::min(nearest_squared_, contact.closest.distance_squared);
         asleep_until_[c] = travel_base_ + contact.sleep;
-        if (contact.side == Side::none) return;
         const auto& corner = inputs_.surface.triangles.node[candidate.second];
+        if (contact.side == Side::none || (is_core(corner) && !core_is_touched(candidate, contact.closest))) return;
         Real speed_squared = 0;
         for (Index n : corner)
             speed_squared = std::max(speed_squared, (inputs_.velocity[node] - inputs_.velocity[n]).squaredNorm());
@@ -125,10 +125,25 @@ private:
         });
     }
 
-    /// Whether a sphere meets a place from behind because the body is inside out there: a face between its middle and
-    /// the place would hold it off. Others may be nearer: a sphere lies on many faces at once.
-    bool is_in_sight(Index c, Index middle, const Vec3& place) const {
-        const Vec3& from = inputs_.position[middle];
+    /// Whether the core of a round body is touched by this point. Where an end of an axis is nearest, that is what is
+    /// held against the other surface; two ends are held once.
+    bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
+        const bool turned = is_point_of_second(candidate.feature);
+        const BodyTable& body = inputs_.body;
+        const Index own = body.core_nodes[turned ? second_ : first_],
+                    other = body.core_nodes[turned ? first_ : second_];
+        const bool between = closest.region == TriangleRegion::edge01;
+        if (own > 0) return between || own < other || !turned;
+        const auto& [a, b, c] = inputs_.surface.triangles.node[candidate.second];
+        const Vec3& point = inputs_.position[inputs_.surface.vertices.node[candidate.first]];
+        return between && vertex_holds_axis(inputs_.surface, inputs_.position, candidate.first, closest.nearest - point,
+                                            inputs_.position[b] - inputs_.position[a], scale_);
+    }
+
+    /// Whether a round body meets a place from behind because the other is inside out there: a face between its core
+    /// and the place would hold it off. Others may be nearer: it lies on many faces at once.
+    bool is_in_sight(Index c, Index core, const Vec3& place) const {
+        const Vec3& from = inputs_.position[core];
         const Vec3 until = from + (1 - sight_slack) * (place - from);
         return none_of_point(c, [&](Index i) {
             const auto& n = inputs_.surface.triangles.node[candidates_[i].second];

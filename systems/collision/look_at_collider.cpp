@@ -61,16 +61,16 @@ private:
         const Real distance = edge_distance(geometry_, part, end[0], end[1]);
         asleep_until_[c] = travel_base_ + std::max(distance - scale_.contact_distance, flat);
         if (!(distance <= near_) || flat >= 0) {
-            nearest_ = std::min(nearest_, std::max(distance, flat));
+            nearest_ = std::min(nearest_, std::max(distance - scale_.radii, flat));
             return;
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            nearest_ = std::min(nearest_, distance);  // no point of it is nearer
+            nearest_ = std::min(nearest_, distance - scale_.radii);  // no point of it is nearer
             return;
         }
         const EdgeContact contact = edge_contact(geometry_, part, end[0], end[1]);
-        nearest_ = std::min(nearest_, contact.nearest);
+        nearest_ = std::min(nearest_, contact.nearest - scale_.radii);
         for (std::size_t i = 0; i < contact.count; ++i) {
             const EdgePoint& touch = contact.point[i];
             const Vec3 point = world(touch.on.point), velocity = velocity_at(point);

@@ -71,7 +71,7 @@ void add(ContactMeasures& sum, const ContactMeasures& part) {
 
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
                                  std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
-                                 const SphereSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
+                                 const RoundSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
                                  Friction friction) {
     const std::size_t count = contacts.size();
     SKERRY_CHECK(slip.size() == count && state.size() == count);

@@ -20,14 +20,15 @@ struct ContactMeasures {
     Index slide_count = 0;
 };
 
-/// How spheres spin, before and after the solve: at a contact their surface has a velocity that their node has not.
-struct SphereSpins {
+/// How round bodies spin, before and after the solve: at a contact their surface has a velocity that their core has
+/// not.
+struct RoundSpins {
     RigidNodes nodes{};
     RigidSpins spins{};
     std::span<const Vec3> contact_moment{};  // RigidBodyTable
 
-    static SphereSpins bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
-                            const RigidBodyTable& rigid) {
+    static RoundSpins bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
+                           const RigidBodyTable& rigid) {
         return {.nodes = RigidNodes::bind(binder, node, body, rigid),
                 .spins = RigidSpins::bind(binder, rigid),
                 .contact_moment = binder.read(rigid.contact_moment)};
@@ -43,7 +44,7 @@ struct SphereSpins {
 /// of `friction`). Parallel over blocks of contacts; sums in block order.
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
                                  std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
-                                 const SphereSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
+                                 const RoundSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
                                  Friction friction = Friction::cone);
 
 }  // namespace skerry

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <span>
 
 #include "components/body_table.h"
@@ -15,10 +16,10 @@
 namespace skerry {
 
 struct RigidNodes {
-    std::span<const Index> node_body;       // NodeTable
-    std::span<const Range> body_nodes;      // BodyTable
-    std::span<const Range> body_rigid;      // BodyTable; empty: no body is rigid
-    std::span<const Real> sphere_radius{};  // BodyTable; empty: no body is a sphere
+    std::span<const Index> node_body;      // NodeTable
+    std::span<const Range> body_nodes;     // BodyTable
+    std::span<const Range> body_rigid;     // BodyTable; empty: no body is rigid
+    std::span<const Real> round_radius{};  // BodyTable; empty: no body is round
 
     static RigidNodes bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                            const RigidBodyTable& rigid) {
@@ -26,7 +27,7 @@ struct RigidNodes {
         return {.node_body = binder.read(node.body),
                 .body_nodes = binder.read(body.nodes),
                 .body_rigid = binder.read_if(any, body.rigid),
-                .sphere_radius = binder.read_if(any, body.sphere_radius)};
+                .round_radius = binder.read_if(any, body.round_radius)};
     }
 
     bool any() const { return !body_rigid.empty(); }
@@ -36,21 +37,21 @@ struct RigidNodes {
         const Range rows = body_rigid[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
         return rows.size() > 0 ? rows.begin : no_index;
     }
-    /// m, of the sphere whose middle a node is; 0: it is a point.
+    /// m, of the round body in whose core a node is; 0: it is a point.
     Real radius(Index node) const {
-        return sphere_radius.empty()
-                   ? 0
-                   : sphere_radius[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
+        return round_radius.empty() ? 0
+                                    : round_radius[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
     }
-    /// m/s: by how much the surfaces of the spheres in a contact pass each other by their spins, where they touch. A
-    /// sphere is one node of the stencil, of weight 1 or -1, and touches at -radius normal from it, or at +radius
-    /// normal. `spin(r)`: rad/s, by row of RigidBodyTable.
+    /// m/s: by how much the surfaces of the round bodies in a contact pass each other by their spins, where they touch.
+    /// The place of a core has nodes of the stencil whose weights have the sum 1 or -1, and it is touched at -radius
+    /// normal from there, or at +radius normal. `spin(r)`: rad/s, by row of RigidBodyTable.
     Vec3 rolling(const Stencil& stencil, const Vec3& normal, auto&& spin) const {
         Vec3 sum = Vec3::Zero();
-        if (sphere_radius.empty()) return sum;
+        if (round_radius.empty()) return sum;
         for (std::size_t a = 0; a < 4; ++a)
             if (const Real r = radius(stencil.node[a]); r > 0 && stencil.weight[a] != 0)
-                sum -= r * spin(static_cast<std::size_t>(row(stencil.node[a]))).cross(normal);
+                sum -= std::abs(stencil.weight[a]) * r *
+                       spin(static_cast<std::size_t>(row(stencil.node[a]))).cross(normal);
         return sum;
     }
     /// The first node of the rigid body that a node belongs to, or itself.

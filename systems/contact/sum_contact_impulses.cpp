@@ -45,7 +45,7 @@ void sum_contact_impulses(const ContactSumInputs& contacts, const Vec3& moment_p
         // contacts of a pair stand together
         if (pairs.empty() || pairs.back().partners != partners) pairs.push_back({.partners = partners});
         const bool analytic = contacts.second_body[c] == no_index;
-        const auto radius = [&](Index body) { return contacts.sphere_radius[static_cast<std::size_t>(body)]; };
+        const auto radius = [&](Index body) { return contacts.round_radius[static_cast<std::size_t>(body)]; };
         const Vec3 first_arm =
             arm(stencil, 1, contacts.position, moment_point) - radius(contacts.first_body[c]) * normal;
         const Vec3 on_first = first_arm.cross(impulse);

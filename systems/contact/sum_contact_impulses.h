@@ -59,7 +59,7 @@ struct ContactSumInputs {
     std::span<const Index> first_body, second_body, collider;
     std::span<const BodyKind> body_kind;
     std::span<const std::uint32_t> body_slot;
-    std::span<const Real> sphere_radius;
+    std::span<const Real> round_radius;
     std::span<const Vec3> position;      // m, by node: where the impulses act
     std::span<const Real> inverse_mass;  // 1/kg, by node
     std::span<const Index> held;         // nodes
@@ -75,7 +75,7 @@ struct ContactSumInputs {
                 .collider = binder.read(contact.collider),
                 .body_kind = binder.read(body.kind),
                 .body_slot = binder.read(body.slot),
-                .sphere_radius = binder.read(body.sphere_radius),
+                .round_radius = binder.read(body.round_radius),
                 .position = binder.read(node.position),
                 .inverse_mass = binder.read(node.inverse_mass),
                 .held = binder.read(attachment.node)};

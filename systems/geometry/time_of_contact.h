@@ -21,7 +21,7 @@ inline constexpr Real contact_slack = 0.1;
 /// `displacement`. Common motion does not count.
 Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 
-/// How near two features may come where they are middles of spheres.
+/// How near two features may come where they are cores of round bodies.
 struct KeptApart {
     Real distance = 0;                                  // m, the radii
     Real near = std::numeric_limits<Real>::infinity();  // m: what is further from that is not in contact

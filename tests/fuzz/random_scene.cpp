@@ -265,7 +265,10 @@ private:
         if (!body.contains("pin") && !body.contains("self_contact") && of_spheres_.chance(0.25)) {
             body.erase("mesh");
             body.erase("element");
-            body["shape"] = {{"sphere", {{"radius", size / 2}}}};
+            body["shape"] =
+                of_capsules_.chance(0.5)
+                    ? Json{{"capsule", {{"radius", size * of_capsules_.within(0.1, 0.4)}, {"length", size / 2}}}}
+                    : Json{{"sphere", {{"radius", size / 2}}}};
             body["dynamics"] = name_of(BodyDynamics::rigid);
         }
         return body;
@@ -323,6 +326,7 @@ private:
     RandomNumbers of_frames_{~seed_};
     RandomNumbers of_meshes_{~seed_ * 3};
     RandomNumbers of_spheres_{~seed_ * 5};
+    RandomNumbers of_capsules_{~seed_ * 7};
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material
     Real wave_speed_ = 0;               // m/s, of it

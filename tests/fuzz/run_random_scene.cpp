@@ -81,7 +81,10 @@ private:
                           .self_contact = random.chance(0.5)};
         if (!body.self_contact && random.chance(0.4)) {
             body.dynamics = BodyDynamics::rigid;
-            world_.add_body(Sphere{scene_.length / 2}, body);
+            if (random.chance(0.5))
+                world_.add_body(Sphere{scene_.length / 2}, body);
+            else
+                world_.add_body(Capsule{scene_.length / 4, scene_.length / 2}, body);
         } else {
             world_.add_body(mesh, body);
         }

@@ -46,6 +46,11 @@ Mesh ball(Real radius, int resolution);
 /// icosahedron, all others lie between these on the sphere. Its faces are flat, a tetrahedron each.
 Mesh sphere_picture(Real radius);
 
+/// What a rigid capsule is drawn with: its first two nodes are the ends of its axis, at z = -length/2 and length/2, all
+/// others lie on its surface; the next ten are the pole of either end and four places of the rim there. Its faces are
+/// flat, and `length` (m) is that of the straight part.
+Mesh capsule_picture(Real radius, Real length);
+
 /// A solid cylinder of the given radius and height: `resolution` elements across the diameter (odd: the next even
 /// number).
 Mesh cylinder(Real radius, Real height, int resolution);

@@ -90,7 +90,7 @@ struct RigidPoints {
     std::vector<Vec3> arm;                // m, from the centre of mass
     Real inverse_mass = 0;                // 1/kg
     Mat3 inverse_inertia = Mat3::Zero();  // 1/(kg m^2)
-    Real radius = 0;                      // m, of a sphere: its node, the middle, is touched that far beside
+    Real radius = 0;                      // m, of a round body: its nodes, the core, are touched that far beside
 };
 
 /// Nodes of a body that moves implicitly, beside those of its motion as a whole (RigidPoints).

@@ -63,6 +63,9 @@ public:
     /// A rigid sphere, round to contacts and queries; its nodes, faces and tetrahedra only draw it, the first is its
     /// middle (mesh::sphere_picture). `body.dynamics` must be rigid. It cannot be attached or become another kind.
     BodyHandle add_body(const Sphere& sphere, const BodySettings& body);
+    /// The same of a rigid capsule, its axis along z of its frame; the first two nodes are the ends of the axis
+    /// (mesh::capsule_picture). `capsule.length` > 0.
+    BodyHandle add_body(const Capsule& capsule, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion from now
     /// on. Constant velocities turn them about `pivot`; keys are poses at absolute times, and the nodes are attached to

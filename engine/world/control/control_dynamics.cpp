@@ -34,8 +34,9 @@ void require_changeable(const Model& model, std::size_t body, BodyDynamics next)
                "explicit, implicit or rigid: who adds a body is helped to choose");
     if (next != BodyDynamics::explicit_elastic && model.bodies.self_contact[body])
         refuse(model, body, "self_contact", "true", "false, to become " + std::string(name_of(next)));
-    if (model.bodies.sphere_radius[body] > 0)
-        refuse(model, body, "dynamics", std::string(name_of(next)), "rigid: a sphere does not deform");
+    if (model.bodies.core_nodes[body] > 0)
+        refuse(model, body, "dynamics", std::string(name_of(next)),
+               "rigid: a " + std::string(model.round_name(body)) + " does not deform");
     const auto is_of_body = [row](Index of) { return of == row; };
     if (std::ranges::any_of(model.attachments.body, is_of_body))
         refuse(model, body, "dynamics", "a change of what is attached", "one of a body that nothing holds");

@@ -70,7 +70,8 @@ void restart(WorldState& world, std::size_t body) {
     as_new.element = record.element;
     as_new.material = model.bodies.material[body];
     as_new.tetrahedron_material = record.tetrahedron_material;
-    as_new.sphere_radius = model.bodies.sphere_radius[body];
+    as_new.core_nodes = model.bodies.core_nodes[body];
+    as_new.round_radius = model.bodies.round_radius[body];
     as_new.nodes = model.nodes.rest_position.span().subspan(static_cast<std::size_t>(nodes.begin),
                                                             static_cast<std::size_t>(nodes.size()));
     as_new.tetrahedra = record.tetrahedra;

@@ -74,17 +74,19 @@ std::vector<Real> densities(const Model& model, const NewBody& body) {
     return density;
 }
 
-Real sphere_mass(const Model& model, const NewBody& body) {
-    const Real density = model.materials.constants[static_cast<std::size_t>(body.material)].density;
-    return 4 * std::numbers::pi / 3 * density * body.sphere_radius * body.sphere_radius * body.sphere_radius;
+RoundMass round_mass(const Model& model, const NewBody& body) {
+    const Real density = model.materials.constants[static_cast<std::size_t>(body.material)].density,
+               radius = body.round_radius, length = body.axis_length();
+    return {4 * std::numbers::pi / 3 * density * radius * radius * radius,
+            std::numbers::pi * density * radius * radius * length};
 }
 
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     add_lumped_mass(body.tetrahedra, body.nodes, densities(model, body), rows_of(nodes.mass, range));
-    if (body.sphere_radius > 0) {  // what draws it is inside it
+    if (body.core_nodes > 0) {  // what draws it is inside it
         const std::span<Real> mass = rows_of(nodes.mass, range);
-        const Real drawn = std::accumulate(mass.begin(), mass.end(), Real(0)), whole = sphere_mass(model, body);
+        const Real drawn = std::accumulate(mass.begin(), mass.end(), Real(0)), whole = round_mass(model, body).sum();
         for (Real& of_node : mass) of_node *= whole / drawn;
     }
     for (auto n = static_cast<std::size_t>(range.begin); n < static_cast<std::size_t>(range.end); ++n)

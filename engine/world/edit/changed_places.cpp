@@ -18,7 +18,7 @@ Aabb box_of_body(const Model& model, std::size_t body, Real by) {
          model.surface.vertices.node.span().subspan(static_cast<std::size_t>(model.bodies.vertices[body].begin),
                                                     static_cast<std::size_t>(model.bodies.vertices[body].size())))
         grow(box, model.nodes.position[static_cast<std::size_t>(node)]);
-    by += model.bodies.sphere_radius[body];
+    by += model.bodies.round_radius[body];
     return {box.lower.array() - by, box.upper.array() + by};
 }
 

@@ -38,7 +38,7 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
         nodes.velocity[n] = nodes.velocity_next[n] = nodes.push_out[n] = nodes.force[n] = nodes.load[n] = Vec3::Zero();
         nodes.body[n] = row;
     }
-    const std::size_t looked_at = body.sphere_radius > 0 ? std::min<std::size_t>(begin + sphere_step_nodes, end) : end;
+    const auto looked_at = static_cast<std::size_t>(step_nodes_of(appended(begin, end), body.core_nodes).end);
     for (std::size_t first = begin; first < looked_at; first += nodes_per_block) {
         const std::size_t block = model.node_blocks.begin.size();
         model.node_blocks.for_each_column([block](const char*, auto& column, ColumnRole) { column.resize(block + 1); });
@@ -248,7 +248,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.self_contact[b] = body.self_contact;
     bodies.material[b] = body.material;
     bodies.filter[b] = body.filter;
-    bodies.sphere_radius[b] = body.sphere_radius;
+    bodies.core_nodes[b] = body.core_nodes;
+    bodies.round_radius[b] = body.round_radius;
     bodies.collider[b] = body.collider;
     bodies.nodes[b] = nodes;
     bodies.node_blocks[b] = {first_block, static_cast<Index>(model.node_blocks.begin.size())};
@@ -278,8 +279,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     if (implicit) model.stiffen(b);
     model.settled = false;
     model.append_outline(b);
-    bodies.mean_edge[b] = body.sphere_radius > 0 ? mean_edge_length(model.body_records[b].surface, body.nodes)
-                                                 : mean_edge_length(model, bodies.edges[b]);
+    bodies.mean_edge[b] = body.core_nodes > 0 ? mean_edge_length(model.body_records[b].surface, body.nodes)
+                                              : mean_edge_length(model, bodies.edges[b]);
     bodies.contact_distance[b] =
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);

@@ -23,7 +23,8 @@ struct NewBody {
     std::span<const Index> tetrahedron_material = {};  // by tetrahedron; empty: `material`
     Index collider = no_index;
     Real contact_distance = -1;  // m, < 0: 2 % of the mean edge
-    Real sphere_radius = 0;      // m, > 0: a sphere about the first node, which the mesh only draws
+    Index core_nodes = 0;        // > 0: round about its first nodes, as in BodyTable; the mesh only draws it
+    Real round_radius = 0;       // m
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;
     std::span<const std::array<Index, 3>> triangles;  // of a surface without tetrahedra
@@ -33,6 +34,8 @@ struct NewBody {
 
     /// Has a row of RigidBodyTable, and no elements.
     bool has_frame() const { return dynamics != BodyDynamics::explicit_elastic; }
+    /// m, of what is round: 0 of a sphere.
+    Real axis_length() const { return core_nodes == 2 ? (nodes[1] - nodes[0]).norm() : 0; }
     Index material_of(std::size_t of_tetrahedron) const {
         return tetrahedron_material.empty() ? material : tetrahedron_material[of_tetrahedron];
     }
@@ -58,8 +61,13 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
 // body_steps.cpp
 /// Tetrahedra by material, in the order in which the mesh comes to their materials.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body);
-/// kg, of a body that is a sphere.
-Real sphere_mass(const Model& model, const NewBody& body);
+/// kg, of a body that is round: both ends together, which are a ball, and what lies between.
+struct RoundMass {
+    Real ball, shaft;
+
+    Real sum() const { return ball + shaft; }
+};
+RoundMass round_mass(const Model& model, const NewBody& body);
 /// Adds the masses of the tetrahedra to those of the nodes, which are free then.
 void set_masses(Model& model, const NewBody& body, Range nodes);
 /// Finds the mass forms (mass_forms.h) of a body of one level without clusters, whose masses are shared, and leaves

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Of the solid that tetrahedra fill, or of a sphere, in the frame of the mesh.
+/// Of the solid that tetrahedra fill, or of a sphere or a capsule along z, in the frame of the mesh.
 struct MassProperties {
     Real mass = 0;               // kg
     Vec3 center = Vec3::Zero();  // m
@@ -18,9 +18,14 @@ struct MassProperties {
 };
 
 MassProperties mass_properties(const Model& model, const NewBody& body) {
-    if (body.sphere_radius > 0) {
-        const Real mass = sphere_mass(model, body), moment = mass * body.sphere_radius * body.sphere_radius * 2 / 5;
-        return {mass, body.nodes[0], Vec3::Constant(moment), Mat3::Identity()};
+    if (body.core_nodes > 0) {
+        const auto [ball, shaft] = round_mass(model, body);
+        const Real radius = body.round_radius, length = body.axis_length();
+        const Real axial = ball * radius * radius * 2 / 5 + shaft * radius * radius / 2;
+        const Real across = ball * radius * radius * 2 / 5 + ball * length * (length / 4 + radius * 3 / 8) +
+                            shaft * (radius * radius / 4 + length * length / 12);
+        const Vec3 center = (body.nodes[0] + body.nodes[static_cast<std::size_t>(body.core_nodes) - 1]) / 2;
+        return {ball + shaft, center, {across, across, axial}, Mat3::Identity()};
     }
     const std::vector<Real> density = densities(model, body);
     MassProperties found;

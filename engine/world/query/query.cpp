@@ -68,11 +68,8 @@ std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter,
         if (model.bodies.kind[b] != BodyKind::deformable || !(model.bodies.filter[b].group & filter.groups)) continue;
         const BodyHandle handle = model.body_map.handle_of_slot(model.bodies.slot[b]);
         if (has(filter.except_bodies, handle)) continue;
-        if (const Real radius = model.bodies.sphere_radius[b]; radius > 0) {
-            const Vec3& middle = model.nodes.position[static_cast<std::size_t>(model.bodies.nodes[b].begin)];
-            if (const std::optional<SurfaceHit> found =
-                    of_shape(ColliderGeometry{ColliderShape::sphere, {radius, 0, 0}},
-                             RigidMotion{middle, Mat3::Identity(), Vec3::Zero(), Vec3::Zero()}, limit))
+        if (const auto round = model.round_shape(b)) {
+            if (const std::optional<SurfaceHit> found = of_shape(round->geometry, round->motion, limit))
                 take(*found, handle, {});
             continue;
         }

@@ -105,7 +105,8 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
     expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
     expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, unbounded);
-    expect_between(file, "/bodies/sphere_radius", bodies.sphere_radius, 0.0, unbounded);
+    expect_between(file, "/bodies/core_nodes", bodies.core_nodes, 0, 2);
+    expect_between(file, "/bodies/round_radius", bodies.round_radius, 0.0, unbounded);
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         const auto complain = [&](const char* field, const std::string& found, const std::string& expected) {
             file.complain(std::string("/bodies/") + field, found + " at row " + std::to_string(b), expected);
@@ -122,8 +123,13 @@ void check_bodies(const Hdf5File& file, const Model& model) {
             count < 0 || (count + element_lanes - 1) / element_lanes != bodies.tetrahedron_blocks[b].size())
             complain("tetrahedron_count", std::to_string(count), "as many as the blocks hold");
         if (bodies.nodes[b].size() == 0) complain("nodes", "none", "at least one");
-        if (bodies.sphere_radius[b] > 0 && (bodies.rigid[b].size() != 1 || bodies.implicit[b].size() > 0))
-            complain("sphere_radius", std::to_string(bodies.sphere_radius[b]), "0 of a body that is not rigid");
+        const Index core = bodies.core_nodes[b];
+        if (core > 0 && (bodies.rigid[b].size() != 1 || bodies.implicit[b].size() > 0))
+            complain("core_nodes", std::to_string(core), "0 of a body that is not rigid");
+        if (core > bodies.nodes[b].size())
+            complain("core_nodes", std::to_string(core), "no more than the body has nodes");
+        if ((core > 0) != (bodies.round_radius[b] > 0))
+            complain("round_radius", std::to_string(bodies.round_radius[b]), "a length > 0 of what has a core, else 0");
         if (bodies.rigid[b].size() > (deforms ? 1 : 0))
             complain("rigid", std::to_string(bodies.rigid[b].size()) + " rows", "one of a rigid body, else none");
         if (bodies.rigid[b].size() > 0 && bodies.blocks[b].size() > 0)
@@ -164,10 +170,9 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
                               "blocks of at most 256 nodes that follow each other");
             next = blocks.end[k];
         }
-        const Index last =
-            model.bodies.sphere_radius[b] > 0 ? std::min(nodes.begin + sphere_step_nodes, nodes.end) : nodes.end;
-        if (next != last)
-            file.complain("/node_blocks/end", std::to_string(next), "all nodes of a body, or 13 of a sphere");
+        if (next != step_nodes_of(nodes, model.bodies.core_nodes[b]).end)
+            file.complain("/node_blocks/end", std::to_string(next),
+                          "all nodes of a body, 13 of a sphere or 12 of a capsule");
         for (Index t = model.bodies.tetrahedron_blocks[b].begin; t < model.bodies.tetrahedron_blocks[b].end; ++t)
             for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("/tetrahedra/node", corner, nodes, t);
         for (Index k = rows.begin; k < rows.end; ++k)

@@ -38,7 +38,7 @@ StartSearch::StartSearch(const Model& model, Real now)
         const Range vertices = model.bodies.vertices[b];
         for (Index v = vertices.begin; v < vertices.end; ++v)
             grow(box, model.nodes.position[model.surface.vertices.node[v]]);
-        const Real radius = model.bodies.sphere_radius[b];
+        const Real radius = model.bodies.round_radius[b];
         box_.push_back({box.lower.array() - radius, box.upper.array() + radius});
     }
 }
@@ -97,19 +97,21 @@ std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     return overlap;
 }
 
-std::optional<SphereSolid> StartSearch::sphere(Index body) const {
-    const Real radius = model_.bodies.sphere_radius[body];
-    if (!(radius > 0)) return std::nullopt;
-    return SphereSolid{model_.nodes.position[model_.bodies.nodes[body].begin] + shift(body), radius};
+std::optional<RoundSolid> StartSearch::round(Index body) const {
+    const Index core = model_.bodies.core_nodes[body];
+    if (core == 0) return std::nullopt;
+    const Vec3* const end = &model_.nodes.position[model_.bodies.nodes[body].begin];
+    return RoundSolid{{end[0] + shift(body), end[core - 1] + shift(body)}, core == 2, model_.bodies.round_radius[body]};
 }
 
 std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
-    const std::optional<SphereSolid> first = sphere(pair.first), second = sphere(pair.second);
+    const std::optional<RoundSolid> first = round(pair.first);
+    auto second = model_.round_shape(static_cast<std::size_t>(pair.second));
     if (first && second) {
-        const RigidMotion place{second->middle, Mat3::Identity(), Vec3::Zero(), Vec3::Zero()};
-        return overlap_of_sphere(*first, {ColliderShape::sphere, {second->radius, 0, 0}}, place, rounding(pair));
+        second->motion.position += shift(pair.second);
+        return overlap_of_round(*first, second->geometry, second->motion, rounding(pair));
     }
-    // of a sphere and a body with faces, the faces that draw it: overlaps that are less are left to the steps
+    // of a round body and one with faces, the faces that draw it: overlaps that are less are left to the steps
     return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
                         rounding(pair));
 }
@@ -118,8 +120,8 @@ std::optional<Overlap> StartSearch::look_at_collider(const StartPair& pair) {
     const PlacedSolid body{solid(pair.first), shift(pair.first)};
     const ColliderGeometry& geometry = model_.colliders.geometry[pair.second];
     const RigidMotion& motion = collider_[static_cast<std::size_t>(pair.second)];
-    if (const std::optional<SphereSolid> found = sphere(pair.first))
-        return overlap_of_sphere(*found, geometry, motion, rounding(pair));
+    if (const std::optional<RoundSolid> found = round(pair.first))
+        return overlap_of_round(*found, geometry, motion, rounding(pair));
     if (const auto overlap = find_surface_inside(geometry, motion, body, rounding(pair))) return overlap;
     if (geometry.shape == ColliderShape::plane) return std::nullopt;
     return find_collider_inside(geometry, motion, body, rounding(pair));
@@ -164,10 +166,11 @@ const Solid& StartSearch::solid(Index body) {
         return *found;
     }
     std::vector<SolidTriangle> surface;
-    if (model_.bodies.sphere_radius[body] > 0)
+    const bool is_round = model_.bodies.core_nodes[body] > 0;
+    if (is_round)
         for (const BoundaryTriangle& triangle : boundary_triangles(record.tetrahedra))
             surface.push_back({triangle.node, triangle.element});
-    const Range triangles = model_.bodies.sphere_radius[body] > 0 ? Range{0, 0} : model_.bodies.triangles[body];
+    const Range triangles = is_round ? Range{0, 0} : model_.bodies.triangles[body];
     for (Index t = triangles.begin; t < triangles.end; ++t) {
         const auto& [a, b, c] = model_.surface.triangles.node[t];
         surface.push_back(

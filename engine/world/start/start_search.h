@@ -56,7 +56,7 @@ private:
     /// m: two that are in each other by less cannot be told from two that touch.
     Real rounding(const StartPair& pair) const;
     /// Where it has been moved, if it is one.
-    std::optional<SphereSolid> sphere(Index body) const;
+    std::optional<RoundSolid> round(Index body) const;
     std::optional<Overlap> look_at_bodies(const StartPair& pair);
     std::optional<Overlap> look_at_collider(const StartPair& pair);
     void add_analytic(const std::vector<char>& marked, const BoxTree& tree, std::vector<StartPair>& pairs) const;

@@ -63,6 +63,22 @@ ElementInputs Model::elements_active(const ActiveLevels& active) const {
     return ElementInputs::bind({}, elements, element_nodes, materials, bodies, active, any_asleep);
 }
 
+std::optional<Model::RoundShape> Model::round_shape(std::size_t body) const {
+    const Index core = bodies.core_nodes[body];
+    if (core == 0) return std::nullopt;
+    const Real radius = bodies.round_radius[body];
+    const auto first = static_cast<std::size_t>(bodies.nodes[body].begin);
+    const Vec3& middle = nodes.position[first];
+    if (core == 1)
+        return RoundShape{{ColliderShape::sphere, {radius, 0, 0}},
+                          {middle, Mat3::Identity(), Vec3::Zero(), Vec3::Zero()}};
+    const auto r = static_cast<std::size_t>(bodies.rigid[body].begin);
+    const Real length = (nodes.rest_position[first + 1] - nodes.rest_position[first]).norm();
+    return RoundShape{{ColliderShape::capsule, {radius, length / 2, 0}},
+                      {rigid_bodies.center[r], rigid_bodies.rotation[r] * rigid_bodies.axes[r].transpose(),
+                       Vec3::Zero(), Vec3::Zero()}};
+}
+
 Index Model::user_tetrahedron(std::size_t body, Index place) const {
     return place - static_cast<Index>(element_lanes) * bodies.tetrahedron_blocks[body].begin;
 }
@@ -167,10 +183,11 @@ void Model::rebuild_clusters() {
 
 void Model::append_outline(std::size_t body) {
     const BodyRecord& record = body_records[body];
-    const bool is_sphere = bodies.sphere_radius[body] > 0, has_tetrahedra = !is_sphere && !record.tetrahedra.empty();
+    const Index core = bodies.core_nodes[body];
+    const bool has_tetrahedra = core == 0 && !record.tetrahedra.empty();
     std::vector<BoundaryTriangle> triangles;
-    if (is_sphere)
-        triangles.push_back({{0, 0, 0}, no_index});
+    if (core > 0)
+        triangles.push_back({{0, core - 1, core - 1}, no_index});
     else if (has_tetrahedra)
         triangles = boundary_triangles(record.tetrahedra);
     else

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -123,6 +124,15 @@ struct Model {
     /// After loads were set: those of one body, which had some before or not.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
+    /// A body that is round, as the shape of a collider, and where it is.
+    struct RoundShape {
+        ColliderGeometry geometry;
+        RigidMotion motion;  // without velocities
+    };
+    /// nullopt: it has faces.
+    std::optional<RoundShape> round_shape(std::size_t body) const;
+    /// "sphere" or "capsule", of a body that is round.
+    const char* round_name(std::size_t body) const { return bodies.core_nodes[body] == 1 ? "sphere" : "capsule"; }
     bool is_rigid(std::size_t body) const { return dynamics_of(body) == BodyDynamics::rigid; }
     BodyDynamics dynamics_of(std::size_t body) const {
         return !has_frame(body)                    ? BodyDynamics::explicit_elastic

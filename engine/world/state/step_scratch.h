@@ -45,7 +45,7 @@ struct StepParameters {
     bool problem_wanted = false;       // somebody wants to see the contact problem of this step
     bool forces_wanted = false;        // somebody wants to know what contacts and attachments give
     Vec3 moment_point = Vec3::Zero();  // m, that their moments are about
-    bool draws_late = false;           // what only draws spheres is placed when somebody looks at it
+    bool draws_late = false;           // what only draws round bodies is placed when somebody looks at it
 };
 
 /// What the stages find.

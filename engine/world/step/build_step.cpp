@@ -130,7 +130,7 @@ void list_solve(WorldState& w, TaskGraph& g) {
                         inputs<JointWorkInputs>(w.scratch.joints, w.model.rigid_bodies));
     g.stage_with_result("contact/measure_contacts", w.scratch.findings.measures, measure_contacts, read(c),
                         read(n.inverse_mass), read(n.velocity), read(n.velocity_next),
-                        inputs<SphereSpins>(n, w.model.bodies, w.model.rigid_bodies), write(c.slip), write(c.state),
+                        inputs<RoundSpins>(n, w.model.bodies, w.model.rigid_bodies), write(c.slip), write(c.state),
                         value(p.solver.friction));
 }
 

@@ -86,10 +86,15 @@ private:
 
 /// Of the wall of a bucket, whose distance may have several minima: branch and bound. The distance given is a bound,
 /// and not below half of the one at the place; what was given up for taking too many looks counts as a quarter of it.
-Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end) {
+/// Both less `kept`, m.
+Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
     constexpr int most_looks = 1024;
     const Wall wall(geometry, end);
-    const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * (end[1] - end[0]), part); };
+    const auto at = [&](Real s) {
+        SurfacePoint on = local_distance(geometry, end[0] + s * (end[1] - end[0]), part);
+        on.distance -= kept;
+        return on;
+    };
     struct Interval {
         Real low, high;
     };
@@ -106,7 +111,7 @@ Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes&
     open[count++] = {0, 1};
     for (int looks = 0; count > 0 && value > 0; ++looks) {
         const Interval interval = open[--count];
-        const Real least = wall.bound(interval.low, interval.high);
+        const Real least = wall.bound(interval.low, interval.high) - kept;
         if (least >= value / 2 || looks >= most_looks || count + 2 > open.size()) {
             bound = std::min(bound, std::max(least, value / 4));
             continue;
@@ -119,9 +124,12 @@ Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes&
     return of_surface(at(place), std::min(bound, value), {1 - place, place, 0});
 }
 
-Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes& end) {
+Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
     const bool is_wall = geometry.shape == ColliderShape::bucket && part == 1;
-    return is_wall ? nearest_on_wall(geometry, part, end) : nearest_on_convex(geometry, part, end);
+    if (is_wall) return nearest_on_wall(geometry, part, end, kept);
+    Touch nearest = nearest_on_convex(geometry, part, end);
+    nearest.distance -= kept;
+    return nearest;
 }
 
 /// A face and the disc within a rim. The inside of the face is touched first where the rim reaches furthest towards its
@@ -231,7 +239,7 @@ Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& fea
             return of_surface(on, on.distance - feature.kept.distance, {1, 0, 0});
         }
         case TouchingFeature::Kind::edge:
-            return nearest_on_edge(geometry, feature.of_collider, nodes);
+            return nearest_on_edge(geometry, feature.of_collider, nodes, feature.kept.distance);
         case TouchingFeature::Kind::face:
             break;
     }

@@ -18,7 +18,7 @@ struct TouchingFeature {
     Index of_collider;                   // a node and an edge: the part; a face: the point, see collider_point
     std::array<Vec3, 3> position;        // m, world, at the start of the step; as many as the feature has nodes
     std::array<Vec3, 3> displacement{};  // m, in the step
-    KeptApart kept{};                    // of the sphere whose middle a node is
+    KeptApart kept{};                    // of the round body whose core a node or edge is
 
     std::size_t nodes() const { return static_cast<std::size_t>(kind) + 1; }
 };
@@ -33,7 +33,8 @@ struct Touch {
 };
 
 /// Where the feature, `nodes` in the frame of the collider, and the collider are nearest. Of a rim that follows a face
-/// all points count. Distances of nodes and edges are signed; of a face that the collider has gone through it is that
+/// all points count. Distances of nodes and edges are signed, beyond what
+/// is kept; of a face that the collider has gone through it is that
 /// of the edges.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 

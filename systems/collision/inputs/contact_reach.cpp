@@ -29,11 +29,11 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
     if (kind == PairKind::collider) {
         // The distance to a shape is signed at any depth, so nothing behind its surface needs a zone. Its points may be
         // behind a face.
-        const Real half = own_distance / 2, radius = body.sphere_radius[first], kept = half + radius;
+        const Real half = own_distance / 2, radius = body.round_radius[first], kept = half + radius;
         return {kept, half, own_edge, face_depth_fraction * own_edge, 0, kept, radius};
     }
     scale.shell = (own_distance + body.contact_distance[second]) / 2;
-    scale.radii = body.sphere_radius[first] + body.sphere_radius[second];
+    scale.radii = body.round_radius[first] + body.round_radius[second];
     scale.contact_distance = scale.shell + scale.radii;
     scale.edge = std::min(own_edge, body.mean_edge[second]);
     scale.face_depth = face_depth_fraction * scale.edge;

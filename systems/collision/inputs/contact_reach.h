@@ -49,13 +49,13 @@ inline Real reach(Real h, Real relative_speed, Real gravity, Real contact_distan
 
 /// The distances of one pair, m.
 struct PairScale {
-    Real contact_distance;  // kept free between the features: that of the surfaces, and the radii of spheres
+    Real contact_distance;  // kept free between the features: that of the surfaces, and the radii of round bodies
     Real shell;             // of it, what is kept free between the surfaces
     Real edge;              // the smaller of the mean surface edges
     Real face_depth;        // a point this deep behind a face is pushed out of it
     Real edge_depth;        // the same behind an edge or vertex, and for two edges
     Real zone;  // features nearer than this, on either side, are looked at in each step; of a collider see face_zone
-    Real radii = 0;  // of contact_distance, those of spheres, whose middles are the features
+    Real radii = 0;  // of contact_distance, those of round bodies, whose cores are the features
 };
 
 // Overlap is rare, the contact distance keeps surfaces apart. Deeper points may belong to the other side of a thin
@@ -68,9 +68,9 @@ inline Real face_zone(const PairScale& scale) {
     return std::max(scale.contact_distance, scale.face_depth);
 }
 
-/// How near the middles of spheres may come in the motion of a step. Contacts stop them at the shell, which is not
-/// near; without one spheres touch by rounding, and only their middles are looked at.
-inline KeptApart kept_of_spheres(const PairScale& scale) {
+/// How near the cores of round bodies may come in the motion of a step. Contacts stop them at the shell, which is not
+/// near; without one they touch by rounding, and only their cores are looked at.
+inline KeptApart kept_of_radii(const PairScale& scale) {
     return scale.radii > 0 && scale.shell > 0 ? KeptApart{scale.radii, contact_slack * scale.shell} : KeptApart{};
 }
 

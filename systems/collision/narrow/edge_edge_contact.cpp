@@ -36,10 +36,12 @@ Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& nod
 /// The faces at one edge.
 class Wedge {
 public:
-    /// `closing`: m, how far things may move in this step.
-    Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, Real closing) {
+    /// `closing`: m, how far things may move in this step; `against_axis`: the other edge is the axis of a capsule.
+    Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, Real closing, bool against_axis) {
         const auto& ends = surface.edges.node[edge];
         const auto& around = surface.edges.triangle[edge];
+        is_axis_ = is_axis(surface, edge);
+        if (is_axis_) return;
         const Vec3& origin = position[ends[0]];
         const Vec3 along = position[ends[1]] - origin;
         const auto& first = surface.triangles.node[around[0]];
@@ -60,6 +62,10 @@ public:
         outward_ += unit_normal(position, second);
         // The other face falls away below the plane of the first.
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
+        if (against_axis) {  // which lies on nearly flat places by their edges alone
+            convex_ = fall > -min_bend * other_width - closing;
+            return;
+        }
         convex_ = fall > min_bend * other_width - closing;
         // Taken across from the one face or from the other, the bend is the same.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
@@ -67,7 +73,12 @@ public:
                                  : 0;
     }
 
-    bool convex() const { return convex_; }
+    /// Of the core of a round body, which is touched from all sides.
+    static bool is_axis(const SurfaceTables& surface, Index edge) {
+        return is_core(surface.triangles.node[surface.edges.triangle[edge][0]]);
+    }
+
+    bool convex() const { return is_axis_ || convex_; }
 
     /// m: how much nearer than the contact distance another edge may come that crosses this one at a fraction of its
     /// length, so that an edge that bends by min_bend starts to count where its points have left the other, not with a
@@ -76,6 +87,7 @@ public:
 
     /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
+        if (is_axis_) return true;
         // The mean normal tells the outside of a nearly flat edge from its inside, which the borders cannot.
         return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_[0] &&
                direction.dot(into_[1]) <= border_[1];
@@ -91,7 +103,7 @@ private:
     std::array<Vec3, 2> into_;    // m, from the edge across either face
     std::array<Real, 2> border_;  // m, how far the end of a face may stand out beyond the direction
     Vec3 outward_;                // sum of the unit normals of both
-    bool convex_;
+    bool is_axis_ = false, convex_ = false;
     Real slack_ = 0;  // m, half way along the edge
 };
 
@@ -112,9 +124,9 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
     const Real height = normal.dot(contact.closest.on_first - contact.closest.on_second);
     if (height < 0) normal = -normal;
     const Real closing = near - scale.contact_distance;
-    const Wedge wedge_a(surface, position, first, closing);
+    const Wedge wedge_a(surface, position, first, closing, Wedge::is_axis(surface, second));
     if (!wedge_a.convex()) return contact;
-    const Wedge wedge_b(surface, position, second, closing);
+    const Wedge wedge_b(surface, position, second, closing, Wedge::is_axis(surface, first));
     if (!wedge_b.convex()) return contact;
     if (wedge_b.faces(normal) && wedge_a.faces(-normal)) {
         contact.distance = distance;

@@ -21,8 +21,9 @@ struct EdgeEdgeContact {
 
 /// Two edges that cross, each on the outer side of the other. Only edges at which their surface is convex take part,
 /// and only where the normal lies between those of the faces at both edges: elsewhere a point and a face are nearer.
-/// Edges inside of a nearly flat face are left out, their points cover them. Features further than `near` are not
-/// looked at closely. Edges of surfaces that may overlap can also have passed each other.
+/// Edges inside of a nearly flat face are left out, their points cover them, but for the axis of a capsule, which is
+/// touched from all sides. Features further than `near` are not looked at closely. Edges of surfaces that may overlap
+/// can also have passed each other.
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real near, Surfaces surfaces);
 

@@ -19,6 +19,10 @@ constexpr Real tie_edge_fraction = 1e-12;
 constexpr Real normal_distance_fraction = 0.1;
 constexpr Real normal_edge_fraction = 1e-6;
 
+// rad: by how much the axis of a capsule may be turned for a vertex to count: one that lies along an edge or a flat
+// place lies on both its ends, however little it is tilted. As of edges, docs/methods/collision.md 4.5.
+constexpr Real axis_tilt = 0.03;
+
 struct Query {
     const SurfaceTables& surface;
     std::span<const Vec3> position;
@@ -54,20 +58,18 @@ Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face
     return face_normal + q.unit_normal(other);
 }
 
-/// Mean normal of the faces around the nearest vertex, weighted by their angles (Baerentzen, Aanaes 2005: its sign
-/// tells inside from outside); zero when one of the faces comes nearer to the point.
-Vec3 vertex_normal(const Query& q, Index triangle, std::size_t k) {
+/// Mean normal of the faces around a vertex, weighted by their angles (Baerentzen, Aanaes 2005: its sign tells inside
+/// from outside); zero when one of the directions of their sides is not `allowed`.
+Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     const VertexTable& vertices = q.surface.vertices;
-    const Index vertex = q.surface.triangles.vertex[triangle][k];
     const Index self = vertices.node[vertex];
-    if (q.surface.triangles.edge[triangle][k] == no_index) return q.offset;  // the middle of a sphere
     Vec3 sum = Vec3::Zero();
     for (Index i = vertices.triangle_begin[vertex]; i < vertices.triangle_end[vertex]; ++i) {
         const Index other = q.surface.vertex_triangle[i];
         const auto& node = q.surface.triangles.node[other];
         const std::size_t c = node[0] == self ? 0 : node[1] == self ? 1 : 2;
         const Vec3 a = q.at(node[(c + 1) % 3]) - q.at(self), b = q.at(node[(c + 2) % 3]) - q.at(self);
-        if (q.offset.dot(a) > q.tie(a) || q.offset.dot(b) > q.tie(b)) return Vec3::Zero();
+        if (!allowed(a) || !allowed(b)) return Vec3::Zero();
         const Vec3 cross = a.cross(b);
         const Real length = cross.norm();
         if (length > 0) sum += cross * (std::atan2(length, a.dot(b)) / length);
@@ -109,6 +111,11 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     if (!(distance <= std::max(near, scale.zone))) return contact;
 
     const Query q{surface, position, scale, point - contact.closest.nearest, distance};
+    if (is_core(corner)) {
+        contact.sleep = distance - scale.edge_depth;
+        touch_border(q, q.offset, false, surfaces, contact);
+        return contact;
+    }
     const Vec3 face_normal = q.unit_normal(triangle);
     const Real height = q.offset.dot(face_normal);  // of the point above the plane of the face
     const Real aside_squared = std::max(Real(0), distance * distance - height * height);
@@ -121,7 +128,7 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const std::size_t region = static_cast<std::size_t>(contact.closest.region);
     if (contact.closest.region == TriangleRegion::face) {
         const bool turned = height < 0 && surfaces == Surfaces::apart;
-        // the middle of a sphere is as far behind a face that is inside out as before another
+        // the core of a round body is as far behind a face that is inside out as before another
         if (height < -scale.face_depth && !(turned && scale.radii > 0)) return contact;
         contact.side = height >= 0 ? Side::outside : Side::behind;
         contact.distance = turned ? -height : height;
@@ -136,9 +143,29 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     } else {
         const std::size_t k = region - static_cast<std::size_t>(TriangleRegion::vertex0);
         if (surface.triangles.owned_vertices[triangle] >> k & 1)
-            touch_border(q, vertex_normal(q, triangle, k), straight_behind, surfaces, contact);
+            touch_border(q,
+                         vertex_normal(q, surface.triangles.vertex[triangle][k],
+                                       [&](const Vec3& side) { return q.offset.dot(side) <= q.tie(side); }),
+                         straight_behind, surfaces, contact);
     }
     return contact;
+}
+
+bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
+                       const Vec3& axis, const PairScale& scale) {
+    const Query q{surface, position, scale, offset, offset.norm()};
+    // turned by t the place is at offset + t along
+    const Vec3 along = q.distance * axis.normalized();
+    Real low = -axis_tilt, high = axis_tilt;
+    const Vec3 normal = vertex_normal(q, vertex, [&](const Vec3& side) {
+        const Real room = q.tie(side) - offset.dot(side), slope = along.dot(side);
+        if (slope > 0)
+            high = std::min(high, room / slope);
+        else if (slope < 0)
+            low = std::max(low, room / slope);
+        return low <= high && (slope != 0 || room >= 0);
+    });
+    return offset.dot(normal) > 0;
 }
 
 }  // namespace skerry

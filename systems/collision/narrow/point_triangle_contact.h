@@ -31,9 +31,14 @@ struct PointTriangleContact {
 /// The point against the feature of the triangle that is nearest to it. A point that is nearest to an edge or a vertex
 /// is left to the lowest triangle around it, and is a contact only where no other triangle around comes nearer.
 /// Normals: of the face; from the edge or vertex to the point, or, too near for that, the mean of the faces around.
-/// Features further than `near` are not looked at closely.
+/// The core of a round body is touched from all sides. Features further than `near` are not looked at closely.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
                                             const Vec3& point, Index triangle, const PairScale& scale, Real near,
                                             Surfaces surfaces);
+
+/// Whether a vertex holds the axis of a capsule whose nearest place is at `offset` from it: no face around it comes
+/// nearer to that place, but for a little tilt of the axis.
+bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
+                       const Vec3& axis, const PairScale& scale);
 
 }  // namespace skerry

@@ -1,10 +1,12 @@
 #include "systems/collision/overlap/collider_overlap.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/colliders/face_contact.h"
+#include "systems/collision/colliders/time_of_touch.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/tree/box.h"
 #include "systems/geometry/closest_points.h"
@@ -161,13 +163,25 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
                    length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
 }
 
-std::optional<Overlap> overlap_of_sphere(const SphereSolid& sphere, const ColliderGeometry& geometry,
-                                         const RigidMotion& motion, Real tolerance) {
-    const SurfacePoint nearest = distance_to_collider(geometry, motion, sphere.middle);
-    const Real depth = sphere.radius - nearest.distance;
+std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGeometry& geometry,
+                                        const RigidMotion& motion, Real tolerance) {
+    const auto local = [&](const Vec3& at) { return Vec3(motion.rotation.transpose() * (at - motion.position)); };
+    const std::array<Vec3, 3> core{local(body.end[0]), local(body.end[1]), Vec3::Zero()};
+    Touch nearest{.distance = std::numeric_limits<Real>::infinity(), .weight = {}, .point = {}, .normal = {}};
+    for (Index part = 0; part < collider_part_count(geometry.shape); ++part) {
+        TouchingFeature feature{.kind = body.is_segment ? TouchingFeature::Kind::edge : TouchingFeature::Kind::node,
+                                .of_collider = part,
+                                .position = core};
+        feature.kept.distance = body.radius;
+        const Touch touch = nearest_touch(geometry, feature, core);
+        if (touch.distance < nearest.distance) nearest = touch;
+    }
+    const Real depth = -nearest.distance;
     if (!(depth > tolerance)) return std::nullopt;
-    return Overlap{nearest.distance < 0 ? OverlapKind::inside : OverlapKind::crossing, depth, nearest.normal,
-                   sphere.middle - (nearest.distance + depth / 2) * nearest.normal};
+    const bool inside = std::ranges::all_of(
+        body.end, [&](const Vec3& at) { return distance_to_collider(geometry, motion, at).distance < 0; });
+    const Vec3 normal = motion.rotation * nearest.normal, point = motion.position + motion.rotation * nearest.point;
+    return Overlap{inside ? OverlapKind::inside : OverlapKind::crossing, depth, normal, point - depth / 2 * normal};
 }
 
 }  // namespace skerry

@@ -1,6 +1,7 @@
 // Whether a body and an analytic collider share room.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "components/collider_table.h"
@@ -18,14 +19,15 @@ std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, con
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                             const PlacedSolid& body, Real tolerance);
 
-/// A body that is a sphere.
-struct SphereSolid {
-    Vec3 middle;  // m
+/// A body that is round about its core: a point, or a segment.
+struct RoundSolid {
+    std::array<Vec3, 2> end;  // m, of a point twice the same
+    bool is_segment;
     Real radius;  // m
 };
 
-/// Of a sphere and a collider, by more than `tolerance` (m): inside where the middle is.
-std::optional<Overlap> overlap_of_sphere(const SphereSolid& sphere, const ColliderGeometry& geometry,
-                                         const RigidMotion& motion, Real tolerance);
+/// Of a round body and a collider, by more than `tolerance` (m): inside where all of its core is, or the point.
+std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGeometry& geometry,
+                                        const RigidMotion& motion, Real tolerance);
 
 }  // namespace skerry

@@ -58,7 +58,7 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
                 is_movable(body, static_cast<Index>(b)) ? settings.broad_skin / 2 * body.mean_edge[b] : common_travel;
             search.body_valid_until[b] = memory.body_travel_bound[b] - 2 * body.displacement[b] + travel;
             fit(inputs, static_cast<Index>(b), memory.box[b], memory.sphere[b]);
-            const Real margin = memory.body_reach[b] + travel + body.contact_distance[b] / 2 + body.sphere_radius[b];
+            const Real margin = memory.body_reach[b] + travel + body.contact_distance[b] / 2 + body.round_radius[b];
             widen(memory.box[b], margin);
             memory.sphere[b].radius += margin;
         }

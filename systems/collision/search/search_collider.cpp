@@ -27,7 +27,8 @@ public:
         const Real points = add_points();
         const Real between = distance_between_nodes();
         if (between < face_zone_ + pair_.margin) {
-            add_faces();
+            // around the axis of a capsule are its edge's points, and no face
+            if (inputs_.body.core_nodes[pair_.first] == 0) add_faces();
             add_edges();
         }
         return pair_.travel_base + std::max(pair_.margin, std::min(points - pair_.scale.zone, between - face_zone_));

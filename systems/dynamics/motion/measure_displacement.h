@@ -31,7 +31,7 @@ struct DisplacementInputs {
                 .velocity = binder.read(node.velocity)};
     }
 
-    /// In blocks: all, or of a sphere some.
+    /// In blocks: all, or of a round body some.
     Range nodes(std::size_t body) const {
         const Range blocks = body_node_blocks[body];
         if (blocks.size() == 0) return {0, 0};

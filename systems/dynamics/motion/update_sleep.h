@@ -98,7 +98,7 @@ struct RestInputs {
     std::span<const Vec3> rigid_moments = {};
     std::span<const Mat3> rigid_rotation = {};
     std::span<const Index> rigid_holder = {};  // empty: none is held
-    std::span<const Real> body_sphere_radius = {};
+    std::span<const Index> body_core_nodes = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
                            const MaterialTable& material, const NodeTable& node, const RigidBodyTable& rigid) {
@@ -122,14 +122,12 @@ struct RestInputs {
                 .rigid_moments = binder.read(rigid.moments),
                 .rigid_rotation = binder.read(rigid.rotation),
                 .rigid_holder = binder.read(rigid.holder),
-                .body_sphere_radius = binder.read(body.sphere_radius)};
+                .body_core_nodes = binder.read(body.core_nodes)};
     }
 
-    /// Those that tell whether the body moves: nodes that only draw a sphere may be behind.
+    /// Those that tell whether the body moves: nodes that only draw a round one may be behind.
     Range telling_nodes(std::size_t b) const {
-        const Range all = nodes[b];
-        const bool is_sphere = !body_sphere_radius.empty() && body_sphere_radius[b] > 0;
-        return is_sphere ? Range{all.begin, std::min(all.begin + sphere_step_nodes, all.end)} : all;
+        return body_core_nodes.empty() ? nodes[b] : step_nodes_of(nodes[b], body_core_nodes[b]);
     }
     /// Row of RigidBodyTable, or no_index.
     Index rigid(std::size_t b) const {

@@ -169,8 +169,8 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
     return true;
 }
 
-void draw_spheres(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
-                  std::span<Vec3> velocity) {
+void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
+                       std::span<Vec3> velocity) {
     for_each_body(executor, bodies, [&](std::size_t r) {
         const Range drawn{bodies.step_nodes(r).end, bodies.nodes(r).end};
         if (drawn.size() == 0 || (bodies.asleep(r) && !resting)) return;

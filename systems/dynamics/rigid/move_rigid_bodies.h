@@ -23,7 +23,7 @@ struct RigidBodies {
     std::span<const Index> body;
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
-    std::span<const Real> body_sphere_radius;   // BodyTable; empty: all nodes of spheres are looked at, too
+    std::span<const Index> body_core_nodes;     // BodyTable; empty: all nodes of round bodies are looked at, too
     std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: none is
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
@@ -39,7 +39,7 @@ struct RigidBodies {
         return {.body = binder.read(rigid.body),
                 .body_nodes = binder.read(of_body.nodes),
                 .body_implicit = binder.read(of_body.implicit),
-                .body_sphere_radius = binder.read_if(!binder.value(loaded), of_body.sphere_radius),
+                .body_core_nodes = binder.read_if(!binder.value(loaded), of_body.core_nodes),
                 .body_asleep = binder.read_if(binder.value(any_asleep), of_body.asleep),
                 .mass = binder.read(rigid.mass),
                 .moments = binder.read(rigid.moments),
@@ -61,9 +61,8 @@ struct RigidBodies {
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
     /// Those whose velocities are asked for before the step is taken.
     Range step_nodes(std::size_t r) const {
-        const Range all = nodes(r);
-        const bool is_drawn = !body_sphere_radius.empty() && body_sphere_radius[static_cast<std::size_t>(body[r])] > 0;
-        return is_drawn ? Range{all.begin, std::min(all.begin + sphere_step_nodes, all.end)} : all;
+        return body_core_nodes.empty() ? nodes(r)
+                                       : step_nodes_of(nodes(r), body_core_nodes[static_cast<std::size_t>(body[r])]);
     }
     /// Rows of ImplicitNodeTable.
     Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
@@ -168,15 +167,15 @@ struct RigidMoves {
 };
 
 /// Commits: the bodies that do not rest, and their nodes, are where they were turned to (`center_next`,
-/// `rotation_next`), and go on with the momenta that the step gave them; `draws_late`: of spheres only step_nodes, the
-/// others wait for draw_spheres. Parallel over bodies. Returns false where there is none (skipped).
+/// `rotation_next`), and go on with the momenta that the step gave them; `draws_late`: of round bodies only step_nodes,
+/// the others wait for draw_round_bodies. Parallel over bodies. Returns false where there is none (skipped).
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
                        std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out);
 
-/// Puts the nodes that only draw spheres where they would be by now, also of spheres at rest where `resting`. Parallel
-/// over bodies.
-void draw_spheres(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
-                  std::span<Vec3> velocity);
+/// Puts the nodes that only draw round bodies where they would be by now, also of those at rest where `resting`.
+/// Parallel over bodies.
+void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
+                       std::span<Vec3> velocity);
 
 }  // namespace skerry

@@ -156,7 +156,7 @@ private:
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            // a sphere touches beside its node: at -radius normal of weight 1, or at radius normal of weight -1
+            // a round body touches beside its core: at -radius normal of weights of sum 1, at radius normal of -1
             term = {.row = body,
                     .slot = static_cast<Index>(2 * place),
                     .arm = padded(-rigid.nodes.radius(node) * normal),

@@ -226,8 +226,8 @@ TEST_CASE("a body with a shape in the place of a mesh is a sphere", "[unit]") {
     const std::string sphere = R"("shape": {"sphere": {"radius": 0.2}})";
     const ScenePlan plan = plan_scene(scene(sphere + R"(, "dynamics": "rigid", "positions": [[0, 0, 1], [0, 0, 2]])"));
     REQUIRE(plan.bodies.size() == 2);
-    REQUIRE(plan.bodies[1].sphere);
-    CHECK(plan.bodies[1].sphere->radius == 0.2);
+    REQUIRE(plan.bodies[1].shape.sphere);
+    CHECK(plan.bodies[1].shape.sphere->radius == 0.2);
     const Scene built = build_scene(plan);
     const BodyHandle body = built.world.bodies()[1];
     CHECK(built.world.mass(body) == Approx(4 * 3.14159265358979 / 3 * 0.008 * 1000).epsilon(1e-12));
