@@ -269,7 +269,7 @@ TEST_CASE("implicit elements far from rest are viscous: they lose energy, no mom
     std::mt19937_64 random(3);
     std::vector<std::uint8_t> viscous;
     const auto stir = [&] {
-        for (Vec3& v : box.body.velocity) v = random_vector(random);
+        for (Vec3& v : box.body.velocity) v = test::random_vector(random);
     };
     stir();
     CHECK(largest(viscous_forces(box, viscous)) == 0);
