@@ -311,14 +311,13 @@ ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks
 
 void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, std::span<ElementLane> leeway) {
     std::ranges::fill(leeway, ElementLane{{1, 1, 1, 1, 1, 1, 1, 1}});
-    for (const bool implicit : {true, false})  // the explicit ones have the last word
-        for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-            if ((modulus[e / element_lanes][e % element_lanes] > 0) != implicit) continue;
-            for (const Index t : tetrahedra[e]) {
-                const auto at = static_cast<std::size_t>(t);
-                leeway[at / element_lanes][at % element_lanes] = implicit ? implicit_leeway : 1;
-            }
+    for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+        if (!(modulus[e / element_lanes][e % element_lanes] > 0)) continue;
+        for (const Index t : tetrahedra[e]) {
+            const auto at = static_cast<std::size_t>(t);
+            leeway[at / element_lanes][at % element_lanes] = implicit_leeway;
         }
+    }
 }
 
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time) {
