@@ -8,6 +8,7 @@
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
+#include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -63,7 +64,7 @@ struct Kept {
 /// What goes with being implicit: leeway of tetrahedra, viscosity.
 void note_implicit(Model& model, std::size_t b) {
     find_leeway(model.body_records[b].element_tetrahedra,
-                rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]),
+                rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]), implicit_leeway,
                 rows_of(model.tetrahedra.leeway, model.bodies.tetrahedron_blocks[b]));
     const Range blocks = model.bodies.blocks[b];
     const std::span<Real> time = rows_of(model.elements.viscous_time, blocks);

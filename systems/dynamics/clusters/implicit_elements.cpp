@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
@@ -309,13 +308,14 @@ ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks
     return {.moment = added / least_moment(elements, blocks, position, mass)};
 }
 
-void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, std::span<ElementLane> leeway) {
+void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
+                 std::span<ElementLane> leeway) {
     std::ranges::fill(leeway, ElementLane{{1, 1, 1, 1, 1, 1, 1, 1}});
     for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
         if (!(modulus[e / element_lanes][e % element_lanes] > 0)) continue;
         for (const Index t : tetrahedra[e]) {
             const auto at = static_cast<std::size_t>(t);
-            leeway[at / element_lanes][at % element_lanes] = implicit_leeway;
+            leeway[at / element_lanes][at % element_lanes] = of_implicit;
         }
     }
 }

@@ -31,9 +31,10 @@ ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks
                                      std::span<const Real> mass, Real step, Real headroom, ImplicitSearch search,
                                      std::span<Real> stiffness_sum, const ImplicitOutputs& out);
 
-/// How much faster than others tetrahedra may deform: those that implicit elements cover by implicit_leeway, and they
-/// may turn over. `tetrahedra`: of each element, those that it covers.
-void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, std::span<ElementLane> leeway);
+/// How many times faster than others tetrahedra may deform: `of_implicit` times those that implicit elements cover,
+/// which may turn over, too. `tetrahedra`: of each element, those that it covers.
+void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
+                 std::span<ElementLane> leeway);
 
 /// s, by block: for those with implicit elements the time that, times the modulus that these are taken to have, is
 /// their viscosity; 0 for others. `step`: that of the body's clusters, s.

@@ -216,7 +216,7 @@ TEST_CASE("tetrahedra have leeway that implicit elements cover", "[unit][cluster
     for (const Index t : {0, 1, 1, 2, 2, 9, 9}) covered.item.push_back(t);
     std::vector<ElementLane> modulus(1), leeway(2);
     modulus[0][0] = modulus[0][1] = modulus[0][3] = 1e5;  // the third, of 2 and 9, is explicit
-    find_leeway(covered, modulus, leeway);
+    find_leeway(covered, modulus, implicit_leeway, leeway);
     for (std::size_t t = 0; t < 2 * element_lanes; ++t) {
         CAPTURE(t);
         CHECK(leeway[t / element_lanes][t % element_lanes] == (t < 3 || t == 9 ? implicit_leeway : 1));
