@@ -52,6 +52,26 @@ TEST_CASE("a body without bad elements has no clusters, and the bits that it had
     CHECK(hash[0] == hash[1]);
 }
 
+TEST_CASE("bodies that are alike have the same implicit elements, as many as one alone", "[scene][clusters]") {
+    const Mesh mesh = sliver_box(0.2, 6, 0.01, 0.005), other = sliver_box(0.2, 6, 0.01, 0.005, 2);
+    const auto implicit = [&](std::initializer_list<const Mesh*> meshes, Index held) {
+        World world(weightless(true));
+        const MaterialHandle rubber = world.add_material(lossless_rubber());
+        Index i = 0;
+        for (const Mesh* of : meshes) {
+            const BodyHandle body =
+                world.add_body(*of, {.material = rubber, .position = {0.3 * i, 0, 0}, .rotation = {0, 0.1 * i, 0}});
+            if (i++ == held) world.attach(body, std::vector<Index>{0, 1, 2, 3, 4, 5});
+        }
+        return world.report().implicit_elements;
+    };
+    const std::size_t one = implicit({&mesh}, -1), mixed = implicit({&mesh, &other}, -1);
+    CHECK(one > 0);
+    CHECK(implicit({&mesh, &mesh, &mesh}, -1) == 3 * one);
+    CHECK(implicit({&mesh, &other, &mesh, &other}, -1) == 2 * mixed);
+    CHECK(implicit({&mesh, &mesh}, 1) == one + implicit({&mesh}, 0));
+}
+
 TEST_CASE("a spinning body with clusters keeps energy, momentum and angular momentum", "[scene][clusters]") {
     World world(weightless(true));
     const BodyHandle body =

@@ -2,14 +2,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/kernels.h"
+#include "engine/world/step/find_twins.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
+#include "systems/dynamics/clusters/find_implicit_elements.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
@@ -77,19 +80,66 @@ struct Found {
     ClusterSizes sizes{};
 };
 
-/// Finds the implicit elements of a body for a step, and writes them where that is possible and where it is not.
-Found find(Model& model, std::size_t b, Real step, std::span<const Vec3> position, ImplicitSearch search,
-           std::span<Real> stiffness_sum) {
-    const Range blocks = model.bodies.blocks[b];
-    const std::span<ElementLane> modulus = rows_of(model.elements.implicit_modulus, blocks);
-    const ImplicitShare share =
-        find_implicit_elements(model.all_elements(), blocks, position, model.nodes.mass, step, headroom, search,
-                               stiffness_sum, {rows_of(model.elements.mass_share, blocks), modulus});
+Found judged(const Model& model, std::size_t b, const ImplicitShare& share) {
     if (share.too_many || !(share.moment <= most_moment)) return {};
-    const ClusterSizes sizes = cluster_sizes(model.all_elements(), blocks, modulus, model.nodes.inverse_mass);
+    const Range blocks = model.bodies.blocks[b];
+    const ClusterSizes sizes = cluster_sizes(
+        model.all_elements(), blocks, rows_of(model.elements.implicit_modulus, blocks), model.nodes.inverse_mass);
     if (sizes.largest > largest_cluster) return {};
     return {true, sizes};
 }
+
+ImplicitOutputs outputs_of(Model& model, Range blocks) {
+    return {rows_of(model.elements.mass_share, blocks), rows_of(model.elements.implicit_modulus, blocks)};
+}
+
+/// The implicit elements of bodies at rest, for steps that are tried. Those of bodies that are alike are found once.
+class Searches {
+public:
+    Searches(Model& model, std::span<Real> stiffness_sum)
+        : model_(model), stiffness_sum_(stiffness_sum), twin_(find_twins(model)), of_first_(twin_.size()) {
+        for (const std::size_t first : twin_) ++of_first_[first].bodies;
+    }
+
+    /// Finds those of a body. Its rows are written where that is possible and where it is not.
+    Found find(std::size_t b, Real step) {
+        OfTwins& twins = of_first_[twin_[b]];
+        for (const Result& known : twins.known) {
+            if (known.step != step) continue;
+            known.elements.put_back(model_, b);
+            return known.found;
+        }
+        const Range blocks = model_.bodies.blocks[b];
+        if (!twins.search) {
+            twins.search.emplace(model_.all_elements(), blocks, model_.nodes.rest_position, model_.nodes.mass,
+                                 stiffness_sum_, outputs_of(model_, blocks));
+            twins.searched = b;
+        }
+        const Kept kept(model_, twins.searched);
+        const Found found = judged(model_, twins.searched, twins.search->find({step, headroom, most_moment}));
+        Result result{step, found, Kept(model_, twins.searched)};
+        kept.put_back(model_, twins.searched);
+        result.elements.put_back(model_, b);
+        if (twins.bodies > 1) twins.known.push_back(std::move(result));
+        return found;
+    }
+
+private:
+    struct Result {
+        Real step;  // s
+        Found found;
+        Kept elements;
+    };
+    struct OfTwins {
+        std::size_t bodies = 0, searched = 0;
+        std::optional<ImplicitSearch> search{};  // once it was asked for
+        std::vector<Result> known{};
+    };
+    Model& model_;
+    std::span<Real> stiffness_sum_;
+    std::vector<std::size_t> twin_;
+    std::vector<OfTwins> of_first_;  // by the first of bodies that are alike
+};
 
 /// Elements of a body with clusters go by their shares: implicit ones take no mass.
 void share_masses(Model& model, std::size_t b) {
@@ -143,7 +193,7 @@ struct Plan {
     std::vector<std::pair<std::size_t, Kept>> body;  // that has some: its row, what its elements are
 };
 
-Plan plan_for(Model& model, Real step, std::span<Real> stiffness_sum) {
+Plan plan_for(Model& model, Real step, Searches& searches) {
     Plan plan{.step = step, .body = {}};
     for (std::size_t b = 0; b < model.bodies.slot.size() && plan.possible; ++b) {
         if (!has_elements(model, b) || model.bodies.rest_step[b] >= step) continue;
@@ -152,7 +202,7 @@ Plan plan_for(Model& model, Real step, std::span<Real> stiffness_sum) {
             break;
         }
         const Kept kept(model, b);
-        const Found found = find(model, b, step, model.nodes.rest_position, ImplicitSearch::anew, stiffness_sum);
+        const Found found = searches.find(b, step);
         plan.possible = found.possible;
         plan.entries += found.sizes.entries;
         plan.body.emplace_back(b, Kept(model, b));
@@ -174,6 +224,7 @@ void take_over(Model& model, std::size_t b, const Kept& elements, Real step, std
 /// With multirate a body that does not bound the steps of all gets implicit elements where its own can be so much
 /// longer for them: impulses come less often, its clusters move in every step.
 void lengthen_own_steps(Model& model, Real base, std::span<Real> stiffness_sum) {
+    Searches searches(model, stiffness_sum);
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         const Real rest = model.bodies.rest_step[b];
         if (!has_elements(model, b) || has_levels(model, b) || model.bodies.cluster_step[b] > 0) continue;
@@ -185,7 +236,7 @@ void lengthen_own_steps(Model& model, Real base, std::span<Real> stiffness_sum) 
         Plan best{.cost = cost(steps_in_own(rest, base), 0) / least_gain, .body = {}};
         const Real most = std::min<Real>(base * (1 << most_cycle_levels), most_lengthening * rest);
         for (Real step = 2 * base * steps_in_own(rest, base); step <= most; step *= 2) {
-            const Found found = find(model, b, step, model.nodes.rest_position, ImplicitSearch::anew, stiffness_sum);
+            const Found found = searches.find(b, step);
             const Real found_cost = cost(steps_in_own(step, base), found.sizes.entries);
             if (found.possible && found_cost <= best.cost) {
                 best = {.step = step, .cost = found_cost, .body = {}};
@@ -217,8 +268,9 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     Plan best{.body = {}};
     if (!(shortest > 0) || !std::isfinite(shortest)) return best;
     best.cost = cost_of(model, 0, std::min(shortest, longest)) / least_gain;
+    Searches searches(model, stiffness_sum);
     const auto look_at = [&](Real step) {
-        Plan plan = plan_for(model, step, stiffness_sum);
+        Plan plan = plan_for(model, step, searches);
         const bool possible = plan.possible;
         if (possible && plan.cost <= best.cost) best = std::move(plan);
         return possible;
@@ -269,7 +321,11 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
     constexpr Real lasts = 128;           // steps, until they may have to be inverted anew
     const Kept kept(model, body);
     const std::size_t entries = model.clusters.inverse.size();
-    const Found found = find(model, body, step, model.nodes.position, ImplicitSearch::more, stiffness_sum);
+    const Range blocks = model.bodies.blocks[body];
+    const Found found =
+        judged(model, body,
+               add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
+                                     {step, headroom, most_moment}, stiffness_sum, outputs_of(model, blocks)));
     const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (lasts * step);
     if (found.possible &&
         cost_of(model, entries + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "components/union_find.h"
@@ -75,20 +76,33 @@ void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeC
 
 ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
                            std::span<const Real> inverse_mass) {
-    UnionFind sets;
-    sets.start(inverse_mass.size());
     std::vector<Index> nodes;
-    chain(elements, blocks, modulus, inverse_mass, sets, nodes);
-    sort_unique(nodes);
-    std::vector<Index> roots;
-    for (const Index n : nodes) roots.push_back(sets.root(n));
-    std::ranges::sort(roots);
+    for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {
+        for_each_node(elements.nodes_of(b), l, inverse_mass, [&](Index n, Index) { nodes.push_back(n); });
+    });
     ClusterSizes sizes;
-    for (std::size_t begin = 0, end = 0; begin < roots.size(); begin = end) {
-        while (end < roots.size() && roots[end] == roots[begin]) ++end;
-        sizes.largest = std::max(sizes.largest, end - begin);
-        sizes.entries += (end - begin) * (end - begin);
-        sizes.cubes += (end - begin) * (end - begin) * (end - begin);
+    if (nodes.empty()) return sizes;
+    // of the body's nodes alone, which lie side by side
+    const auto [first, last] = std::ranges::minmax(nodes);
+    UnionFind sets;
+    sets.start(static_cast<std::size_t>(last - first) + 1);
+    for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {
+        Index before = no_index;
+        for_each_node(elements.nodes_of(b), l, inverse_mass, [&](Index n, Index) {
+            if (before != no_index) sets.join(before - first, n - first);
+            before = n;
+        });
+    });
+    std::vector<std::size_t> width(sets.node.size());
+    for (const Index n : nodes) width[static_cast<std::size_t>(n - first)] = 1;
+    for (std::size_t n = width.size(); n-- > 0;) {
+        const auto root = static_cast<std::size_t>(sets.root(static_cast<Index>(n)));
+        if (root != n) width[root] += std::exchange(width[n], 0);
+    }
+    for (const std::size_t count : width) {
+        sizes.largest = std::max(sizes.largest, count);
+        sizes.entries += count * count;
+        sizes.cubes += count * count * count;
     }
     return sizes;
 }

@@ -1,4 +1,4 @@
-// Which elements of a body do not stand a step and are left to clusters (docs/methods/clusters.md 3).
+// What is asked of the elements that are left to clusters (docs/methods/clusters.md 2, 3).
 #pragma once
 
 #include <span>
@@ -7,29 +7,6 @@
 #include "systems/dynamics/elements/compute_element_forces.h"
 
 namespace skerry {
-
-/// What is written of each block of the body.
-struct ImplicitOutputs {
-    std::span<ElementLane> mass_share;  // of implicit elements 0: they take no mass from their nodes
-    std::span<ElementLane> modulus;     // Pa, stiffness that an implicit element is taken to have; 0: explicit
-};
-
-struct ImplicitShare {
-    Real moment = 0;        // what the clusters add to the least moment of inertia of the body, over that moment
-    bool too_many = false;  // three quarters of the volume do not stand the step: nothing is found
-};
-
-/// anew: all elements start explicit, and share their masses. more: those that are implicit stay so, shares stay, and
-/// every other that does not stand the step becomes implicit: quick, but some would do with another share.
-enum class ImplicitSearch { anew, more };
-
-/// Shares the masses of a body anew, so that every explicit element stands `step` (s) in the shape that it has, and
-/// makes implicit as few as it takes: those that need most of the masses of their nodes go first. Implicit elements
-/// have `headroom` times the stiffness that they have now. `mass_share` and `modulus` are those of the inputs.
-/// Sequential.
-ImplicitShare find_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                                     std::span<const Real> mass, Real step, Real headroom, ImplicitSearch search,
-                                     std::span<Real> stiffness_sum, const ImplicitOutputs& out);
 
 /// How many times faster than others tetrahedra may deform: `of_implicit` times those that implicit elements cover,
 /// which may turn over, too. `tetrahedra`: of each element, those that it covers.

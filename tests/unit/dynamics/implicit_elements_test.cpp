@@ -2,13 +2,16 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
+#include <limits>
 #include <random>
 
 #include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/clusters/build_clusters.h"
+#include "systems/dynamics/clusters/find_implicit_elements.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/stiffness_share.h"
 #include "tests/support/elastic_body.h"
 #include "tests/support/jittered_box.h"
 #include "tests/support/sliver_box.h"
@@ -18,6 +21,8 @@ using namespace skerry;
 namespace {
 
 using Matrix = Eigen::MatrixXd;
+
+constexpr Real anything = std::numeric_limits<Real>::infinity();  // of a moment
 
 /// A box with slivers, the implicit elements of which are found for a step that it does not stand.
 struct SliverBox {
@@ -35,10 +40,12 @@ struct SliverBox {
           stiffness_sum(body.position.size()),
           plain_step(stable_step(body.inputs(), body.blocks, body.position, body.mass, stiffness_sum).step) {
         cluster_step = {longer * plain_step};
-        share = find_implicit_elements(body.inputs(), body.blocks, body.position, body.mass, cluster_step[0], 4,
-                                       ImplicitSearch::anew, stiffness_sum,
-                                       {body.elements.mass_share, body.elements.implicit_modulus});
+        share = search().find({cluster_step[0], 4, anything});
         build();
+    }
+    ImplicitSearch search() {
+        return {body.inputs(), body.blocks,   body.position,
+                body.mass,     stiffness_sum, {body.elements.mass_share, body.elements.implicit_modulus}};
     }
     void build() {
         build_clusters(body.inputs(),
@@ -208,6 +215,138 @@ TEST_CASE("few elements are implicit but those that need the most", "[unit][clus
     // of 2,197. Giving up what is left shortest, whoever starves it, took 73 and 0.01
     CHECK(implicit < 30);
     CHECK(box.share.moment < 0.003);
+}
+
+namespace {
+
+/// The search as docs/methods/clusters.md 3 tells it, and nothing kept from one step to the next.
+class SimpleSearch {
+public:
+    SimpleSearch(SliverBox& box, Real step) : box_(box), in_(box.body.inputs()), step_(step), own_(in_.blocks()) {
+        start_mass_shares(in_, box.body.blocks, box.body.elements.mass_share);
+        LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+        for (std::size_t b = 0; b < in_.blocks(); ++b) {
+            const LaneMat3<Real8> F = deformation_of(in_, b, box.body.position);
+            const Real8 bound = frequency_squared_of(in_, b, F, box.body.mass, {}, q);
+            for (std::size_t l = 0; l < element_lanes; ++l) need_.push_back(bound[l] * step * step / (1.8 * 1.8));
+        }
+        for_each_element([&](std::size_t e) {
+            if (need_[e] > 1) this->share(e) = 0;
+        });
+        for (int round = 1;; ++round) {
+            find_steps(round % 24 == 1 || all_stand());
+            if (all_stand() && exact_) break;
+            if (all_stand()) continue;
+            if (round % 4 == 0) give_up();
+            for_each_element(
+                [&](std::size_t e) { this->share(e) *= std::clamp(step_ / own(e), Real(1) / 4, Real(4)); });
+        }
+    }
+
+private:
+    void for_each_element(auto&& visit) const {
+        for (std::size_t e = 0; e < element_lanes * in_.blocks(); ++e)
+            if (in_.volume[e / element_lanes][e % element_lanes] > 0) visit(e);
+    }
+    void for_each_node(std::size_t e, auto&& visit) const {
+        const BlockNodes of = in_.nodes_of(e / element_lanes);
+        const std::size_t l = e % element_lanes;
+        for (Index k = 0; k < of.count; ++k) {
+            const Vec3 g(of.gradient[k][0][l], of.gradient[k][1][l], of.gradient[k][2][l]);
+            if (!g.isZero(0)) visit(static_cast<std::size_t>(of.node[k][l]), g.squaredNorm());
+        }
+    }
+    Real& share(std::size_t e) { return box_.body.elements.mass_share[e / element_lanes][e % element_lanes]; }
+    Real& own(std::size_t e) { return own_[e / element_lanes][e % element_lanes]; }
+    bool all_stand() {
+        Real shortest = anything;
+        for_each_element([&](std::size_t e) { shortest = std::min(shortest, own(e)); });
+        return started_ && shortest >= step_;
+    }
+    /// sum_k S_k/m_k over the share.
+    Real trace(std::size_t e) {
+        Real sum = 0;
+        for_each_node(e, [&](std::size_t n, Real) { sum += box_.stiffness_sum[n] / box_.body.mass[n]; });
+        return share(e) > 0 ? sum / share(e) : 1;
+    }
+    void find_steps(bool exact) {
+        started_ = true;
+        exact_ = exact;
+        if (exact) {
+            element_steps(in_, box_.body.blocks, box_.body.position, box_.body.mass, box_.stiffness_sum, own_);
+            measured_ = own_;
+            trace_.assign(need_.size(), 1);
+            for_each_element([&](std::size_t e) { trace_[e] = trace(e); });
+            return;
+        }
+        std::ranges::fill(box_.stiffness_sum, Real(0));
+        for_each_element([&](std::size_t e) {
+            const std::size_t b = e / element_lanes, l = e % element_lanes;
+            Lanes<Real, element_lanes> weight;
+            store(stiffness_weight(in_, b, deformation_of(in_, b, box_.body.position)), weight);
+            for_each_node(e, [&](std::size_t n, Real size) { box_.stiffness_sum[n] += weight[l] * size; });
+        });
+        for_each_element([&](std::size_t e) {
+            own(e) = measured_[e / element_lanes][e % element_lanes] * std::sqrt(trace_[e] / trace(e));
+        });
+    }
+    void give_up() {
+        std::vector<bool> starved(box_.body.position.size()), in_cluster(starved.size());
+        std::vector<std::size_t> given;
+        for_each_element([&](std::size_t e) {
+            for_each_node(e, [&](std::size_t n, Real) {
+                if (share(e) == 0)
+                    in_cluster[n] = true;
+                else if (own(e) < step_)
+                    starved[n] = true;
+            });
+        });
+        for_each_element([&](std::size_t e) {
+            bool beside = false, inside = true;
+            for_each_node(e, [&](std::size_t n, Real) {
+                beside = beside || starved[n];
+                inside = inside && in_cluster[n];
+            });
+            if (share(e) > 0 && beside && (need_[e] >= least_need_ || inside)) given.push_back(e);
+        });
+        for (const std::size_t e : given) share(e) = 0;
+        if (given.empty()) least_need_ *= 0.7;
+    }
+
+    SliverBox& box_;
+    const ElementInputs in_;
+    Real step_;
+    std::vector<ElementLane> own_, measured_;
+    std::vector<Real> need_, trace_;
+    Real least_need_ = 1;
+    bool exact_ = false, started_ = false;
+};
+
+}  // namespace
+
+TEST_CASE("the search gives up the same elements as a simple one, however many steps were tried before",
+          "[unit][clusters]") {
+    const auto kind = GENERATE(ElementKind::linear, ElementKind::edge_node_smoothed);
+    const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
+    INFO(name_of(kind) << ", " << name_of(model));
+    SliverBox box(model, kind, 2), other(model, kind, 2);
+    ImplicitSearch search = box.search();
+    for (const Real longer : {8.0, 2.0, 4.0}) {
+        const ImplicitShare found = search.find({longer * box.plain_step, 4, anything});
+        if (found.too_many) continue;
+        SimpleSearch(other, longer * box.plain_step);
+        for (std::size_t b = 0; b < box.body.inputs().blocks(); ++b)
+            for (std::size_t l = 0; l < element_lanes; ++l) {
+                const Real share = box.body.elements.mass_share[b][l];
+                CHECK(share == Approx(other.body.elements.mass_share[b][l]).epsilon(1e-9));
+                CHECK((box.body.elements.implicit_modulus[b][l] > 0) == (share == 0));
+            }
+        CHECK(std::min(box.explicit_step(), longer * box.plain_step) == longer * box.plain_step);
+        // what adds too much to the moment is not looked for to the end, and just as much is found
+        REQUIRE(found.moment > 0);
+        CHECK(search.find({longer * box.plain_step, 4, 0.99 * found.moment}).moment > 0.99 * found.moment);
+        CHECK(search.find({longer * box.plain_step, 4, found.moment}).moment == found.moment);
+    }
 }
 
 TEST_CASE("tetrahedra have leeway that implicit elements cover", "[unit][clusters]") {

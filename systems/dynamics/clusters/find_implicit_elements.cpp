@@ -1,0 +1,286 @@
+#include "systems/dynamics/clusters/find_implicit_elements.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "systems/dynamics/clusters/implicit_elements.h"
+#include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/stiffness_share.h"
+
+namespace skerry {
+
+namespace {
+
+/// Calls visit(block, lane) for every element of the range.
+template <class Visit>
+void for_each_element(const ElementInputs& elements, Range blocks, Visit&& visit) {
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (elements.volume[b][l] > 0) visit(b, l);
+}
+
+/// Rows of the nodes of these elements, ascending.
+std::vector<Index> nodes_of(const ElementInputs& elements, Range blocks) {
+    Index last = 0, first = std::numeric_limits<Index>::max();
+    const auto for_each_node = [&](auto&& visit) {
+        for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
+            const BlockNodes of = elements.nodes_of(b);
+            for (Index k = 0; k < of.count; ++k) visit(of.node[k][l]);
+        });
+    };
+    for_each_node([&](Index n) {
+        first = std::min(first, n);
+        last = std::max(last, n);
+    });
+    std::vector<std::uint8_t> has(static_cast<std::size_t>(std::max(last - first + 1, Index(0))));
+    for_each_node([&](Index n) { has[static_cast<std::size_t>(n - first)] = 1; });
+    std::vector<Index> nodes;
+    for (std::size_t n = 0; n < has.size(); ++n)
+        if (has[n]) nodes.push_back(first + static_cast<Index>(n));
+    return nodes;
+}
+
+/// kg m^2, the least moment of inertia of these nodes of a body.
+Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, std::span<const Real> mass) {
+    Real total = 0;
+    Vec3 center = Vec3::Zero();
+    for (const Index n : nodes) {
+        total += mass[static_cast<std::size_t>(n)];
+        center += mass[static_cast<std::size_t>(n)] * position[static_cast<std::size_t>(n)];
+    }
+    center /= total;
+    Mat3 second = Mat3::Zero();
+    for (const Index n : nodes) {
+        const Vec3 x = position[static_cast<std::size_t>(n)] - center;
+        second += mass[static_cast<std::size_t>(n)] * x * x.transpose();
+    }
+    const Vec3 spread = Eigen::SelfAdjointEigenSolver<Mat3>(second, Eigen::EigenvaluesOnly).eigenvalues();
+    return spread[0] + spread[1];
+}
+
+/// kg m^2, of a rigid turn, what an implicit element adds: beta c V |omega x|^2 <= beta c V omega^2 for each axis.
+Real added_moment(Real step, Real modulus, Real volume) {
+    return 2 * inertia_of_stiffness(step) * modulus * volume;
+}
+
+constexpr Real most_volume = 0.75;  // given up
+
+}  // namespace
+
+ImplicitSearch::ImplicitSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                               std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out)
+    : elements_(elements),
+      blocks_(blocks),
+      position_(position),
+      mass_(mass),
+      stiffness_sum_(stiffness_sum),
+      out_(out),
+      nodes_(nodes_of(elements, blocks)),
+      least_moment_(least_moment(nodes_, position, mass)),
+      frequency_(out.mass_share.size()),
+      stiffness_(frequency_.size()),
+      unit_(frequency_.size()),
+      step_(frequency_.size()),
+      measured_(frequency_.size()),
+      trace_(frequency_.size()) {
+    const std::size_t count =
+        nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - nodes_.front()) + 1;  // with some between
+    if (count > 0) first_node_ = nodes_.front();
+    marks_.resize(count);
+    sum_.resize(count);
+    ratio_.resize(count);
+    list_holds();
+    start_mass_shares(elements, blocks, out.mass_share);
+    LaneQuaternion<Real8> alone{Real8{} + 1.0, {}, {}, {}}, q = alone;
+    for (std::size_t row = 0; row < frequency_.size(); ++row) {
+        const std::size_t b = row + static_cast<std::size_t>(blocks.begin);
+        const LaneMat3<Real8> F = deformation_of(elements, b, position);
+        store(frequency_squared_of(elements, b, F, mass, {}, alone), frequency_[row]);
+        store(stiffness_of(elements, b, F, q), stiffness_[row]);
+        store(stiffness_weight(elements, b, F), unit_[row]);
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (out.mass_share[row][l] > 0) unit_[row][l] /= out.mass_share[row][l];
+    }
+}
+
+Real ImplicitSearch::need(std::size_t b, std::size_t l, Real step) const {
+    return frequency_[row(b)][l] * step * step / (step_times_frequency * step_times_frequency);
+}
+
+void ImplicitSearch::list_holds() {
+    for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
+        const BlockNodes of = elements_.nodes_of(b);
+        for (Index k = 0; k < of.count; ++k)
+            for (std::size_t l = 0; l < element_lanes; ++l) {
+                const Real x = of.gradient[k][0][l], y = of.gradient[k][1][l], z = of.gradient[k][2][l];
+                const Real size = x * x + y * y + z * z;
+                if (size > 0)
+                    holds_.push_back(
+                        {of.node[k][l] - first_node_, static_cast<Index>(row(b) * element_lanes + l), size});
+            }
+    }
+}
+
+void ImplicitSearch::find_trace(std::vector<ElementLane>& trace) {
+    for (std::size_t n = 0; n < sum_.size(); ++n) {
+        const Real mass = mass_[n + static_cast<std::size_t>(first_node_)];
+        ratio_[n] = mass > 0 ? sum_[n] / mass : 0;
+    }
+    std::ranges::fill(trace, ElementLane{});
+    for (const Hold& hold : holds_) of(trace, hold.element) += ratio_[static_cast<std::size_t>(hold.node)];
+    for (std::size_t row = 0; row < trace.size(); ++row)
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const Real share = out_.mass_share[row][l];
+            trace[row][l] = share > 0 && trace[row][l] > 0 ? trace[row][l] / share : 1;
+        }
+}
+
+void ImplicitSearch::measure() {
+    element_steps(elements_, blocks_, position_, mass_, stiffness_sum_, step_);
+    measured_ = step_;
+    for (const Index n : nodes_)
+        sum_[static_cast<std::size_t>(n - first_node_)] = stiffness_sum_[static_cast<std::size_t>(n)];
+    find_trace(trace_);
+    exact_ = true;
+}
+
+void ImplicitSearch::estimate() {
+    weight_.resize(unit_.size());
+    for (std::size_t row = 0; row < unit_.size(); ++row)
+        for (std::size_t l = 0; l < element_lanes; ++l) weight_[row][l] = out_.mass_share[row][l] * unit_[row][l];
+    std::ranges::fill(sum_, Real(0));
+    for (const Hold& hold : holds_) sum_[static_cast<std::size_t>(hold.node)] += of(weight_, hold.element) * hold.size;
+    now_.resize(trace_.size());
+    find_trace(now_);
+    for (std::size_t row = 0; row < step_.size(); ++row)
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            step_[row][l] = measured_[row][l] * std::sqrt(trace_[row][l] / now_[row][l]);
+    exact_ = false;
+}
+
+void ImplicitSearch::mark(std::size_t b, std::size_t l, std::uint8_t with) {
+    const BlockNodes nodes = elements_.nodes_of(b);
+    for (Index k = 0; k < nodes.count; ++k) marks_[static_cast<std::size_t>(nodes.node[k][l] - first_node_)] |= with;
+}
+
+std::uint8_t ImplicitSearch::marks_of(std::size_t b, std::size_t l) const {
+    const BlockNodes nodes = elements_.nodes_of(b);
+    std::uint8_t any = 0, all = 0xff;
+    for (Index k = 0; k < nodes.count; ++k) {
+        const std::uint8_t marks = marks_[static_cast<std::size_t>(nodes.node[k][l] - first_node_)];
+        any |= marks;
+        all &= marks;
+    }
+    return static_cast<std::uint8_t>((any & some_starved) | (all & of_implicit));
+}
+
+void ImplicitSearch::give_up(Real step) {
+    constexpr Real less = 0.7;
+    std::ranges::fill(marks_, std::uint8_t(0));
+    for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
+        if (share(b, l) == 0)
+            mark(b, l, of_implicit);
+        else if (step_[row(b)][l] < step)
+            mark(b, l, some_starved);
+    });
+    bool gave_up = false;
+    for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
+        if (share(b, l) == 0) return;
+        const std::uint8_t marks = marks_of(b, l);
+        if (!(marks & some_starved)) return;
+        if (need(b, l, step) < least_need_ && !(marks & of_implicit)) return;
+        share(b, l) = 0;
+        gave_up = true;
+    });
+    if (!gave_up) least_need_ *= less;
+}
+
+ImplicitShare ImplicitSearch::added(const ImplicitGoal& goal) const {
+    Real volume = 0, given_up = 0, added = 0;  // m^3; kg m^2
+    for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
+        volume += elements_.volume[b][l];
+        if (share(b, l) != 0) return;
+        given_up += elements_.volume[b][l];
+        added += added_moment(goal.step, goal.headroom * stiffness_[row(b)][l], elements_.volume[b][l]);
+    });
+    return {.moment = added > 0 ? added / least_moment_ : 0, .too_many = given_up > most_volume * volume};
+}
+
+ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
+    constexpr int rounds_of_sharing = 4;  // between two rounds that give elements up
+    constexpr int rounds_of_estimates = 24;
+    constexpr Real most_change = 4;  // of a share in a round: what is hopeless is not to starve its neighbours
+    start_mass_shares(elements_, blocks_, out_.mass_share);
+    std::ranges::fill(out_.modulus, ElementLane{});
+    least_need_ = 1;
+    for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
+        if (need(b, l, goal.step) > 1) share(b, l) = 0;  // not with all the mass of its nodes to itself
+    });
+    ImplicitShare found = added(goal);
+    bool found_enough = false;
+    for (int round = 1;; ++round) {
+        // what was given up stays so: it will be no less
+        if (found.too_many || !(found.moment <= goal.most_moment)) return found;
+        if (round % rounds_of_estimates == 1 || found_enough)
+            measure();
+        else
+            estimate();
+        Real shortest = std::numeric_limits<Real>::infinity();  // s
+        for_each_element(elements_, blocks_,
+                         [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
+        found_enough = !(shortest < goal.step);
+        if (found_enough && exact_) break;
+        if (found_enough) continue;  // says the estimate
+        if (round % rounds_of_sharing == 0) {
+            give_up(goal.step);
+            found = added(goal);
+        }
+        for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
+            share(b, l) *= std::clamp(goal.step / step_[row(b)][l], 1 / most_change, most_change);
+        });
+    }
+    for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
+        if (share(b, l) == 0) out_.modulus[row(b)][l] = goal.headroom * stiffness_[row(b)][l];
+    });
+    return found;
+}
+
+ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                                    std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
+                                    const ImplicitOutputs& out) {
+    const auto first = static_cast<std::size_t>(blocks.begin);
+    std::vector<ElementLane> step(out.mass_share.size());
+    // what is given up leaves its masses to others
+    for (bool gave_up = true; gave_up;) {
+        element_steps(elements, blocks, position, mass, stiffness_sum, step);
+        gave_up = false;
+        Real volume = 0, implicit = 0;  // m^3
+        for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
+            Real& share = out.mass_share[b - first][l];
+            if (step[b - first][l] < goal.step) {
+                share = 0;
+                gave_up = true;
+            }
+            volume += elements.volume[b][l];
+            if (share == 0) implicit += elements.volume[b][l];
+        });
+        if (implicit > most_volume * volume) return {.too_many = true};
+    }
+    Real added = 0;
+    LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+    for (auto b = first; b < static_cast<std::size_t>(blocks.end); ++b) {
+        const Real8 stiffness = stiffness_of(elements, b, deformation_of(elements, b, position), q);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            if (!(elements.volume[b][l] > 0) || out.mass_share[b - first][l] != 0) continue;
+            Real& modulus = out.modulus[b - first][l];
+            if (!(modulus > stiffness[l])) modulus = goal.headroom * stiffness[l];
+            added += added_moment(goal.step, modulus, elements.volume[b][l]);
+        }
+    }
+    return {.moment = added > 0 ? added / least_moment(nodes_of(elements, blocks), position, mass) : 0};
+}
+
+}  // namespace skerry
