@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs a scene of profile_work_precision with MuJoCo's flex: mujoco_peer.py SCENE.json RESULT.json --step S [options].
-The only file that knows MuJoCo.
+"""Runs a scene of profile_work_precision or profile_stiff_peers with MuJoCo's flex: mujoco_peer.py SCENE.json
+RESULT.json --step S [options]. The only file that knows MuJoCo.
 
 The bodies are flexes of the same tetrahedra with the masses of the scene; MuJoCo's elastic law is that of Saint Venant
-and Kirchhoff, which is ours for small strains. Its contacts are springs by design: their time constant is set to twice
-the step, the least that MuJoCo recommends."""
+and Kirchhoff, which is ours for small strains, or neo-Hooke's where asked. Its contacts are springs by design: their
+time constant is set to twice the step, the least that MuJoCo recommends, unless its own are asked for."""
 import argparse
 import json
 import math
@@ -21,11 +21,18 @@ def text(values):
 
 def model_of(scene, options):
     material = scene["material"]
-    contact = (f'solref="{2 * options.step:.17g} 1" solimp="0.9999 0.9999 0.001 0.5 2" '
-               f'friction="{material["friction"]:.17g}" condim="3" '
-               f'margin="0"')
+    contact = f'friction="{material["friction"]:.17g}" condim="3" margin="0"'
+    if options.solref or options.contact == "stiff":
+        contact += f' solref="{options.solref or 2 * options.step:.17g} 1"'
+    if options.contact == "stiff":
+        contact += ' solimp="0.9999 0.9999 0.001 0.5 2"'
     flexes = []
     for b, body in enumerate(scene["bodies"]):
+        if "sphere" in body:
+            flexes.append(f'<body name="s{b}" pos="{text(body["nodes"][0])}"><freejoint/>'
+                          f'<geom type="sphere" size="{body["sphere"]:.17g}" mass="{sum(body["mass"]):.17g}" '
+                          f'{contact}/></body>')
+            continue
         pins = f'<pin id="{" ".join(map(str, body["fixed"]))}"/>' if body["fixed"] else ""
         flexes.append(
             f'<flexcomp name="b{b}" type="direct" dim="3" mass="{sum(body["mass"]):.17g}" '
@@ -40,11 +47,14 @@ def model_of(scene, options):
         place = np.array(plane["point"]) + scene["contact_distance"] / 2 * np.array(plane["normal"])
         planes.append(f'<geom type="plane" size="5 5 1" pos="{text(place)}" zaxis="{text(plane["normal"])}" '
                       f'{contact}/>')
-    return mujoco.MjModel.from_xml_string(
-        f'<mujoco><option timestep="{options.step:.17g}" integrator="{options.integrator}" cone="elliptic" '
-        f'impratio="{options.impratio}" '
-        f'iterations="{options.iterations}" tolerance="1e-10" gravity="{text(scene["gravity"][0][1:])}"/>'
-        f'<size memory="200M"/><worldbody>{"".join(planes)}{"".join(flexes)}</worldbody></mujoco>')
+    spec = mujoco.MjSpec.from_string(
+        f'<mujoco><option timestep="{options.step:.17g}" integrator="{options.integrator}" cone="{options.cone}" '
+        f'impratio="{options.impratio}" iterations="{options.iterations}" tolerance="{options.tolerance}" '
+        f'gravity="{text(scene["gravity"][0][1:])}"/>'
+        f'<size memory="1G"/><worldbody>{"".join(planes)}{"".join(flexes)}</worldbody></mujoco>')
+    for flex in spec.flexes:
+        flex.elastic3d = 1 if options.law == "neo_hookean" else 0
+    return spec.compile()
 
 
 def gravity_at(keys, now):
@@ -52,14 +62,61 @@ def gravity_at(keys, now):
     return [np.interp(now, keys[:, 0], keys[:, 1 + c]) for c in range(3)]
 
 
-def node_bodies(model, scene):
-    """For each node of the scene the body that carries it, or -1 where it is held."""
-    carriers = []
-    for b, body in enumerate(scene["bodies"]):
-        first, count = model.flex_vertadr[b], model.flex_vertnum[b]
+class Soft:
+    """A body of the scene that is a flex: the rows of its nodes and of their freedoms."""
+
+    def __init__(self, model, body, flex):
+        self.first, count = model.flex_vertadr[flex], model.flex_vertnum[flex]
         assert count == len(body["nodes"])
-        carriers.append([model.flex_vertbodyid[first + n] for n in range(count)])
-    return np.concatenate(carriers)
+        carrier = model.flex_vertbodyid[self.first:self.first + count]
+        self.free = model.body_dofnum[carrier] == 3
+        self.dofs = model.body_dofadr[carrier[self.free]][:, None] + np.arange(3)
+        model.body_mass[carrier[self.free]] = np.array(body["mass"])[self.free]
+        self.start = np.array(body["velocity"], float)
+
+    def set_velocity(self, data):
+        data.qvel[self.dofs] = self.start[self.free]
+
+    def positions(self, data):
+        return data.flexvert_xpos[self.first:self.first + len(self.free)]
+
+    def velocities(self, data):
+        moving = np.zeros((len(self.free), 3))
+        moving[self.free] = data.qvel[self.dofs]
+        return moving
+
+
+class Ball:
+    """A body of the scene that is a rigid sphere, which its nodes draw; at rest when it starts."""
+
+    def __init__(self, model, body, name):
+        self.row = model.body(name).id
+        self.dof = model.body_dofadr[self.row]
+        self.arms = np.array(body["nodes"], float) - body["nodes"][0]
+
+    def set_velocity(self, data):
+        data.qvel[self.dof:self.dof + 6] = 0
+
+    def turned(self, data):
+        return self.arms @ data.xmat[self.row].reshape(3, 3).T
+
+    def positions(self, data):
+        return data.xpos[self.row] + self.turned(data)
+
+    def velocities(self, data):
+        spin = data.xmat[self.row].reshape(3, 3) @ data.qvel[self.dof + 3:self.dof + 6]
+        return data.qvel[self.dof:self.dof + 3] + np.cross(spin, self.turned(data))
+
+
+def bodies_of(model, scene):
+    bodies, flexes = [], 0
+    for b, body in enumerate(scene["bodies"]):
+        if "sphere" in body:
+            bodies.append(Ball(model, body, f"s{b}"))
+        else:
+            bodies.append(Soft(model, body, flexes))
+            flexes += 1
+    return bodies
 
 
 def run(scene, options):
@@ -69,14 +126,10 @@ def run(scene, options):
     options.step = interval / steps
     model = model_of(scene, options)
     data = mujoco.MjData(model)
-    carrier = node_bodies(model, scene)
-    mass = np.concatenate([body["mass"] for body in scene["bodies"]])
-    velocity = np.concatenate([np.array(body["velocity"], float) for body in scene["bodies"]])
-    free = model.body_dofnum[carrier] == 3
-    dofs = model.body_dofadr[carrier[free]][:, None] + np.arange(3)
-    model.body_mass[carrier[free]] = mass[free]
+    bodies = bodies_of(model, scene)
     mujoco.mj_setConst(model, data)
-    data.qvel[dofs] = velocity[free]
+    for body in bodies:
+        body.set_velocity(data)
     mujoco.mj_forward(model, data)
     result = {"finished": True, "step": options.step, "steps": 0, "positions": [], "velocities": []}
     seconds = 0.0
@@ -91,13 +144,11 @@ def run(scene, options):
                 break
         seconds += time.thread_time() - start
         result["steps"] += steps
-        moving = np.zeros_like(velocity)
-        moving[free] = data.qvel[dofs]
         # positions of vertices are those of the last evaluation; the state itself is newer by a step
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_flex(model, data)
-        place = data.flexvert_xpos
+        place = np.concatenate([body.positions(data) for body in bodies])
         # MuJoCo starts anew from rest after one of these
         warned = any(data.warning[int(w)].number for w in (mujoco.mjtWarning.mjWARN_BADQPOS,
                                                            mujoco.mjtWarning.mjWARN_BADQVEL,
@@ -106,7 +157,7 @@ def run(scene, options):
             result["finished"] = False
             break
         result["positions"].append(np.ravel(place).tolist())
-        result["velocities"].append(np.ravel(moving).tolist())
+        result["velocities"].append(np.concatenate([np.ravel(body.velocities(data)) for body in bodies]).tolist())
     result["seconds"] = seconds
     return result
 
@@ -118,6 +169,12 @@ def main():
     parser.add_argument("--step", type=float, required=True)
     parser.add_argument("--integrator", default="Euler")
     parser.add_argument("--impratio", type=float, default=1)
+    parser.add_argument("--cone", default="elliptic")
+    parser.add_argument("--contact", choices=["stiff", "own"], default="stiff",
+                        help="as stiff as MuJoCo recommends, or softness as it has it by itself")
+    parser.add_argument("--solref", type=float, default=0, help="time constant of contacts, s")
+    parser.add_argument("--law", choices=["own", "neo_hookean"], default="own")
+    parser.add_argument("--tolerance", type=float, default=1e-10)
     parser.add_argument("--iterations", type=int, default=100)
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--cap", type=float, default=60)

@@ -29,6 +29,15 @@ bool works(const std::string& command) {
 
 }  // namespace
 
+bool has_module(const std::string& python, const std::string& module) {
+    return works(in_quotes(python) + " -c 'import " + module + "'");
+}
+
+std::string script_command(const std::string& python, const std::string& script) {
+    return in_quotes(python) + " " +
+           in_quotes(std::filesystem::path(SKERRY_PROFILING_FOLDER) / "work_precision" / script);
+}
+
 std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::string& python) {
     std::vector<Peer> peers;
     const auto bullet = [&](const char* program, const char* variant, const char* options, bool explicit_step) {
@@ -44,14 +53,11 @@ std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::s
     bullet("work_precision_bullet_double", "explicit double", "", true);
     bullet("work_precision_bullet", "explicit single", "", true);
     bullet("work_precision_bullet_double", "implicit double", " --implicit --projection", false);
-    const std::string mujoco =
-        in_quotes(python) + " " +
-        in_quotes(std::filesystem::path(SKERRY_PROFILING_FOLDER) / "work_precision/mujoco_peer.py");
-    if (works(in_quotes(python) + " -c 'import mujoco'"))
+    if (has_module(python, "mujoco"))
         for (const std::string integrator : {"Euler", "RK4", "discrete"})
             peers.push_back({.engine = "MuJoCo",
                              .variant = integrator,
-                             .command = mujoco + " --integrator " + integrator,
+                             .command = script_command(python, "mujoco_peer.py") + " --integrator " + integrator,
                              .explicit_step = integrator != "discrete",
                              .explicit_damping = integrator != "discrete"});
     return peers;

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include "profiling/measure.h"
 #include "profiling/work_precision/runs.h"
@@ -13,7 +15,19 @@ struct Built {
     std::vector<BodyHandle> bodies;
 };
 
-Built build(const PrecisionScene& scene, Settings settings, Real step) {
+/// A rigid sphere of the mass of its nodes.
+BodyHandle add_sphere(World& world, const PrecisionScene& scene, const PrecisionBody& body) {
+    MaterialSettings material = scene.material;
+    const Real volume = 4 * std::numbers::pi / 3 * std::pow(body.sphere, 3);
+    material.density = std::accumulate(body.mass.begin(), body.mass.end(), 0.0) / volume;
+    return world.add_body(Sphere{body.sphere}, {.material = world.add_material(material),
+                                                .position = body.mesh.nodes[0],
+                                                .contact_distance = scene.contact_distance,
+                                                .dynamics = BodyDynamics::rigid});
+}
+
+Built build(const PrecisionScene& scene, const SkerryVariant& variant, Real step) {
+    Settings settings = variant.settings;
     settings.gravity = scene.gravity.front().gravity;
     settings.backend = Backend::serial;
     settings.sleep = false;  // as in the peers
@@ -22,8 +36,14 @@ Built build(const PrecisionScene& scene, Settings settings, Real step) {
     World& world = built.world;
     const MaterialHandle material = world.add_material(scene.material);
     for (const PrecisionBody& body : scene.bodies) {
-        const BodyHandle handle = world.add_body(
-            body.mesh, {.material = material, .contact_distance = scene.contact_distance, .element = scene.element});
+        if (body.sphere > 0) {
+            built.bodies.push_back(add_sphere(world, scene, body));
+            continue;
+        }
+        const BodyHandle handle = world.add_body(body.mesh, {.material = material,
+                                                             .contact_distance = scene.contact_distance,
+                                                             .dynamics = variant.dynamics,
+                                                             .element = scene.element});
         world.set_velocities(handle, body.velocity);
         if (!body.fixed.empty()) world.attach(handle, body.fixed);
         built.bodies.push_back(handle);
@@ -60,8 +80,8 @@ void sample(const Built& built, Record& record) {
 /// While gravity changes it is set this often, s: as often as any step that is compared.
 constexpr Real gravity_interval = 2e-3;
 
-Record run_once(const PrecisionScene& scene, const Settings& settings, Real step, double cap) {
-    Built built = build(scene, settings, step);
+Record run_once(const PrecisionScene& scene, const SkerryVariant& variant, Real step, double cap) {
+    Built built = build(scene, variant, step);
     Record record;
     record.finished = true;
     const Real interval = scene.seconds / scene.samples;
@@ -101,10 +121,9 @@ Real stable_step_of(const PrecisionScene& scene) {
 }
 
 Record run_skerry(const PrecisionScene& scene, const SkerryVariant& variant, Real step, int repeat, double cap) {
-    Record record = run_once(scene, variant.settings, step, cap);
+    Record record = run_once(scene, variant, step, cap);
     std::vector<double> seconds{record.seconds};
-    for (int r = 1; r < repeat && record.finished; ++r)
-        seconds.push_back(run_once(scene, variant.settings, step, cap).seconds);
+    for (int r = 1; r < repeat && record.finished; ++r) seconds.push_back(run_once(scene, variant, step, cap).seconds);
     record.seconds = median(std::move(seconds));
     return record;
 }

@@ -13,6 +13,7 @@ namespace skerry::profiling {
 struct SkerryVariant {
     std::string name;
     Settings settings{};  // step and gravity are set from the scene
+    BodyDynamics dynamics = BodyDynamics::explicit_elastic;
 };
 
 /// The variants of the time axis: integrators, and tolerances of the contact solver. The last is the most precise;
@@ -37,6 +38,12 @@ struct Peer {
 
 /// Those whose programs are there. `programs` is the folder of the programs that were built; `python` starts MuJoCo's.
 std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::string& python);
+
+/// Whether `python` can import the module.
+bool has_module(const std::string& python, const std::string& module);
+
+/// The command of a script that is here in profiling/work_precision.
+std::string script_command(const std::string& python, const std::string& script);
 
 /// Runs the scene in a process of its own, which may take `cap` CPU seconds a run. `folder` holds what is handed over.
 Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int repeat, double cap,

@@ -17,6 +17,7 @@ struct PrecisionBody {
     std::vector<Vec3> velocity;  // m/s, by node
     std::vector<Index> fixed;    // nodes held where they are
     std::vector<Real> mass;      // kg, by node: a quarter of each tetrahedron
+    Real sphere = 0;             // m, radius of a rigid sphere, which the mesh draws (its first node is the middle)
 };
 
 struct PrecisionPlane {

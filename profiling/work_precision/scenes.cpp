@@ -261,6 +261,7 @@ void write_scene(const PrecisionScene& scene, const std::filesystem::path& file)
         json["planes"].push_back({{"normal", list(plane.normal)}, {"point", list(plane.point)}});
     for (const PrecisionBody& body : scene.bodies) {
         Json one{{"nodes", Json::array()}, {"velocity", Json::array()}, {"fixed", body.fixed}, {"mass", body.mass}};
+        if (body.sphere > 0) one["sphere"] = body.sphere;
         for (const Vec3& node : body.mesh.nodes) one["nodes"].push_back(list(node));
         for (const Vec3& velocity : body.velocity) one["velocity"].push_back(list(velocity));
         one["tetrahedra"] = body.mesh.tetrahedra;
