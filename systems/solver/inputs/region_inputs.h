@@ -24,6 +24,9 @@ struct RigidInputs {
     std::span<const Real> mass{};
     RigidSpins spins{};
     std::span<const Vec3> momentum{}, kick{};
+    std::span<const Vec3> moments{};
+    std::span<const Mat3> rotation{};
+    std::span<const Index> body{}, core_nodes{};  // row of BodyTable; BodyTable
     // AttachmentTable, or no_index; empty: none is held. What deforms in a frame that is held has rows that stand still
     // for that, and its nodes all of their velocity (docs/methods/implicit_bodies.md 7)
     std::span<const Index> holder{};
@@ -32,9 +35,17 @@ struct RigidInputs {
     /// 1/kg
     Real inverse_mass(std::size_t r) const { return holder.empty() || holder[r] == no_index ? 1 / mass[r] : 0; }
     Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
+    bool is_capsule(Index r) const {
+        return !core_nodes.empty() && core_nodes[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])] == 2;
+    }
+    /// m, of one that is round
+    Real radius(Index r) const {
+        return nodes.round_radius[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
+    }
 
     static RigidInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                             const RigidBodyTable& rigid) {
+        const bool any = !binder.read(rigid.mass).empty();
         return {.nodes = RigidNodes::bind(binder, node, body, rigid),
                 .position = binder.read(node.position),
                 .center = binder.read(rigid.center),
@@ -42,6 +53,10 @@ struct RigidInputs {
                 .spins = RigidSpins::bind(binder, rigid),
                 .momentum = binder.read(rigid.momentum),
                 .kick = binder.read(rigid.kick),
+                .moments = binder.read(rigid.moments),
+                .rotation = binder.read(rigid.rotation),
+                .body = binder.read(rigid.body),
+                .core_nodes = binder.read_if(any, body.core_nodes),
                 .holder = binder.read(rigid.holder)};
     }
 };

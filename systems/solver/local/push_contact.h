@@ -35,6 +35,14 @@ inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSet
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
+/// The same where a turn takes `loss` (m/s, below 0) in the step, which velocities do not know of: that is given back,
+/// as far as the gap does not have it.
+inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
+    if (gap < -slop) return bias + loss;
+    const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;
+    return left < 0 ? std::max(left, loss) : left;
+}
+
 /// The Gauss-Seidel step of one contact on the pseudo velocities; `apply` moves nodes by an impulse. Returns D
 /// change^2.
 template <class Apply>

@@ -7,6 +7,7 @@
 #include "systems/solver/operators/freedom_operator.h"
 #include "systems/solver/regions/joint_rows.h"
 #include "systems/solver/regions/region_blocks.h"
+#include "systems/solver/regions/turned_axes.h"
 
 namespace skerry {
 namespace {
@@ -386,51 +387,92 @@ private:
     std::span<Vec4> impulse_;
 };
 
-/// As solve_push; memory.velocity is that of the push afterwards.
-bool push(const RegionStage& stage, const FreedomRegion& region, const FreedomOperator& op) {
-    const SolverSettings& settings = stage.settings;
-    const std::span<const Real> gap = stage.inputs.gap;
-    const Real slop = push_slop(stage.inputs.gravity, stage.h);
-    if (std::none_of(region.row.begin(), region.row.end(),
-                     [&](Index i) { return gap[static_cast<std::size_t>(i)] < -slop; }))
-        return false;
-    const auto count = static_cast<Index>(region.row.size());
-    const PushMemory memory = push_memory(stage, region.base, region.row.size(), region.memory.scratch);
-    std::ranges::fill(memory.velocity, Vec4::Zero());
-    Real asked = 0;  // J
-    for (Index i = 0; i < count; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const LumpedContact& contact = region.memory.contact[at];
-        const Real along =
-            contact.normal.dot(contact.offset + op.velocity_at(i, region.memory.velocity.data())) - contact.bias;
-        memory.impulse[at] = 0;
-        memory.bias[at] = push_bias(along, gap[static_cast<std::size_t>(region.row[at])], slop, settings,
-                                    stage.inputs.gravity, stage.h);
-        const Real approach = std::min(memory.bias[at], Real(0));
-        const Real mobility = region.memory.part[at].along_normal;
-        if (mobility > 0) asked += approach * approach / mobility;
+/// The push of a region.
+class Push {
+public:
+    Push(const RegionStage& stage, const FreedomRegion& region, const FreedomOperator& op)
+        : stage_(stage),
+          region_(region),
+          op_(op),
+          slop_(push_slop(stage.inputs.gravity, stage.h)),
+          axes_(stage, region.rigid, region.memory.velocity),
+          memory_(push_memory(stage, region.base, region.row.size(), region.memory.scratch)) {}
+
+    /// As solve_push; memory.velocity is that of the push afterwards.
+    bool run() {
+        const bool pressed = std::ranges::any_of(region_.row, [&](Index i) { return gap(i) < -slop_; });
+        if (!pressed && !axes_.any()) return false;
+        std::ranges::fill(memory_.velocity, Vec4::Zero());
+        std::ranges::fill(memory_.impulse, 0);
+        const Push::Asked asked = ask();
+        if (!pressed && !asked.by_turns) return false;
+        const PushedJoints joints(region_, op_);
+        sweep(joints, asked.size);
+        // what the push turns turns them, too
+        for (int round = 0; round < turn_rounds && axes_.any(); ++round) sweep(joints, ask().size);
+        return true;
     }
-    const Real small = region.tolerance * region.tolerance * asked;
-    const PushedJoints joints(region, op);
-    for (Index iteration = 1; iteration <= settings.max_iterations; ++iteration) {
-        Real size = joints.sweep(memory.velocity);
-        for (Index i = 0; i < count; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            const Real mobility = region.memory.part[at].along_normal;
-            if (!(mobility > 0)) continue;
-            const Vec4& normal = region.memory.contact[at].normal;
-            const Real along = memory.bias[at] + normal.dot(op.velocity_at(i, memory.velocity.data()));
-            const Real next = std::max(Real(0), memory.impulse[at] - along / mobility);
-            const Real change = next - memory.impulse[at];
-            if (change == 0) continue;
-            op.push(i, change * normal, memory.velocity.data());
-            memory.impulse[at] = next;
-            size += mobility * change * change;
+
+private:
+    static constexpr int turn_rounds = 2;
+
+    struct Asked {
+        Real size = 0;  // J
+        bool by_turns = false;
+    };
+
+    Real gap(Index row) const { return stage_.inputs.gap[static_cast<std::size_t>(row)]; }
+
+    Asked ask() {
+        Asked asked;
+        for (std::size_t at = 0; at < region_.row.size(); ++at) {
+            const LumpedContact& contact = region_.memory.contact[at];
+            const RigidPart& part = region_.memory.part[at];
+            const Real along = contact.normal.dot(contact.offset + op_.velocity_at(static_cast<Index>(at),
+                                                                                   region_.memory.velocity.data())) -
+                               contact.bias;
+            const Real depth = gap(region_.row[at]);
+            const Real loss = axes_.any() ? axes_.loss(region_.row[at], part, memory_.velocity) : 0;
+            memory_.bias[at] = push_bias(along, depth, slop_, stage_.settings, stage_.inputs.gravity, stage_.h);
+            if (loss < 0) memory_.bias[at] = push_bias_turned(memory_.bias[at], along, depth, slop_, loss, stage_.h);
+            asked.by_turns |= loss < 0 && memory_.bias[at] < 0;
+            const Real approach = std::min(memory_.bias[at], Real(0));
+            if (part.along_normal > 0) asked.size += approach * approach / part.along_normal;
         }
-        if (size <= small && !settings.fixed_iterations) break;
+        return asked;
     }
-    return true;
-}
+
+    void sweep(const PushedJoints& joints, Real asked) {
+        const Real small = region_.tolerance * region_.tolerance * asked;
+        for (Index iteration = 1; iteration <= stage_.settings.max_iterations; ++iteration) {
+            Real size = joints.sweep(memory_.velocity);
+            for (std::size_t at = 0; at < region_.row.size(); ++at) size += push_at(at);
+            if (size <= small && !stage_.settings.fixed_iterations) break;
+        }
+    }
+
+    /// Returns what has changed, J.
+    Real push_at(std::size_t at) {
+        const auto i = static_cast<Index>(at);
+        const Real mobility = region_.memory.part[at].along_normal;
+        if (!(mobility > 0)) return 0;
+        const Vec4& normal = region_.memory.contact[at].normal;
+        const Real along = memory_.bias[at] + normal.dot(op_.velocity_at(i, memory_.velocity.data()));
+        const Real next = std::max(Real(0), memory_.impulse[at] - along / mobility);
+        const Real change = next - memory_.impulse[at];
+        if (change == 0) return 0;
+        op_.push(i, change * normal, memory_.velocity.data());
+        memory_.impulse[at] = next;
+        return mobility * change * change;
+    }
+
+    const RegionStage& stage_;
+    const FreedomRegion& region_;
+    const FreedomOperator& op_;
+    const Real slop_;
+    const TurnedAxes axes_;
+    const PushMemory memory_;
+};
 
 /// J: as push_work, with what forces gave rigid bodies in this step.
 Real push_work_of(const RegionStage& stage, const FreedomRegion& region, std::span<const Vec4> push_velocity) {
@@ -453,7 +495,7 @@ Real push_work_of(const RegionStage& stage, const FreedomRegion& region, std::sp
 
 void push_out(const RegionStage& stage, const FreedomRegion& region, const FreedomOperator& op,
               RegionOutcome& outcome) {
-    if (!push(stage, region, op)) return;
+    if (!Push(stage, region, op).run()) return;
     const std::span<const Vec4> velocity = region.memory.scratch;
     for (std::size_t k = 0; k < region.rigid.size(); ++k) {
         const auto r = static_cast<std::size_t>(region.rigid[k]);
