@@ -2,102 +2,18 @@
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <numbers>
-#include <numeric>
 
-#include "engine/world/world_state.h"
 #include "skerry/query.h"
 #include "systems/geometry/closest_points.h"
 #include "systems/geometry/rotation.h"
+#include "tests/support/capsules.h"
 #include "tests/support/same_bits.h"
-#include "tests/support/worlds.h"
 
 using namespace skerry;
 using namespace skerry::test;
+using namespace skerry::test::capsules;
 
 namespace {
-
-constexpr Real radius = 0.1, length = 0.4, kept = 0.001, density = 1000, g = standard_gravity, pi = std::numbers::pi;
-const Real ball = 4 * pi / 3 * density * radius * radius * radius, shaft = pi * density * radius * radius * length,
-           mass = ball + shaft, axial = ball * 0.4 * radius * radius + shaft * radius * radius / 2,
-           // either end by itself: 83/320 m R^2 about its centre of mass, 3/8 R beyond the end of the axis
-    across = ball * (83.0 / 320 * radius * radius + std::pow(length / 2 + 3.0 / 8 * radius, 2)) +
-             shaft * (radius * radius / 4 + length * length / 12);
-// rotations of the axis from z
-const Vec3 along_x(0, pi / 2, 0), along_y(-pi / 2, 0, 0);
-
-struct Capsules {
-    World world;
-    MaterialHandle material;
-
-    explicit Capsules(const Settings& settings, Real mu = 0.5, Real restitution = 0)
-        : world(settings),
-          material(world.add_material(
-              {.young_modulus = 1e6, .density = density, .friction = mu, .restitution = restitution})) {}
-
-    BodySettings placed(const Vec3& position, const Vec3& rotation, const Vec3& velocity = Vec3::Zero(),
-                        const Vec3& spin = Vec3::Zero(), const std::string& name = "") const {
-        return {.material = material,
-                .position = position,
-                .rotation = rotation,
-                .velocity = velocity,
-                .angular_velocity = spin,
-                .contact_distance = kept,
-                .dynamics = BodyDynamics::rigid,
-                .name = name};
-    }
-    BodyHandle add(const Vec3& position, const Vec3& rotation, const Vec3& velocity = Vec3::Zero(),
-                   const Vec3& spin = Vec3::Zero(), const std::string& name = "") {
-        return world.add_body(Capsule{radius, length}, placed(position, rotation, velocity, spin, name));
-    }
-    std::size_t row(BodyHandle body) const {
-        const Model& model = WorldAccess::state_of(world).model;
-        return static_cast<std::size_t>(model.bodies.rigid[model.row(body, "test")].begin);
-    }
-    Vec3 velocity(BodyHandle body) const {
-        const RigidBodyTable& table = WorldAccess::state_of(world).model.rigid_bodies;
-        return table.momentum[row(body)] / table.mass[row(body)];
-    }
-    Vec3 spin(BodyHandle body) const {
-        const RigidBodyTable& table = WorldAccess::state_of(world).model.rigid_bodies;
-        const std::size_t r = row(body);
-        return table.rotation[r] *
-               (table.rotation[r].transpose() * table.angular_momentum[r]).cwiseQuotient(table.moments[r]);
-    }
-    Vec3 middle(BodyHandle body) const { return (end(body, 0) + end(body, 1)) / 2; }
-    Vec3 end(BodyHandle body, std::size_t k) const { return world.positions(body)[k]; }
-    /// m, between two axes.
-    Real apart(BodyHandle a, BodyHandle b) const {
-        return std::sqrt(closest_points_of_segments(end(a, 0), end(a, 1), end(b, 0), end(b, 1)).distance_squared);
-    }
-};
-
-Settings steps_of(Real h, const Vec3& gravity = {0, 0, -g}) {
-    Settings settings = accurate(gravity, 1e-10);
-    settings.step_size = h;
-    return settings;
-}
-
-/// What a capsule lies on, its upper side at z = 0; m kept to it.
-enum Floor { plane, box, mesh_collider, rigid_slab };
-
-Real add_floor(Capsules& c, Floor floor) {
-    const Mesh slab = mesh::box({4, 1, 0.2}, {16, 4, 1});
-    if (floor == plane) c.world.add_collider(Plane{});
-    if (floor == box) c.world.add_collider(Box{{4, 1, 0.2}}, {.position = {0, 0, -0.1}});
-    if (floor == mesh_collider)
-        c.world.add_collider(mesh::boundary(slab), {.position = {0, 0, -0.1}, .contact_distance = kept});
-    if (floor == rigid_slab) {
-        const BodyHandle held = c.world.add_body(slab, {.material = c.material,
-                                                        .position = {0, 0, -0.1},
-                                                        .contact_distance = kept,
-                                                        .dynamics = BodyDynamics::rigid});
-        std::vector<Index> all(slab.nodes.size());
-        std::iota(all.begin(), all.end(), 0);
-        c.world.attach(held, all);
-    }
-    return floor == plane || floor == box ? kept / 2 : kept;
-}
 
 /// m, of the axis to the nearest triangle of a surface: of its ends, and where edges pass it.
 Real distance_to_faces(const Vec3& a, const Vec3& b, std::span<const Vec3> x,
@@ -374,28 +290,6 @@ TEST_CASE("a fast capsule goes through nothing, whatever way it turns", "[scene]
         }
         CHECK(c.world.report().max_penetration < 1e-9);
         CHECK(c.world.report().crossed == 0);
-    }
-}
-
-TEST_CASE("a capsule that spins on its end is not turned into what it spins on", "[scene]") {
-    for (const Floor floor : {plane, box, mesh_collider, rigid_slab}) {
-        CAPTURE(floor);
-        Capsules c(steps_of(2e-3, Vec3::Zero()), 0);
-        // nearly flat, its momentum turns the lower end about an axis that leans over it: down, as seen from the middle
-        constexpr Real tilt = 0.1;
-        const Vec3 axis(std::cos(tilt), 0, -std::sin(tilt)), turn = 50 / std::sqrt(2.0) * Vec3(-1, 0, 1);
-        const Vec3 spin = turn + (across / axial - 1) * turn.dot(axis) * axis;
-        const Real end = radius + add_floor(c, floor);
-        const BodyHandle body =
-            c.add({0, 0.03, end + length / 2 * std::sin(tilt)}, {0, pi / 2 + tilt, 0}, Vec3::Zero(), spin);
-        Real lowest = end;
-        for (int step = 0; step < 40; ++step) {
-            REQUIRE(c.world.advance(2e-3).ok());
-            lowest = std::min({lowest, c.end(body, 0).z(), c.end(body, 1).z()});
-        }
-        CHECK(c.middle(body).z() > end + length / 2 * std::sin(tilt));
-        CHECK(c.world.report().crossings_found == 0);
-        CHECK(lowest > end - 1e-6);
     }
 }
 

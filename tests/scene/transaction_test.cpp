@@ -122,10 +122,13 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     CHECK(tries.fastest == 0);
     CHECK(world.state_hash() == before);
 
-    velocity[0].x() *= 200;  // also in a 128th of the step
+    velocity[0].x() *= 1600;  // also in a 1024th of the step
     world.set_velocities(body, velocity);
     tries = {};
-    CHECK(try_step(state, {.h = plan.h / 128, .steps = 2, .stable = plan.h}, tries) == StepOutcome::refused);
+    CHECK(try_step(state, {.h = plan.h / 128, .steps = 2, .stable = plan.h}, tries) == StepOutcome::again_shorter);
+    CHECK(tries.at_most() == Approx(plan.h / 512));  // not below a quarter at once
+    tries = {};
+    CHECK(try_step(state, {.h = plan.h / 1024, .steps = 2, .stable = plan.h}, tries) == StepOutcome::refused);
     CHECK(state.scratch.findings.verdict.fault == StepFault::too_fast);
 }
 

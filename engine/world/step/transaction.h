@@ -21,7 +21,8 @@ struct WorldState;
 ///
 ///     try -- good ---------------------------------------------------------------> committed
 ///      |---- features cross, fewer than 4 tries of this length ------------------> again_with_crossings --> try
-///      |---- features cross, or a body is too fast; h > stable step / 128 -------> again_shorter ---------> try
+///      |---- features cross; h > stable step / 128 ------------------------------> again_shorter ---------> try
+///      |---- a body is too fast; h > stable step / 1024 -------------------------> again_shorter ---------> try
 ///      |---- an element turns inside out; h > stable step / 4 -------------------> again_shorter ---------> try
 ///      |---- features cross at the shortest length ------------------------------> again_letting_through -> try
 ///      '---- not finite, too far, too fast at the shortest length ---------------> refused

@@ -1,38 +1,6 @@
 #include "systems/dynamics/rigid/rigid_motion.h"
 
-#include <cmath>
-
 namespace skerry {
-
-namespace {
-
-/// A turn of the body about one of its own axes at the rate that its momentum about it gives: that momentum and, seen
-/// from the world, all of it stay.
-void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat3& rotation, Vec3& own_momentum) {
-    const Real angle = seconds * own_momentum[axis] / moments[axis];
-    if (angle == 0) return;
-    const Real cosine = std::cos(angle), sine = std::sin(angle);
-    const Eigen::Index first = (axis + 1) % 3, second = (axis + 2) % 3;
-    const Vec3 a = rotation.col(first), b = rotation.col(second);
-    rotation.col(first) = cosine * a + sine * b;
-    rotation.col(second) = cosine * b - sine * a;
-    const Real p = own_momentum[first], q = own_momentum[second];
-    own_momentum[first] = cosine * p + sine * q;
-    own_momentum[second] = cosine * q - sine * p;
-}
-
-}  // namespace
-
-Mat3 turned_freely(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, Real seconds) {
-    Mat3 turned = rotation;
-    Vec3 own = rotation.transpose() * angular_momentum;
-    turn_about(0, moments, seconds / 2, turned, own);
-    turn_about(1, moments, seconds / 2, turned, own);
-    turn_about(2, moments, seconds, turned, own);
-    turn_about(1, moments, seconds / 2, turned, own);
-    turn_about(0, moments, seconds / 2, turned, own);
-    return turned;
-}
 
 Mat3 without_strain(const Mat3& rotation) {
     // one step of Newton's: what is wrong by rounding is wrong by its square then

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "components/types.h"
+#include "systems/geometry/free_turn.h"
 
 namespace skerry {
 
@@ -15,11 +16,6 @@ inline Vec3 spin_of(const Mat3& rotation, const Vec3& moments, const Vec3& angul
 inline Mat3 inverse_inertia_of(const Mat3& rotation, const Vec3& moments) {
     return rotation * moments.cwiseInverse().asDiagonal() * rotation.transpose();
 }
-
-/// The rotation after `seconds` without a moment: five turns about principal axes, each the exact motion of a part of
-/// the kinetic energy, one behind the other forth and back (Dullweber, Leimkuhler, McLachlan 1997). Symplectic,
-/// reversible, of order 2; the angular momentum stays as it is.
-Mat3 turned_freely(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, Real seconds);
 
 /// The nearest rotation to one that rounding has changed a little.
 Mat3 without_strain(const Mat3& rotation);

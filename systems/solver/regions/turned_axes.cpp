@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "systems/dynamics/rigid/rigid_motion.h"
+#include "systems/geometry/free_turn.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
