@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "components/box_grid.h"
 #include "components/bvh_table.h"
 #include "components/column.h"
 #include "components/column_role.h"
@@ -146,9 +147,16 @@ struct SearchMemory {
     Column<Aabb> box;              // m, grown by what may happen until the next broad search: bodies, then colliders
     // by body, as of the last broad search or refit: for round bodies nearer the truth than a box
     Column<BoundingSphere> sphere;
-    Column<Index> order;  // rows of `box`, by their lower end
-    Column<FoundPair> pairs;
-    Column<std::uint8_t> moved;                 // by list: bit 0 it was given away, bit 1 it was received
+    BoxGrid grid;                                // of them
+    Column<std::uint8_t> has_box;                // by row of `box`: it is in the grid
+    Column<Index> entry;                         // rows of `box` in the grid
+    Column<Index> planes;                        // rows of ColliderTable
+    std::vector<Column<FoundPair>> found_pairs;  // by block of the broad search, in no order
+    Column<FoundPair> pairs;                     // all of them, in key order
+    Column<Index> group_begin, group_end;        // in `pairs`, by kind and slot of the first body
+    Column<Index> old_row;            // by pair: in PairTable before, no_index for one that is new or forgotten
+    Column<Index> old_list;           // by list: which one it was
+    Column<std::uint8_t> given_away;  // by old list
     std::vector<Column<Candidate>> candidates;  // on their way to the new order of pairs
     std::vector<Column<Real>> asleep_until;
     Column<Index> expired;             // rows of PairTable

@@ -17,6 +17,8 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_block = 16;
+// A block of any takes some microseconds.
+constexpr std::size_t rows_per_block = 64, groups_per_block = 256, pairs_per_block = 256;
 
 bool is_movable(const BodyTable& body, Index b) {
     return body.kind[b] == BodyKind::deformable;
@@ -102,27 +104,25 @@ Real distance_to_plane(const Aabb& box, const RigidMotion& plane) {
     return normal.dot(lowest - plane.position);
 }
 
-/// Pairs of boxes that overlap go to memory.pairs.
-class Sweep {
+/// Pairs of boxes that overlap go to memory.pairs, in key order.
+class BroadSearch {
 public:
-    Sweep(const CollisionInputs& inputs, SearchState& search) : inputs_(inputs), memory_(search.memory) {}
+    BroadSearch(Executor& executor, const CollisionInputs& inputs, SearchMemory& memory)
+        : executor_(executor), inputs_(inputs), memory_(memory) {}
 
     void run() {
-        memory_.pairs.clear();
         list_entries();
-        const int axis = widest_axis();
-        const auto lower = [&](Index row) { return memory_.box[row].lower[axis]; };
-        std::sort(memory_.order.begin(), memory_.order.end(),
-                  [&](Index a, Index b) { return lower(a) != lower(b) ? lower(a) < lower(b) : a < b; });
-        for (std::size_t i = 0; i < memory_.order.size(); ++i) {
-            const Aabb& box = memory_.box[memory_.order[i]];
-            for (std::size_t j = i + 1; j < memory_.order.size() && lower(memory_.order[j]) <= box.upper[axis]; ++j)
-                if (distance_squared(box, memory_.box[memory_.order[j]]) == 0) add(memory_.order[i], memory_.order[j]);
-        }
-        add_planes();
-        add_self_pairs();
-        std::sort(memory_.pairs.begin(), memory_.pairs.end(),
-                  [](const FoundPair& a, const FoundPair& b) { return a.key < b.key; });
+        memory_.grid.build(memory_.box.span(), memory_.entry.span());
+        list_planes();
+        const std::size_t rows = memory_.box.size();
+        block_count_ = (rows + rows_per_block - 1) / rows_per_block;
+        if (memory_.found_pairs.size() < block_count_) memory_.found_pairs.resize(block_count_);
+        parallel_for(executor_, rows, rows_per_block, [&](std::size_t begin, std::size_t end) {
+            Column<FoundPair>& found = memory_.found_pairs[begin / rows_per_block];
+            found.clear();
+            for (std::size_t row = begin; row < end; ++row) find_pairs_of(static_cast<Index>(row), found);
+        });
+        sort_pairs();
     }
 
 private:
@@ -130,83 +130,117 @@ private:
 
     /// Boxes of finite size that can be part of a pair. A body with a position that is not finite has none.
     void list_entries() {
-        memory_.order.clear();
+        memory_.entry.clear();
+        memory_.has_box.assign(memory_.box.size(), 0);
         for (std::size_t row = 0; row < memory_.box.size(); ++row) {
             const Index index = static_cast<Index>(row);
             const bool bounded = memory_.box[row].lower.allFinite() && memory_.box[row].upper.allFinite();
             const bool mesh =
                 index >= body_count() && inputs_.collider.geometry[index - body_count()].shape == ColliderShape::mesh;
-            if (bounded && !mesh) memory_.order.push_back(index);
+            if (!bounded || mesh) continue;
+            memory_.has_box[row] = 1;
+            memory_.entry.push_back(index);
         }
     }
 
-    int widest_axis() const {
-        Vec3 sum = Vec3::Zero(), square_sum = Vec3::Zero();
-        for (Index row : memory_.order) {
-            const Vec3 centre = (memory_.box[row].lower + memory_.box[row].upper) / 2;
-            sum += centre;
-            square_sum += centre.cwiseAbs2();
-        }
-        const Vec3 spread = square_sum * static_cast<Real>(memory_.order.size()) - sum.cwiseAbs2();
-        return spread[0] >= spread[1] && spread[0] >= spread[2] ? 0 : spread[1] >= spread[2] ? 1 : 2;
+    void list_planes() {
+        memory_.planes.clear();
+        for (std::size_t c = 0; c < inputs_.collider.slot.size(); ++c)
+            if (inputs_.collider.geometry[c].shape == ColliderShape::plane)
+                memory_.planes.push_back(static_cast<Index>(c));
     }
 
-    void add(Index a, Index b) {
+    void find_pairs_of(Index row, Column<FoundPair>& found) const {
+        if (memory_.has_box[row]) {
+            const Aabb& box = memory_.box[row];
+            memory_.grid.for_each_near(row, [&](Index other) {
+                if (distance_squared(box, memory_.box[other]) == 0) add(row, other, found);
+            });
+        }
+        if (row >= body_count() || !is_movable(inputs_.body, row)) return;
+        add_planes(row, found);
+        const BodyTable& body = inputs_.body;
+        if (body.self_contact[row] && body.triangles[row].size() > 0)
+            add_row(body_pair_key(body.slot[row], body.slot[row]), PairKind::self, row, row, found);
+    }
+
+    void add(Index a, Index b, Column<FoundPair>& found) const {
         if (a > b) std::swap(a, b);
         const BodyTable& body = inputs_.body;
         if (a >= body_count()) return;
         if (b >= body_count()) {
-            if (is_movable(body, a)) add_collider(a, b - body_count());
+            if (is_movable(body, a)) add_collider(a, b - body_count(), found);
             return;
         }
         if (!is_movable(body, a) && !is_movable(body, b)) return;
         if (gap_between(memory_.sphere[a], memory_.sphere[b]) > 0) return;
         if (!is_movable(body, b))
-            add_row(collider_pair_key(body.slot[a], body.slot[b]), PairKind::bodies, a, b);
+            add_row(collider_pair_key(body.slot[a], body.slot[b]), PairKind::bodies, a, b, found);
         else if (!is_movable(body, a))
-            add_row(collider_pair_key(body.slot[b], body.slot[a]), PairKind::bodies, b, a);
+            add_row(collider_pair_key(body.slot[b], body.slot[a]), PairKind::bodies, b, a, found);
         else if (body.slot[a] < body.slot[b])
-            add_row(body_pair_key(body.slot[a], body.slot[b]), PairKind::bodies, a, b);
+            add_row(body_pair_key(body.slot[a], body.slot[b]), PairKind::bodies, a, b, found);
         else
-            add_row(body_pair_key(body.slot[b], body.slot[a]), PairKind::bodies, b, a);
+            add_row(body_pair_key(body.slot[b], body.slot[a]), PairKind::bodies, b, a, found);
     }
 
-    void add_collider(Index body, Index collider) {
+    void add_planes(Index b, Column<FoundPair>& found) const {
+        if (inputs_.body.vertices[b].size() == 0) return;
+        for (const Index plane : memory_.planes)
+            if (distance_to_plane(memory_.box[b], inputs_.collider.motion[plane]) <= memory_.collider_margin[plane])
+                add_collider(b, plane, found);
+    }
+
+    void add_collider(Index body, Index collider, Column<FoundPair>& found) const {
         add_row(collider_pair_key(inputs_.body.slot[body], inputs_.collider.slot[collider]), PairKind::collider, body,
-                collider);
+                collider, found);
     }
 
     /// A new pair is searched at once: only that tells how far apart the two really are.
-    void add_row(std::uint64_t key, PairKind kind, Index first, Index second) {
+    void add_row(std::uint64_t key, PairKind kind, Index first, Index second, Column<FoundPair>& found) const {
         if (!may_collide(inputs_.body, inputs_.collider, inputs_.disabled_pairs, kind, first, second)) return;
         const Vec3 apart = kind == PairKind::collider
                                ? Vec3(Vec3::Zero())
                                : Vec3(inputs_.body.frame[first].position - inputs_.body.frame[second].position);
-        memory_.pairs.push_back(
+        found.push_back(
             {key, kind, first, second, -std::numeric_limits<Real>::infinity(), PairState::unknown, apart, 0});
     }
 
-    void add_planes() {
-        for (std::size_t c = 0; c < inputs_.collider.slot.size(); ++c) {
-            if (inputs_.collider.geometry[c].shape != ColliderShape::plane) continue;
-            const Real margin = memory_.collider_margin[c];
-            for (Index b = 0; b < body_count(); ++b) {
-                if (!is_movable(inputs_.body, b) || inputs_.body.vertices[b].size() == 0) continue;
-                if (distance_to_plane(memory_.box[b], inputs_.collider.motion[c]) <= margin)
-                    add_collider(b, static_cast<Index>(c));
-            }
-        }
+    /// Those of one first body and kind beside each other, then each such group by itself.
+    void sort_pairs() {
+        const std::size_t slots = 1 + greatest_slot(), groups = 2 * slots;
+        const auto group_of = [&](const FoundPair& pair) {
+            const PairSlots named = slots_of_pair(pair.key);
+            return (named.is_collider ? slots : 0) + named.first;
+        };
+        Column<Index>& begin = memory_.group_begin;
+        begin.assign(groups + 1, 0);
+        for (std::size_t b = 0; b < block_count_; ++b)
+            for (const FoundPair& pair : memory_.found_pairs[b]) ++begin[group_of(pair) + 1];
+        for (std::size_t g = 0; g < groups; ++g) begin[g + 1] += begin[g];
+        memory_.pairs.resize(static_cast<std::size_t>(begin[groups]));
+        memory_.group_end.resize(groups);
+        std::copy(begin.begin(), begin.end() - 1, memory_.group_end.begin());
+        for (std::size_t b = 0; b < block_count_; ++b)
+            for (const FoundPair& pair : memory_.found_pairs[b])
+                memory_.pairs[memory_.group_end[group_of(pair)]++] = pair;
+        parallel_for(executor_, groups, groups_per_block, [&](std::size_t first, std::size_t last) {
+            for (std::size_t g = first; g < last; ++g)
+                std::sort(memory_.pairs.begin() + begin[g], memory_.pairs.begin() + begin[g + 1],
+                          [](const FoundPair& a, const FoundPair& b) { return a.key < b.key; });
+        });
     }
 
-    void add_self_pairs() {
-        const BodyTable& body = inputs_.body;
-        for (Index b = 0; b < body_count(); ++b)
-            if (body.self_contact[b] && is_movable(body, b) && body.triangles[b].size() > 0)
-                add_row(body_pair_key(body.slot[b], body.slot[b]), PairKind::self, b, b);
+    std::uint32_t greatest_slot() const {
+        std::uint32_t greatest = 0;
+        for (const std::uint32_t slot : inputs_.body.slot) greatest = std::max(greatest, slot);
+        return greatest;
     }
 
+    Executor& executor_;
     const CollisionInputs& inputs_;
     SearchMemory& memory_;
+    std::size_t block_count_ = 0;
 };
 
 bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
@@ -214,42 +248,60 @@ bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
     return memory.body_forgotten[pair.first] || of_second[pair.second];
 }
 
-/// Puts memory.pairs in place of the old rows. Pairs that stay take their lists along, unless one of the two is
-/// forgotten; the memory of those that went serves new ones.
-void replace_rows(SearchMemory& memory, PairTable& pairs) {
-    const std::size_t old_count = pairs.size(), count = memory.pairs.size();
+/// What pairs that stay take along from their old rows. memory.old_row says which those are.
+void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
+    memory.old_row.assign(memory.pairs.size(), no_index);
+    parallel_for(executor, memory.pairs.size(), pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            FoundPair& pair = memory.pairs[row];
+            const auto key = std::lower_bound(pairs.key.begin(), pairs.key.end(), pair.key);
+            if (key == pairs.key.end() || *key != pair.key || is_forgotten(memory, pair)) continue;
+            const std::size_t old = static_cast<std::size_t>(key - pairs.key.begin());
+            memory.old_row[row] = static_cast<Index>(old);
+            pair.valid_until = pairs.valid_until[old];
+            pair.state = pairs.state[old];
+            pair.frame_apart = pairs.frame_apart[old];
+            pair.frame_path = pairs.frame_path[old];
+        }
+    });
+}
+
+/// Pairs that stay keep their lists; the memory of those that went serves new ones.
+void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
+    const std::size_t count = memory.pairs.size();
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
     pairs.candidates.resize(lists);
     pairs.asleep_until.resize(lists);
     memory.candidates.resize(lists);
     memory.asleep_until.resize(lists);
-    const auto move_list = [&](std::size_t from, std::size_t to) {
-        memory.candidates[to].swap(pairs.candidates[from]);
-        memory.asleep_until[to].swap(pairs.asleep_until[from]);
-    };
-    memory.moved.assign(lists, 0);
-    for (std::size_t row = 0, old = 0; row < count; ++row) {
-        while (old < old_count && pairs.key[old] < memory.pairs[row].key) ++old;
-        if (old == old_count || pairs.key[old] != memory.pairs[row].key) continue;
-        if (is_forgotten(memory, memory.pairs[row])) continue;
-        memory.pairs[row].valid_until = pairs.valid_until[old];
-        memory.pairs[row].state = pairs.state[old];
-        memory.pairs[row].frame_apart = pairs.frame_apart[old];
-        memory.pairs[row].frame_path = pairs.frame_path[old];
-        move_list(old, row);
-        memory.moved[old] |= 1;  // has given its list away
-        memory.moved[row] |= 2;  // has got one
-    }
+    memory.given_away.assign(lists, 0);
+    for (const Index old : memory.old_row)
+        if (old != no_index) memory.given_away[old] = 1;
+    memory.old_list.resize(lists);
     for (std::size_t row = 0, spare = 0; row < lists; ++row) {
-        if (memory.moved[row] & 2) continue;
-        while (memory.moved[spare] & 1) ++spare;
-        move_list(spare++, row);
-        memory.candidates[row].clear();
-        memory.asleep_until[row].clear();
+        if (row < count && memory.old_row[row] != no_index) {
+            memory.old_list[row] = memory.old_row[row];
+            continue;
+        }
+        while (memory.given_away[spare]) ++spare;
+        memory.old_list[row] = static_cast<Index>(spare++);
     }
+    parallel_for(executor, lists, pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            const std::size_t old = static_cast<std::size_t>(memory.old_list[row]);
+            memory.candidates[row].swap(pairs.candidates[old]);
+            memory.asleep_until[row].swap(pairs.asleep_until[old]);
+            if (row < count && memory.old_row[row] != no_index) continue;
+            memory.candidates[row].clear();
+            memory.asleep_until[row].clear();
+        }
+    });
     pairs.candidates.swap(memory.candidates);
     pairs.asleep_until.swap(memory.asleep_until);
+}
 
+void write_rows(Executor& executor, const SearchMemory& memory, PairTable& pairs) {
+    const std::size_t count = memory.pairs.size();
     pairs.key.resize(count);
     pairs.kind.resize(count);
     pairs.first.resize(count);
@@ -262,17 +314,27 @@ void replace_rows(SearchMemory& memory, PairTable& pairs) {
     pairs.travel_bound.resize(count);
     pairs.closing.resize(count);
     pairs.longer_motion.assign(count, 0);
-    for (std::size_t row = 0; row < count; ++row) {
-        const FoundPair& found = memory.pairs[row];
-        pairs.key[row] = found.key;
-        pairs.kind[row] = found.kind;
-        pairs.first[row] = found.first;
-        pairs.second[row] = found.second;
-        pairs.valid_until[row] = found.valid_until;
-        pairs.state[row] = found.state;
-        pairs.frame_apart[row] = found.frame_apart;
-        pairs.frame_path[row] = found.frame_path;
-    }
+    parallel_for(executor, count, pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            const FoundPair& found = memory.pairs[row];
+            pairs.key[row] = found.key;
+            pairs.kind[row] = found.kind;
+            pairs.first[row] = found.first;
+            pairs.second[row] = found.second;
+            pairs.valid_until[row] = found.valid_until;
+            pairs.state[row] = found.state;
+            pairs.frame_apart[row] = found.frame_apart;
+            pairs.frame_path[row] = found.frame_path;
+        }
+    });
+}
+
+/// Puts memory.pairs in place of the old rows. Pairs that stay take their lists along, unless one of the two is
+/// forgotten.
+void replace_rows(Executor& executor, SearchMemory& memory, PairTable& pairs) {
+    recall_pairs(executor, memory, pairs);
+    move_lists(executor, memory, pairs);
+    write_rows(executor, memory, pairs);
 }
 
 }  // namespace
@@ -290,8 +352,8 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     const Real common_travel = settings.broad_skin / 2 * mean_body_edge(inputs.body);
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);
-    Sweep(inputs, search).run();
-    replace_rows(search.memory, pairs);
+    BroadSearch(executor, inputs, search.memory).run();
+    replace_rows(executor, search.memory, pairs);
     ++search.broad_searches;
 }
 

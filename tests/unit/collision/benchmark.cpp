@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "systems/collision/search/find_pairs.h"
 #include "tests/support/collision_world.h"
 
 using namespace skerry;
@@ -101,6 +102,25 @@ TEST_CASE("figures of the collision stages", "[.benchmark]") {
             "%.0f ns a ball\n",
             asleep / double(listed) * 1e9, asleep / balls * 1e9, awake_all / double(listed) * 1e9,
             awake_some / balls * 1e9);
+    }
+}
+
+TEST_CASE("figures of broad searches", "[.benchmark]") {
+    const test::SolidMesh box = test::box_mesh({3, 3, 3}, {0.1, 0.1, 0.1});
+    for (const int side : {10, 20, 30}) {
+        CollisionWorld w;
+        test::Random random(3);
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j)
+                for (int k = 0; k < side; ++k) w.add_solid(box, w.at(0.13 * Vec3(i, j, k), random.rotation()), 1e-3);
+        w.search.memory.body_travel_bound.resize(w.body.slot.size());
+        w.search.memory.body_reach.resize(w.body.slot.size());
+        w.search.memory.body_forgotten.assign(w.body.slot.size(), 0);
+        const double broad =
+            time_of(10, [&] { find_pairs(*w.executor, w.inputs(), w.settings, h, w.search, w.pairs); });
+        const double bodies = double(w.body.slot.size()), pairs = double(w.pairs.size());
+        std::printf("%6.0f boxes, %.1f pairs each: %6.0f us, %4.0f ns a box\n", bodies, pairs / bodies, broad * 1e6,
+                    broad / bodies * 1e9);
     }
 }
 

@@ -6,7 +6,9 @@
 #include <set>
 
 #include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/inputs/may_collide.h"
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/search/find_pairs.h"
 #include "systems/geometry/closest_points.h"
 #include "tests/support/collision_world.h"
 
@@ -129,6 +131,54 @@ TEST_CASE("the candidates of a collider are all surface points near it", "[unit]
     }
     CHECK(near > 0);
     CHECK(listed.size() < static_cast<std::size_t>(w.body.vertices[b].size()));
+}
+
+TEST_CASE("the broad search lists the pairs whose boxes meet, in key order, and no others", "[unit]") {
+    test::Random random(17);
+    const test::SolidMesh box = test::box_mesh({1, 1, 1}, {1, 1, 1});
+    std::size_t listed = 0;
+    for (int trial = 0; trial < 4; ++trial) {
+        CollisionWorld w;
+        w.add_collider(ColliderShape::sphere, Vec3::Constant(0.8), w.at(random.vector()));
+        w.add_collider(ColliderShape::box, Vec3(4, 4, 0.1), w.at(Vec3(0, 0, -3)));
+        w.add_kinematic(box.nodes, boundary_triangles(box.tetrahedra), 0.05);
+        for (int i = 0; i < 100; ++i) {
+            test::SolidMesh mesh = box;
+            for (Vec3& x : mesh.nodes) x *= std::pow(2, 2 * random.number());
+            w.add_solid(mesh, w.at((4 + trial) * random.vector(), random.rotation()), 0.05);
+        }
+        // Handles are reused: slots are not in the order of rows.
+        for (std::size_t b = 1; b + 1 < w.body.slot.size(); b += 2) std::swap(w.body.slot[b + 1], w.body.slot[b]);
+        auto& memory = w.search.memory;
+        memory.body_travel_bound.resize(w.body.slot.size());
+        memory.body_reach.resize(w.body.slot.size());
+        memory.body_forgotten.resize(w.body.slot.size());
+        memory.collider_forgotten.resize(w.collider.slot.size());
+        find_pairs(*w.executor, w.inputs(), w.settings, h, w.search, w.pairs);
+        for (std::size_t p = 1; p < w.pairs.size(); ++p) CHECK(w.pairs.key[p - 1] < w.pairs.key[p]);
+        std::set<std::uint64_t> expected;
+        const Index bodies = static_cast<Index>(w.body.slot.size());
+        const auto meet = [&](Index a, Index b) {
+            const Aabb &one = memory.box[a], &other = memory.box[b];
+            return (one.lower.array() <= other.upper.array()).all() && (other.lower.array() <= one.upper.array()).all();
+        };
+        for (Index a = 0; a < bodies; ++a) {
+            if (w.body.kind[a] == BodyKind::kinematic) continue;
+            for (Index b = 0; b < bodies; ++b) {
+                const bool held = w.body.kind[b] == BodyKind::kinematic;
+                if (a == b || (b < a && !held) || !meet(a, b)) continue;
+                const Real apart = (memory.sphere[a].centre - memory.sphere[b].centre).norm();
+                if (apart <= memory.sphere[a].radius + memory.sphere[b].radius)
+                    expected.insert(pair_key(w.body, w.collider, PairKind::bodies, a, b));
+            }
+            for (Index c = 0; c < static_cast<Index>(w.collider.slot.size()); ++c)
+                if (w.collider.geometry[c].shape != ColliderShape::mesh && meet(a, bodies + c))
+                    expected.insert(pair_key(w.body, w.collider, PairKind::collider, a, c));
+        }
+        CHECK(std::set<std::uint64_t>(w.pairs.key.begin(), w.pairs.key.end()) == expected);
+        listed += expected.size();
+    }
+    CHECK(listed > 400);
 }
 
 TEST_CASE("pairs without a deformable body are never looked at", "[unit]") {

@@ -1,0 +1,48 @@
+#include "components/box_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace skerry {
+
+/// The least power of two above the longest edge. Rounding of the difference never comes below it from above.
+BoxGrid::Level BoxGrid::level_of(const Aabb& box) {
+    constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;  // m: so that cells have a finite edge
+    int level = 0;
+    std::frexp(std::clamp((box.upper - box.lower).maxCoeff(), least, most), &level);
+    return level;
+}
+
+/// Whatever the rounding, of two coordinates the greater one has not the lesser number.
+BoxGrid::Cell BoxGrid::cell_at(Level level, const Vec3& point, Real edge) {
+    constexpr Real most = 0x1p62;  // what is further away has the same number
+    const auto number = [&](Real coordinate) {
+        return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / edge), -most, most));
+    };
+    return {level, number(point[0]), number(point[1]), number(point[2])};
+}
+
+void BoxGrid::build(std::span<const Aabb> box, std::span<const Index> rows) {
+    box_ = box;
+    bucket_mask_ = std::bit_ceil(2 * rows.size() + 1) - 1;
+    bucket_begin_.assign(bucket_mask_ + 2, 0);
+    levels_.clear();
+    listed_.resize(rows.size());
+    entries_.resize(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Aabb& own = box[static_cast<std::size_t>(rows[i])];
+        const Level level = level_of(own);
+        if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) levels_.push_back(level);
+        listed_[i] = {cell_at(level, own.lower, std::ldexp(Real(1), level)), rows[i]};
+        ++bucket_begin_[bucket_of(listed_[i].cell) + 1];
+    }
+    std::sort(levels_.begin(), levels_.end());
+    for (std::size_t b = 1; b < bucket_begin_.size(); ++b) bucket_begin_[b] += bucket_begin_[b - 1];
+    // Each bucket is filled from its begin, which moves to its end: to the begin of the next, as it was.
+    for (const Entry& entry : listed_) entries_[bucket_begin_[bucket_of(entry.cell)]++] = entry;
+    std::copy_backward(bucket_begin_.begin(), bucket_begin_.end() - 1, bucket_begin_.end());
+    bucket_begin_[0] = 0;
+}
+
+}  // namespace skerry

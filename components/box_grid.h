@@ -1,0 +1,84 @@
+// A grid over boxes of any sizes: which of them meet, in time that grows with their number.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "components/bvh_table.h"
+#include "components/column.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// Boxes by cells of grids that are each twice as coarse as the one before. A box is in the grid whose cells are just
+/// wider than its longest edge, in the cell of its lower corner: what meets it reaches into that cell, or less than one
+/// cell beside it. Cells are found by a hash of their numbers (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003;
+/// grids of several sizes: Mirtich 1996). Keeps its memory from one `build` to the next.
+class BoxGrid {
+public:
+    /// `rows`: those of `box` that are in it, all bounded. `box` stays as it is while the grid is asked.
+    void build(std::span<const Aabb> box, std::span<const Index> rows);
+
+    /// Calls visit(other) for rows whose boxes may meet that of `row`, each once. Of any two boxes that share a point
+    /// one is visited from the other, and not the other way round.
+    template <class Visit>
+    void for_each_near(Index row, Visit&& visit) const {
+        const Aabb& box = box_[static_cast<std::size_t>(row)];
+        const Level own = level_of(box);
+        for (std::size_t i = 0; i < levels_.size(); ++i) {
+            if (levels_[i] < own) continue;
+            const Real edge = std::ldexp(Real(1), levels_[i]);
+            const Cell first = cell_at(levels_[i], box.lower - Vec3::Constant(edge), edge);
+            const Cell last = cell_at(levels_[i], box.upper, edge);
+            for (Cell cell = first; cell.x <= last.x; ++cell.x)
+                for (cell.y = first.y; cell.y <= last.y; ++cell.y)
+                    for (cell.z = first.z; cell.z <= last.z; ++cell.z)
+                        for_each_in(cell, [&](Index other) {
+                            if (levels_[i] > own || other > row) visit(other);
+                        });
+        }
+    }
+
+private:
+    using Level = int;  // of cells of 2^level m
+
+    struct Cell {
+        Level level;
+        std::int64_t x, y, z;
+        bool operator==(const Cell&) const = default;
+    };
+    struct Entry {
+        Cell cell;
+        Index row;
+    };
+
+    static Level level_of(const Aabb& box);
+    static Cell cell_at(Level level, const Vec3& point, Real edge);
+
+    std::size_t bucket_of(const Cell& cell) const {
+        const auto part = [](std::int64_t number, std::uint64_t factor) {
+            return static_cast<std::uint64_t>(number) * factor;
+        };
+        const std::uint64_t mixed = (part(cell.x, 73856093) ^ part(cell.y, 19349663) ^ part(cell.z, 83492791)) +
+                                    part(cell.level, 0x9e3779b97f4a7c15);
+        return (mixed ^ mixed >> 32) & bucket_mask_;
+    }
+
+    template <class Visit>
+    void for_each_in(const Cell& cell, Visit&& visit) const {
+        const std::size_t bucket = bucket_of(cell);
+        for (std::size_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i)
+            if (entries_[i].cell == cell) visit(entries_[i].row);
+    }
+
+    std::span<const Aabb> box_;
+    Column<Level> levels_;  // that hold a box, ascending
+    std::size_t bucket_mask_ = 0;
+    Column<std::size_t> bucket_begin_;
+    Column<Entry> entries_;  // by bucket
+    Column<Entry> listed_;   // as `rows` has them
+};
+
+}  // namespace skerry
