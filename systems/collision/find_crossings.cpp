@@ -179,14 +179,14 @@ struct PairReach {
     Real travel_bound;  // travel of both with it
 };
 
-/// m, how far what touches is from the collider's origin: against a plane, which has no end, only round bodies are
-/// looked at.
+/// m, how far what touches is from the collider's origin: of a plane, which has no end, the furthest node.
 Real collider_extent(const CollisionInputs& inputs, Index body, Index collider) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
-    const Index first = inputs.body.nodes[body].begin;
+    Range nodes = inputs.body.nodes[body];
+    if (inputs.body.round_radius[body] > 0) nodes.end = nodes.begin + inputs.body.core_nodes[body];
     Real furthest = 0;
-    for (Index n = first; n < first + inputs.body.core_nodes[body]; ++n)
+    for (Index n = nodes.begin; n < nodes.end; ++n)
         furthest = std::max(furthest, (inputs.position[n] - inputs.collider.motion[collider].position).norm());
     return furthest;
 }
@@ -205,14 +205,6 @@ PairReach reach_of(const CollisionInputs& inputs, const PairTable& pairs, Index 
     const Real motion =
         h * (body.frame_speed[a] + body.frame_speed[b] + (body.frame[a].velocity - body.frame[b].velocity).norm());
     return {motion, pairs.travel[p] + motion};
-}
-
-/// A plane is touched by nodes alone, which its contacts hold wherever they go. Into a round body it would get on the
-/// way.
-bool can_be_crossed(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
-    return pairs.kind[p] != PairKind::collider ||
-           collider_point_count(inputs.collider.geometry[pairs.second[p]].shape) > 0 ||
-           inputs.body.round_radius[pairs.first[p]] > 0;
 }
 
 bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
@@ -236,7 +228,7 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        if (from >= to || !can_be_crossed(inputs, pairs, p)) continue;
+        if (from >= to) continue;
         const PairReach reach = reach_of(inputs, pairs, p, motion.h);
         // Of the block's candidates, those awake in find_contacts have D >= block_nearest, so that a motion below
         // slow_fraction block_nearest cannot bring them together; those asleep have g > reach as long as the motion
@@ -257,7 +249,6 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
 
 /// Whether a pair moves further in this step than its list is good for.
 bool is_beyond_list(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
-    if (!can_be_crossed(inputs, pairs, p)) return false;
     if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
     // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. Where the list was made from the very
     // positions of this step nothing has moved since, d0 is not lost, and T + m is the bound.

@@ -69,6 +69,7 @@ Course follow(World& world, Real seconds, int looks) {
         course.steps += report.steps;
         course.limited += report.limited;
         course.shortened += report.shortened;
+        course.retried += report.retried;
         const Energy energy = world.energy();
         course.in_play = std::max(course.in_play, energy.kinetic + energy.elastic);
         course.gained = std::max(course.gained, energy.kinetic + energy.elastic + energy.potential - start);

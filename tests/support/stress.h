@@ -39,7 +39,7 @@ struct Course {
     Real in_play = 0;          // J, the most kinetic and elastic energy
     Real max_penetration = 0;  // m
     Index unconverged = 0;     // regions
-    int steps = 0, limited = 0, shortened = 0;
+    int steps = 0, limited = 0, shortened = 0, retried = 0;
 
     /// The most energy gained, of that in play.
     Real gain() const { return in_play > 0 ? gained / in_play : 0; }

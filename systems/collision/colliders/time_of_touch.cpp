@@ -229,6 +229,12 @@ bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& featur
     return geometry.shape != ColliderShape::bucket || feature.of_collider == 0;
 }
 
+/// No way leads around a plane: what has come through it ends behind it, and what a contact stops before it has not,
+/// however near. Of a round body none of it may come in, also on the way.
+bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature) {
+    return geometry.shape == ColliderShape::plane && !(feature.kept.distance > 0);
+}
+
 }  // namespace
 
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature,
@@ -258,6 +264,10 @@ std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMo
     Touch touch = nearest_touch(geometry, feature, nodes);
     const Real start = touch.distance, near = std::min(contact_slack * start, feature.kept.near);
     if (!(start > 0)) return std::nullopt;
+    if (the_end_tells(geometry, feature)) {
+        touch = nearest_touch(geometry, feature, moving.at(1));
+        return touch.distance < 0 ? std::optional(touch) : std::nullopt;
+    }
     Real time = 0;
     for (int round = 0; round < most_rounds && touch.distance > near; ++round) {
         Real free = touch.distance / speed;  // infinite without motion

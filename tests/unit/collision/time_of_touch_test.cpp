@@ -178,6 +178,23 @@ TEST_CASE("nodes and edges that come to touch a collider are found, and no other
         }
 }
 
+TEST_CASE("nodes that end a step behind a plane are found, and no others", "[unit]") {
+    Random random{23};
+    const ColliderGeometry plane{ColliderShape::plane, Vec3::Zero()};
+    Tally tally;
+    for (int trial = 0; trial < 300; ++trial) {
+        const Scene scene = random_scene(random, Kind::node, 0, 0.2 * random.vector(), trial % 3 == 0);
+        const Real start = scene.at(0)[0].z(), end = scene.at(1)[0].z();
+        const std::optional<Touch> touch = first_touch(plane, scene.motion, h, scene.feature);
+        INFO("trial " << trial << ", from " << start << " to " << end);
+        REQUIRE(touch.has_value() == (start > 0 && end < 0));
+        ++(touch ? tally.touching : tally.free);
+        if (touch) CHECK(touch->normal.z() == Approx(1));
+    }
+    CHECK(tally.touching > 50);
+    CHECK(tally.free > 50);
+}
+
 TEST_CASE("spheres that come to touch a collider are found before they do, and no others", "[unit]") {
     Random random{19};
     for (const Named& shape : shapes) {
