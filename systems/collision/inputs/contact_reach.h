@@ -31,8 +31,8 @@
 
 namespace skerry {
 
-// Forces of the step can add to the speeds at its start. What is missed by that is met one step later inside the contact
-// shell; what they take further find_crossings stops.
+// Forces of the step can add to the speeds at its start. What is missed by that is met one step later inside the
+// contact shell; what they take further find_crossings stops.
 inline constexpr Real speed_safety = 2.0;
 
 // Features that approach each other by less than this fraction of their distance in the step cannot meet, by far.
