@@ -51,7 +51,7 @@ void add_stack(PrecisionScene& scene) {
     scene.planes.push_back({});
     const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
     for (int k = 0; k < 8; ++k) scene.bodies.push_back(body_of(block, {0, 0, 0.06 + 0.11 * k}));
-    last_for(scene, 0.6);
+    last_for(scene, 1);
 }
 
 void add_ball_on_block(PrecisionScene& scene) {
