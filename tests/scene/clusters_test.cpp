@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "skerry/world.h"
+#include "tests/support/jittered_box.h"
 #include "tests/support/sliver_box.h"
 
 using namespace skerry;
@@ -17,6 +18,12 @@ Settings weightless(bool clusters) {
     settings.integrator = Integrator::leapfrog;
     settings.clusters = clusters;
     return settings;
+}
+
+/// Tetrahedra of many shapes, none smaller than this part of what it would be in an even box.
+Mesh uneven_box(Real least_volume) {
+    const test::TetMesh box = test::jittered_box({8, 6, 6}, 0.02, 0.4, 21, least_volume);
+    return {box.nodes, box.tetrahedra};
 }
 
 MaterialSettings lossless_rubber() {
@@ -50,6 +57,28 @@ TEST_CASE("a body without bad elements has no clusters, and the bits that it had
         hash.push_back(world.state_hash());
     }
     CHECK(hash[0] == hash[1]);
+}
+
+TEST_CASE("where some elements allow a little less than the others there are clusters, too", "[scene][clusters]") {
+    for (const Real least_volume : {0.02, 0.1, 0.2}) {
+        World plain(weightless(false)), clustered(weightless(true));
+        for (World* world : {&plain, &clustered})
+            world->add_body(uneven_box(least_volume), {.material = world->add_material(lossless_rubber())});
+        CHECK(clustered.stable_step() > 1.5 * plain.stable_step());
+        CHECK(clustered.report().clusters > 0);
+    }
+}
+
+TEST_CASE("a body with clusters that is strained in one place stands what its shares of mass do", "[scene][clusters]") {
+    World world(weightless(true));
+    const BodyHandle body = world.add_body(uneven_box(0.2), {.material = world.add_material(lossless_rubber())});
+    const Real rest = world.stable_step();
+    const auto now = world.positions(body);
+    std::vector<Vec3> position(now.begin(), now.end());
+    position.front() -= Vec3(0.04, 0.04, 0.04);  // a corner, drawn out by twice the size of a cell
+    world.set_positions(body, position);
+    REQUIRE(world.report().clusters > 0);
+    CHECK(world.stable_step() > 0.3 * rest);  // 0.25 by mass forms
 }
 
 TEST_CASE("bodies that are alike have the same implicit elements, as many as one alone", "[scene][clusters]") {

@@ -32,6 +32,11 @@ constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, a second to inver
 /// Implicit elements are taken to be so much stiffer than they are, so that they may deform for a while.
 constexpr Real headroom = 4;
 constexpr Real most_lengthening = 16;  // of steps
+/// Shorter ones could hardly save least_gain.
+constexpr Real least_lengthening = 1.68;
+/// What explicit elements stand by mass forms over what they stand by shares, which the search goes by: of four meshes
+/// 1.27 to 1.34.
+constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
     return model.bodies.blocks[b].size() > 0;
@@ -49,18 +54,24 @@ Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, 
         .step;
 }
 
-/// Shares and moduli of a body, to be put back.
+/// Shares, forms and moduli of a body, to be put back.
 struct Kept {
     std::vector<ElementLane> mass_share, modulus;
+    std::vector<ElementForm> mass_form;
     Kept(Model& model, std::size_t b) {
-        const std::span<ElementLane> share = rows_of(model.elements.mass_share, model.bodies.blocks[b]);
-        const std::span<ElementLane> of = rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]);
-        mass_share.assign(share.begin(), share.end());
-        modulus.assign(of.begin(), of.end());
+        const auto keep = [&](auto& column, auto& kept) {
+            const auto rows = rows_of(column, model.bodies.blocks[b]);
+            kept.assign(rows.begin(), rows.end());
+        };
+        keep(model.elements.mass_share, mass_share);
+        keep(model.elements.implicit_modulus, modulus);
+        keep(model.elements.mass_form, mass_form);
     }
     void put_back(Model& model, std::size_t b) const {
-        std::ranges::copy(mass_share, rows_of(model.elements.mass_share, model.bodies.blocks[b]).begin());
-        std::ranges::copy(modulus, rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]).begin());
+        const Range blocks = model.bodies.blocks[b];
+        std::ranges::copy(mass_share, rows_of(model.elements.mass_share, blocks).begin());
+        std::ranges::copy(modulus, rows_of(model.elements.implicit_modulus, blocks).begin());
+        std::ranges::copy(mass_form, rows_of(model.elements.mass_form, blocks).begin());
     }
 };
 
@@ -77,6 +88,7 @@ void note_implicit(Model& model, std::size_t b) {
 
 struct Found {
     bool possible = false;  // neither too many nor too heavy
+    Real moment = 0;        // that clusters add to the least of the body, over that
     ClusterSizes sizes{};
 };
 
@@ -86,7 +98,7 @@ Found judged(const Model& model, std::size_t b, const ImplicitShare& share) {
     const ClusterSizes sizes = cluster_sizes(
         model.all_elements(), blocks, rows_of(model.elements.implicit_modulus, blocks), model.nodes.inverse_mass);
     if (sizes.largest > largest_cluster) return {};
-    return {true, sizes};
+    return {true, share.moment, sizes};
 }
 
 ImplicitOutputs outputs_of(Model& model, Range blocks) {
@@ -116,7 +128,8 @@ public:
             twins.searched = b;
         }
         const Kept kept(model_, twins.searched);
-        const Found found = judged(model_, twins.searched, twins.search->find({step, headroom, most_moment}));
+        const Found found =
+            judged(model_, twins.searched, twins.search->find({step, step / gain_of_forms, headroom, most_moment}));
         Result result{step, found, Kept(model_, twins.searched)};
         kept.put_back(model_, twins.searched);
         result.elements.put_back(model_, b);
@@ -140,11 +153,6 @@ private:
     std::vector<std::size_t> twin_;
     std::vector<OfTwins> of_first_;  // by the first of bodies that are alike
 };
-
-/// Elements of a body with clusters go by their shares: implicit ones take no mass.
-void share_masses(Model& model, std::size_t b) {
-    std::ranges::fill(rows_of(model.elements.mass_form, model.bodies.blocks[b]), ElementForm{});
-}
 
 /// Every element explicit again, with the masses shared as for a new body.
 void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
@@ -184,13 +192,19 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
     return (explicit_cost + entry_cost * static_cast<Real>(entries)) / step;
 }
 
+struct PlannedBody {
+    std::size_t row;
+    Real moment;    // that clusters add to the least of the body, over that
+    Kept elements;  // what they are
+};
+
 /// The implicit elements of all bodies for a step.
 struct Plan {
     Real step = 0;  // s; 0: none, every element is explicit
     Real cost = 0;  // ns a second
     bool possible = true;
     std::size_t entries = 0;
-    std::vector<std::pair<std::size_t, Kept>> body;  // that has some: its row, what its elements are
+    std::vector<PlannedBody> body;  // that has some
 };
 
 Plan plan_for(Model& model, Real step, Searches& searches) {
@@ -205,20 +219,49 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
         const Found found = searches.find(b, step);
         plan.possible = found.possible;
         plan.entries += found.sizes.entries;
-        plan.body.emplace_back(b, Kept(model, b));
+        plan.body.push_back({b, found.moment, Kept(model, b)});
         kept.put_back(model, b);
     }
     plan.cost = cost_of(model, plan.entries, step);
     return plan;
 }
 
-/// Gives a body the implicit elements of a plan for this step.
-void take_over(Model& model, std::size_t b, const Kept& elements, Real step, std::span<Real> stiffness_sum) {
-    elements.put_back(model, b);
-    share_masses(model, b);
+/// Gives a body implicit elements and the masses that the others share then. Returns the step that these stand, s.
+Real take_over(Model& model, const PlannedBody& planned, std::span<Real> stiffness_sum) {
+    planned.elements.put_back(model, planned.row);
+    choose_mass_forms(model, static_cast<Index>(planned.row), model.nodes.rest_position, stiffness_sum);
+    return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
+}
+
+/// The clusters of a body are for this step.
+void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
     model.bodies.cluster_step[b] = step;
     note_implicit(model, b);
-    model.bodies.rest_step[b] = std::min(step, step_of(model, b, model.nodes.rest_position, stiffness_sum));
+    model.bodies.rest_step[b] = std::min(step, stands);
+}
+
+/// s, for which clusters of this moment, made for steps of `step`, are not too heavy.
+Real longest_by_moment(Real step, Real moment) {
+    return moment > 0 ? step * std::sqrt(most_moment / moment) : std::numeric_limits<Real>::infinity();
+}
+
+Real longest_step(const Settings& settings) {
+    return settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / settings.step_safety;
+}
+
+/// Gives all bodies the elements of a plan, whose step becomes what they stand: mass forms tell how long it may be.
+void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
+    Real step = longest_step(model.settings);
+    std::vector<bool> planned(model.bodies.slot.size());
+    std::vector<Real> stands;
+    for (const PlannedBody& body : plan.body) {
+        planned[body.row] = true;
+        stands.push_back(take_over(model, body, stiffness_sum));
+        step = std::min({step, stands.back(), longest_by_moment(plan.step, body.moment)});
+    }
+    for (std::size_t b = 0; b < planned.size(); ++b)
+        if (has_elements(model, b) && !planned[b]) step = std::min(step, model.bodies.rest_step[b]);
+    for (std::size_t i = 0; i < stands.size(); ++i) set_cluster_step(model, plan.body[i].row, step, stands[i]);
 }
 
 /// With multirate a body that does not bound the steps of all gets implicit elements where its own can be so much
@@ -240,12 +283,13 @@ void lengthen_own_steps(Model& model, Real base, std::span<Real> stiffness_sum) 
             const Real found_cost = cost(steps_in_own(step, base), found.sizes.entries);
             if (found.possible && found_cost <= best.cost) {
                 best = {.step = step, .cost = found_cost, .body = {}};
-                best.body.emplace_back(b, Kept(model, b));
+                best.body.push_back({b, found.moment, Kept(model, b)});
             }
             kept.put_back(model, b);
             if (!found.possible) break;
         }
-        for (const auto& [body, elements] : best.body) take_over(model, body, elements, best.step, stiffness_sum);
+        for (const PlannedBody& body : best.body)
+            set_cluster_step(model, b, best.step, take_over(model, body, stiffness_sum));
     }
 }
 
@@ -255,10 +299,6 @@ Real shortest_step(const Model& model) {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (has_elements(model, b)) shortest = std::min(shortest, model.bodies.rest_step[b]);
     return shortest;
-}
-
-Real longest_step(const Settings& settings) {
-    return settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / settings.step_safety;
 }
 
 /// Of the steps 2, 4, ... times as long as the shortest stable one, and of some between the best of them and the next,
@@ -278,7 +318,8 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     for (Real step = 2 * shortest; step <= most_lengthening * shortest; step *= 2) {
         if (!look_at(std::min(step, longest)) || !(step < longest)) break;
     }
-    if (!(best.step > 0)) return best;  // one less than twice as long could hardly save least_gain
+    if (!(best.step > 0) && least_lengthening * shortest < longest) look_at(least_lengthening * shortest);
+    if (!(best.step > least_lengthening * shortest)) return best;
     for (Real ratio = std::sqrt(Real(2)); ratio > 1.15; ratio = std::sqrt(ratio)) {
         const Real between = best.step * ratio;
         if (between < longest && between < most_lengthening * shortest) look_at(between);
@@ -319,18 +360,22 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
     if (has_levels(model, body)) return false;
     constexpr Real inversion_cost = 0.4;  // ns by cube of the width
     constexpr Real lasts = 128;           // steps, until they may have to be inverted anew
+    const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
     const std::size_t entries = model.clusters.inverse.size();
-    const Range blocks = model.bodies.blocks[body];
-    const Found found =
-        judged(model, body,
-               add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
-                                     {step, headroom, most_moment}, stiffness_sum, outputs_of(model, blocks)));
+    const std::size_t before =
+        cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
+    const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
+    // by shares, which follow a deformation
+    std::ranges::fill(rows_of(model.elements.mass_form, blocks), ElementForm{});
+    const Found found = judged(
+        model, body,
+        add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
+                              {of_clusters, step, headroom, most_moment}, stiffness_sum, outputs_of(model, blocks)));
     const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (lasts * step);
     if (found.possible &&
-        cost_of(model, entries + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {
-        share_masses(model, body);
-        model.bodies.cluster_step[body] = step;
+        cost_of(model, entries - before + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {
+        model.bodies.cluster_step[body] = of_clusters;
         note_implicit(model, body);
         return true;
     }
@@ -347,7 +392,7 @@ void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (model.bodies.cluster_step[b] > 0) make_explicit(model, b, sums);
     const Plan plan = choose_plan(model, sums);
-    for (const auto& [b, elements] : plan.body) take_over(model, b, elements, plan.step, sums);
+    if (plan.step > 0) take_over(model, plan, sums);
     if (model.settings.multirate)
         lengthen_own_steps(model, std::min(shortest_step(model), longest_step(model.settings)), sums);
     model.rebuild_clusters();

@@ -8,6 +8,7 @@
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/stiffness_share.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 
 namespace skerry {
@@ -57,12 +58,26 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
+/// What the explicit elements of a body with clusters stand by shares, s: these follow a deformation, where forms are
+/// for the shape at rest. 0 of bodies that have no forms, or no clusters, whose shares are not for themselves.
+Real step_by_shares(const Model& model, std::size_t body, std::span<const Vec3> position, Column<Real>& stiffness_sum) {
+    const Range blocks = model.bodies.blocks[body];
+    ElementInputs by_shares = model.all_elements();
+    if (!(model.bodies.cluster_step[body] > 0) || !has_mass_form(by_shares, static_cast<std::size_t>(blocks.begin)))
+        return 0;
+    by_shares.mass_form = {};
+    stiffness_sum.resize(position.size());
+    return kernels().stable_step(by_shares, blocks, position, model.nodes.mass, stiffness_sum).step;
+}
+
 /// What the explicit elements of a body stand in this shape, s.
 Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> position, Column<Real>& stiffness_sum) {
     stiffness_sum.resize(position.size());
-    return kernels()
-        .stable_step(model.all_elements(), model.bodies.blocks[body], position, model.nodes.mass, stiffness_sum)
-        .step;
+    const Real step =
+        kernels()
+            .stable_step(model.all_elements(), model.bodies.blocks[body], position, model.nodes.mass, stiffness_sum)
+            .step;
+    return std::max(step, step_by_shares(model, body, position, stiffness_sum));
 }
 
 /// The step that a body stands whose explicit elements stand `step`. Not a number where a shape is none.
@@ -94,9 +109,13 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        constexpr Real worth_clusters = 1.25;  // steps that a strained body makes shorter by this
-        constexpr Real reserve = 1.05;         // so that the next look finds it standing, too
+        // Steps that a strained body makes shorter by this; the next look finds it standing, too. One that has clusters
+        // is let be for longer: what it stands is back as soon as it is less strained, while implicit elements stay.
+        const bool has_clusters = model_.bodies.cluster_step[b] > 0;
+        const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
+        if (step > 0 && step < 0.9 * goal_)
+            step = std::max(step, step_by_shares(model_, b, model_.nodes.position, stiffness_sum_));
         bodies.stable_step[b] = within_clusters(model_, b, model_.nodes.position, step);
         if (!(bodies.stable_step[b] > 0) || bodies.stable_step[b] * worth_clusters >= goal_ ||
             !clusters_allowed(model_.settings))

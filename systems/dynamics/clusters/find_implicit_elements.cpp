@@ -217,7 +217,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-        if (need(b, l, goal.step) > 1) share(b, l) = 0;  // not with all the mass of its nodes to itself
+        if (need(b, l, goal.stands) > 1) share(b, l) = 0;  // not with all the mass of its nodes to itself
     });
     ImplicitShare found = added(goal);
     bool found_enough = false;
@@ -231,15 +231,15 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
         Real shortest = std::numeric_limits<Real>::infinity();  // s
         for_each_element(elements_, blocks_,
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
-        found_enough = !(shortest < goal.step);
+        found_enough = !(shortest < goal.stands);
         if (found_enough && exact_) break;
         if (found_enough) continue;  // says the estimate
         if (round % rounds_of_sharing == 0) {
-            give_up(goal.step);
+            give_up(goal.stands);
             found = added(goal);
         }
         for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-            share(b, l) *= std::clamp(goal.step / step_[row(b)][l], 1 / most_change, most_change);
+            share(b, l) *= std::clamp(goal.stands / step_[row(b)][l], 1 / most_change, most_change);
         });
     }
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
@@ -260,7 +260,7 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
         Real volume = 0, implicit = 0;  // m^3
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
             Real& share = out.mass_share[b - first][l];
-            if (step[b - first][l] < goal.step) {
+            if (step[b - first][l] < goal.stands) {
                 share = 0;
                 gave_up = true;
             }

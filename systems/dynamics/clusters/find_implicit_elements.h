@@ -16,7 +16,8 @@ struct ImplicitOutputs {
 };
 
 struct ImplicitGoal {
-    Real step;         // s
+    Real step;         // s, of the clusters
+    Real stands;       // s, what explicit elements are to stand: by shares, less than `step` where they get forms then
     Real headroom;     // stiffness that implicit elements are taken to have, over that which they have now
     Real most_moment;  // of ImplicitShare: nothing is found that adds more
 };
@@ -37,9 +38,9 @@ public:
     ImplicitSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out);
 
-    /// Shares the masses of the body anew, so that every explicit element stands the step, and makes implicit as few as
-    /// it takes: those that need most of the masses of their nodes go first. Ends as soon as these are too many or add
-    /// more to the moment than they may; what it has written by then is of no use.
+    /// Shares the masses of the body anew, so that every explicit element stands what it is to, and makes implicit as
+    /// few as it takes: those that need most of the masses of their nodes go first. Ends as soon as these are too many
+    /// or add more to the moment than they may; what it has written by then is of no use.
     ImplicitShare find(const ImplicitGoal& goal);
 
 private:
@@ -92,8 +93,9 @@ private:
     bool exact_ = false;  // step_ is the bound
 };
 
-/// Those that are implicit stay so, shares stay, and every other that does not stand the step becomes implicit: quick,
-/// but some would do with another share. Whether they add too much to the moment is not asked.
+/// Those that are implicit stay so, masses stay shared as they are, by shares or forms, and every other element that
+/// does not stand what it is to becomes implicit: quick, but some would do with another share. Whether they add too
+/// much to the moment is not asked.
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
                                     const ImplicitOutputs& out);

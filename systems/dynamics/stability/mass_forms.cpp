@@ -100,8 +100,9 @@ public:
         for (auto b = first_block(); b < static_cast<std::size_t>(blocks.end); ++b) {
             const MaterialConstants material = elements.material_of(b);
             stiffest_ = std::max({stiffest_, 2 * material.shear_modulus, material.lame_lambda});
-            if (!elements.own_frequency.empty())
-                for (const Real own : elements.own_frequency[b].lane) fastest = std::max(fastest, own);
+            if (elements.own_frequency.empty()) continue;
+            const Real8 own = of_explicit(b) * load(elements.own_frequency[b]);
+            for (std::size_t l = 0; l < element_lanes; ++l) fastest = std::max<Real>(fastest, own[l]);
         }
         constexpr Real longer = 1.5;  // than a step that elements bound one by one
         if (fastest > 0) relaxing_step_ = longer * step_times_frequency / fastest;
@@ -160,8 +161,10 @@ public:
     void finish(Real bound) {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const Real8 volume = load(elements_.volume[first_block() + i]);
+            const Real8 weighty = of_explicit(first_block() + i) * volume, none = Real8{} + form_of_implicit;
             Symmetric Q = Real8(Real8{} + bound) * inverse_of(load_form(weight_[i]));
-            for (Real8* entry : {&Q.xx, &Q.yy, &Q.zz, &Q.xy, &Q.yz, &Q.zx}) *entry = volume > 0.0 ? *entry : Real8{};
+            for (Real8* entry : {&Q.xx, &Q.yy, &Q.zz}) *entry = weighty > 0.0 ? *entry : volume > 0.0 ? none : Real8{};
+            for (Real8* entry : {&Q.xy, &Q.yz, &Q.zx}) *entry = weighty > 0.0 ? *entry : Real8{};
             store_form(Q, form_[i]);
         }
     }
@@ -193,8 +196,15 @@ private:
             W.xx += shear;
             W.yy += shear;
             W.zz += shear;
-            store_form(load(elements_.volume[first_block() + i]) * W, weight_[i]);
+            store_form(of_explicit(first_block() + i) * load(elements_.volume[first_block() + i]) * W, weight_[i]);
         }
+    }
+    /// 1 of explicit elements, 0 of those that clusters carry, which take no mass.
+    Real8 of_explicit(std::size_t block) const {
+        const Real8 one = Real8{} + 1.0;
+        return elements_.implicit_modulus.empty()
+                   ? one
+                   : Real8(load(elements_.implicit_modulus[block]) > 0.0 ? Real8{} : one);
     }
     struct Moduli {
         Real8 shear, volumetric;  // 2 mu and lambda, Pa

@@ -10,6 +10,7 @@
 #include "systems/dynamics/clusters/find_implicit_elements.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
+#include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
 #include "tests/support/elastic_body.h"
@@ -40,7 +41,7 @@ struct SliverBox {
           stiffness_sum(body.position.size()),
           plain_step(stable_step(body.inputs(), body.blocks, body.position, body.mass, stiffness_sum).step) {
         cluster_step = {longer * plain_step};
-        share = search().find({cluster_step[0], 4, anything});
+        share = search().find({cluster_step[0], cluster_step[0], 4, anything});
         build();
     }
     ImplicitSearch search() {
@@ -145,6 +146,30 @@ TEST_CASE("with clusters the exact highest frequency stands the step", "[unit][c
     const Real of_masses =
         Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(K, M, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
     CHECK(highest < of_masses);
+}
+
+TEST_CASE("mass forms without implicit elements let the others stand more, and the exact highest frequency does",
+          "[unit][clusters]") {
+    const auto kind = GENERATE(ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
+    const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
+    INFO(name_of(kind) << ", " << name_of(model));
+    SliverBox box(model, kind, 2);
+    REQUIRE_FALSE(box.clusters.empty());
+    const Real by_shares = box.explicit_step();
+    ElementInputs inputs = box.body.inputs();
+    inputs.implicit_modulus = box.body.elements.implicit_modulus;
+    find_mass_forms(inputs, box.body.blocks, box.body.position, box.body.mass, products_of_group,
+                    box.body.elements.mass_form);
+    const Real by_forms = box.explicit_step();
+    CHECK(by_forms > 1.15 * by_shares);
+    box.cluster_step[0] = by_forms;
+    const Matrix K = box.stiffness();
+    const Real highest =
+        Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(K, by_component(box.inertia()), Eigen::EigenvaluesOnly)
+            .eigenvalues()
+            .maxCoeff();
+    CHECK(by_forms * std::sqrt(highest) <= 1.8);
+    CHECK(by_forms * std::sqrt(highest) > 1.2);
 }
 
 TEST_CASE("clusters have the inverse of the inertia that implicit elements add", "[unit][clusters]") {
@@ -332,7 +357,8 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
     SliverBox box(model, kind, 2), other(model, kind, 2);
     ImplicitSearch search = box.search();
     for (const Real longer : {8.0, 2.0, 4.0}) {
-        const ImplicitShare found = search.find({longer * box.plain_step, 4, anything});
+        ImplicitGoal goal{longer * box.plain_step, longer * box.plain_step, 4, anything};
+        const ImplicitShare found = search.find(goal);
         if (found.too_many) continue;
         SimpleSearch(other, longer * box.plain_step);
         for (std::size_t b = 0; b < box.body.inputs().blocks(); ++b)
@@ -344,8 +370,10 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
         CHECK(std::min(box.explicit_step(), longer * box.plain_step) == longer * box.plain_step);
         // what adds too much to the moment is not looked for to the end, and just as much is found
         REQUIRE(found.moment > 0);
-        CHECK(search.find({longer * box.plain_step, 4, 0.99 * found.moment}).moment > 0.99 * found.moment);
-        CHECK(search.find({longer * box.plain_step, 4, found.moment}).moment == found.moment);
+        goal.most_moment = 0.99 * found.moment;
+        CHECK(search.find(goal).moment > goal.most_moment);
+        goal.most_moment = found.moment;
+        CHECK(search.find(goal).moment == found.moment);
     }
 }
 
