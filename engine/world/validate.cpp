@@ -71,10 +71,20 @@ struct ShapeCheck {
         if (surface.triangles.empty())
             refuse(object, "triangles", "none", "a closed surface of at least four triangles");
         for (const Vec3& node : surface.nodes) require_finite(object, "nodes", node);
-        for (const auto& triangle : surface.triangles)
-            for (Index corner : triangle)
-                if (corner < 0 || corner >= static_cast<Index>(surface.nodes.size()))
-                    refuse(object, "triangles", "node " + std::to_string(corner), "a row of its nodes");
+        for (std::size_t t = 0; t < surface.triangles.size(); ++t) check(t, surface.triangles[t], surface.nodes.size());
+    }
+
+private:
+    void check(std::size_t number, const std::array<Index, 3>& triangle, std::size_t nodes) const {
+        for (Index corner : triangle)
+            if (corner < 0 || corner >= static_cast<Index>(nodes))
+                refuse(object, "triangles", "node " + std::to_string(corner), "a row of its nodes");
+        const auto [a, b, c] = triangle;  // with the same node twice it would be the core of a round body
+        if (a == b || b == c || c == a)
+            refuse(object, "triangles",
+                   "triangle " + std::to_string(number) + " of nodes " + std::to_string(a) + ", " + std::to_string(b) +
+                       ", " + std::to_string(c),
+                   "three different nodes");
     }
 };
 

@@ -34,6 +34,22 @@ TEST_CASE("tetrahedra that lie in each other are refused by their numbers", "[sc
     CHECK(world.bodies().size() == 1);
 }
 
+TEST_CASE("a mesh collider with a triangle that has a node twice is refused by its number", "[scene]") {
+    World world;
+    const SurfaceMesh surface{.nodes = two_sided().nodes, .triangles = {{0, 1, 2}, {0, 1, 3}}};
+    CHECK_NOTHROW(world.add_collider(surface));
+    for (const std::array<Index, 3>& flat : {std::array{1, 2, 2}, {2, 1, 2}, {2, 2, 1}}) {
+        SurfaceMesh wrong = surface;
+        wrong.triangles.push_back(flat);
+        CHECK_THROWS_WITH(
+            world.add_collider(wrong, {.name = "knife"}),
+            Contains("collider 'knife'") &&
+                Contains("triangle 2 of nodes " + std::to_string(flat[0]) + ", " + std::to_string(flat[1])) &&
+                Contains("three different nodes"));
+    }
+    CHECK(world.colliders().size() == 1);
+}
+
 TEST_CASE("a material with waves faster than light is refused by its numbers", "[scene]") {
     World world;
     CHECK_THROWS_WITH(world.add_material({.young_modulus = 1e308}),
