@@ -99,6 +99,13 @@ TEST_CASE("bodies that are alike have the same implicit elements, as many as one
     CHECK(implicit({&mesh, &mesh, &mesh}, -1) == 3 * one);
     CHECK(implicit({&mesh, &other, &mesh, &other}, -1) == 2 * mixed);
     CHECK(implicit({&mesh, &mesh}, 1) == one + implicit({&mesh}, 0));
+    World alone(weightless(true)), together(weightless(true));
+    for (const int bodies : {1, 3}) {
+        World& world = bodies == 1 ? alone : together;
+        const MaterialHandle rubber = world.add_material(lossless_rubber());
+        for (int b = 0; b < bodies; ++b) world.add_body(mesh, {.material = rubber, .position = {0.3 * b, 0, 0}});
+    }
+    CHECK(together.stable_step() == Approx(alone.stable_step()).epsilon(1e-9));
 }
 
 TEST_CASE("a spinning body with clusters keeps energy, momentum and angular momentum", "[scene][clusters]") {

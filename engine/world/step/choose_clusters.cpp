@@ -251,17 +251,23 @@ Real longest_step(const Settings& settings) {
 
 /// Gives all bodies the elements of a plan, whose step becomes what they stand: mass forms tell how long it may be.
 void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
+    const std::vector<std::size_t> twin = find_twins(model);
     Real step = longest_step(model.settings);
-    std::vector<bool> planned(model.bodies.slot.size());
-    std::vector<Real> stands;
+    std::vector<Real> stands(twin.size());  // s, by body; 0 of those without clusters
     for (const PlannedBody& body : plan.body) {
-        planned[body.row] = true;
-        stands.push_back(take_over(model, body, stiffness_sum));
-        step = std::min({step, stands.back(), longest_by_moment(plan.step, body.moment)});
+        if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // bodies that are alike have the same plan
+            body.elements.put_back(model, body.row);
+            std::ranges::copy(rows_of(model.elements.mass_form, model.bodies.blocks[first]),
+                              rows_of(model.elements.mass_form, model.bodies.blocks[body.row]).begin());
+            stands[body.row] = stands[first];
+        } else {
+            stands[body.row] = take_over(model, body, stiffness_sum);
+        }
+        step = std::min({step, stands[body.row], longest_by_moment(plan.step, body.moment)});
     }
-    for (std::size_t b = 0; b < planned.size(); ++b)
-        if (has_elements(model, b) && !planned[b]) step = std::min(step, model.bodies.rest_step[b]);
-    for (std::size_t i = 0; i < stands.size(); ++i) set_cluster_step(model, plan.body[i].row, step, stands[i]);
+    for (std::size_t b = 0; b < stands.size(); ++b)
+        if (has_elements(model, b) && !(stands[b] > 0)) step = std::min(step, model.bodies.rest_step[b]);
+    for (const PlannedBody& body : plan.body) set_cluster_step(model, body.row, step, stands[body.row]);
 }
 
 /// With multirate a body that does not bound the steps of all gets implicit elements where its own can be so much
