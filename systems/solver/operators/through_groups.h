@@ -36,7 +36,8 @@ public:
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }
     /// Where bodies do not deform: for what moves positions alone.
-    void apply_undeformed(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
+    [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
+                                                 Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
             if (deforming_place(contact.node[a]) == no_index) clusters_.apply_to_node(contact, a, impulse, velocity);
     }

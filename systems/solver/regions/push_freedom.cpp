@@ -115,7 +115,7 @@ private:
     }
 
     /// Returns what has changed, J.
-    Real push_at(std::size_t at) {
+    [[gnu::always_inline]] Real push_at(std::size_t at) {
         const auto i = static_cast<Index>(at);
         const Real mobility = region_.memory.part[at].along_normal;
         if (!(mobility > 0)) return 0;
