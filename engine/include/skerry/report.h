@@ -48,7 +48,7 @@ struct Contact {
     // local nodes: place a belongs to `first` if weight[a] > 0, to `second` if < 0; -1 with weight 0
     std::array<Index, 4> node{};
     std::array<Real, 4> weight{};
-    Vec3 point = Vec3::Zero();   // m
+    Vec3 point = Vec3::Zero();   // m, on the second body or the collider
     Vec3 normal = Vec3::Zero();  // unit, towards the first body
     Real distance = 0;           // m, between the surfaces; < 0: they overlap
     // m, what may still close: distance less the contact distance, or a bit more where edges are nearly flat
