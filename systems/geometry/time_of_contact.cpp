@@ -13,14 +13,28 @@ namespace {
 // rounding.
 constexpr Real advance = 0.9;
 
-// Each round takes 0.9 of the distance; what needs more slides along for longer than a step is worth.
+// What needs more rounds rolls over the other one, nearer than a step is worth looking at.
 constexpr int most_rounds = 4096;
 
-Real distance(FeaturePair kind, const FourPoints& x) {
-    const Real squared = kind == FeaturePair::point_triangle
-                             ? closest_point_on_triangle(x[0], x[1], x[2], x[3]).distance_squared
-                             : closest_points_of_segments(x[0], x[1], x[2], x[3]).distance_squared;
-    return std::sqrt(squared);
+/// From the second feature to the first, where they are nearest, m.
+Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
+    if (kind == FeaturePair::point_triangle) return x[0] - closest_point_on_triangle(x[0], x[1], x[2], x[3]).nearest;
+    const SegmentSegment nearest = closest_points_of_segments(x[0], x[1], x[2], x[3]);
+    return nearest.on_first - nearest.on_second;
+}
+
+/// Until the points of one feature and those of the other leave less than `kept` between two planes across `normal`, in
+/// the time in which they move by `displacement`. As long nothing of the features is nearer, whatever the normal.
+Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
+                  Real kept) {
+    const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;
+    Real least = std::numeric_limits<Real>::infinity();
+    for (std::size_t i = 0; i < own; ++i)
+        for (std::size_t j = own; j < 4; ++j) {
+            const Real approach = -normal.dot(displacement[i] - displacement[j]);
+            if (approach > 0) least = std::min(least, (normal.dot(x[i] - x[j]) - kept) / approach);
+        }
+    return least;
 }
 
 }  // namespace
@@ -38,18 +52,20 @@ Real greatest_approach(FeaturePair kind, const FourPoints& displacement) {
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const KeptApart& kept) {
     const Real approach = greatest_approach(kind, displacement);
-    const Real start = distance(kind, position) - kept.distance, near = std::min(contact_slack * start, kept.near);
-    Real time = 0, apart = start;
-    for (int round = 0; round < most_rounds; ++round) {
-        if (!(apart > near) || !(start > 0)) return time;
-        time += advance * apart / approach;  // infinite without motion
-        if (!(time <= 1)) break;
-        FourPoints x;
+    FourPoints x = position;
+    Vec3 offset = offset_between(kind, x);
+    Real length = offset.norm(), time = 0;
+    const Real start = length - kept.distance, near = std::min(contact_slack * start, kept.near);
+    if (!(start > 0)) return time;
+    for (int round = 0; round < most_rounds && length - kept.distance > near; ++round) {
+        const Real slab = time_of_slab(kind, x, displacement, offset / length, kept.distance);
+        time += advance * std::max((length - kept.distance) / approach, slab);  // infinite without motion
+        if (!(time <= 1)) return std::nullopt;
         for (std::size_t i = 0; i < 4; ++i) x[i] = position[i] + time * displacement[i];
-        apart = distance(kind, x) - kept.distance;
+        offset = offset_between(kind, x);
+        length = offset.norm();
     }
-    if (time <= 1) return time;
-    return std::nullopt;
+    return time;
 }
 
 }  // namespace skerry

@@ -29,9 +29,10 @@ struct KeptApart {
 
 /// The time in [0, 1] at which features that move from `position` by `displacement` in straight lines are near contact,
 /// or nothing when they do not come as near. Additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional
-/// IPC, section 5): never later than the contact, and at that time they are nearer than `contact_slack` of the distance
-/// at the start, all distances beyond the one that is kept. 0 when they touch at the start. Features that slide past
-/// each other very near for long (some thousand times their distance) are given up as contact at the time reached.
+/// IPC, section 5), and as far as the features stay on their sides of where they are nearest, so that sliding along
+/// takes few rounds: never later than the contact, and at that time they are nearer than `contact_slack` of the
+/// distance at the start, all distances beyond the one that is kept. 0 when they touch at the start. What takes some
+/// thousand rounds is given up as contact at the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const KeptApart& kept = {});
 

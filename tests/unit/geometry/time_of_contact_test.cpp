@@ -212,6 +212,12 @@ TEST_CASE("degenerate motions have the time of contact that they should", "[unit
         FourPoints x = triangle;
         x[0] = Vec3(0.1, 0.1, 1e-3);
         CHECK_FALSE(time_of_contact(point_triangle, x, {Vec3(0.5, 0.2, 0), none, none, none}));
+        x[0].z() = 1e-9;
+        CHECK_FALSE(time_of_contact(point_triangle, x, {Vec3(0.5, 0.2, 0), none, none, none}));
+        const FourPoints crossed{Vec3(-1, 0, 1e-9), Vec3(1, 0, 1e-9), Vec3(0, -1, 0), Vec3(0, 1, 0)};
+        CHECK_FALSE(time_of_contact(edge_edge, crossed, {Vec3(0.5, 0.2, 0), Vec3(0.5, 0.2, 0), none, none}));
+        // one end is lifted more than the other comes down
+        CHECK_FALSE(time_of_contact(edge_edge, crossed, {Vec3(0, 0, 0.5), Vec3(0, 0, 0.1), none, none}));
     }
 }
 
