@@ -13,7 +13,8 @@ import unittest
 from program_case import PROGRAM, ROOT, SCENE, ProgramCase
 
 # One step after the other: no frame and no sample ends for a day.
-SLOW = {**SCENE, "seconds": 1e5, "frame_step": 1e5, "probe_step": 1e5}
+# What is put to rest would be over at once.
+SLOW = {**SCENE, "seconds": 1e5, "frame_step": 1e5, "probe_step": 1e5, "settings": {"sleep": False}}
 
 
 class ProgramRunTest(ProgramCase):
