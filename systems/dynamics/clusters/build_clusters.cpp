@@ -83,7 +83,8 @@ ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::spa
     ClusterSizes sizes;
     if (nodes.empty()) return sizes;
     // of the body's nodes alone, which lie side by side
-    const auto [first, last] = std::ranges::minmax(nodes);
+    const auto ends = std::ranges::minmax(nodes);
+    const Index first = ends.min, last = ends.max;
     UnionFind sets;
     sets.start(static_cast<std::size_t>(last - first) + 1);
     for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {

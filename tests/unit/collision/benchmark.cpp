@@ -116,8 +116,7 @@ TEST_CASE("figures of broad searches", "[.benchmark]") {
         w.search.memory.body_travel_bound.resize(w.body.slot.size());
         w.search.memory.body_reach.resize(w.body.slot.size());
         w.search.memory.body_forgotten.assign(w.body.slot.size(), 0);
-        const double broad =
-            time_of(3, [&] { find_pairs(*w.executor, w.inputs(), w.settings, h, w.search, w.pairs); });
+        const double broad = time_of(3, [&] { find_pairs(*w.executor, w.inputs(), w.settings, h, w.search, w.pairs); });
         const double bodies = double(w.body.slot.size()), pairs = double(w.pairs.size());
         std::printf("%6.0f boxes, %.1f pairs each: %6.0f us, %4.0f ns a box\n", bodies, pairs / bodies, broad * 1e6,
                     broad / bodies * 1e9);
