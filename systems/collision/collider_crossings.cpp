@@ -54,8 +54,7 @@ private:
             const FaceContact now = face_contact(geometry_, feature.of_collider, local(feature));
             if (!(approach > slow_fraction * std::max(now.nearest, now.distance))) return false;
         }
-        const bool of_plane = geometry_.shape == ColliderShape::plane && !(feature.kept.distance > 0);
-        if (of_plane && !(approach > distance_to_plane(feature.position[0]))) return false;  // cannot end behind it
+        if (the_end_tells(geometry_, feature) && !(approach > distance_to_plane(feature.position[0]))) return false;
         const std::optional<Touch> touch = first_touch(geometry_, collider_motion_, motion_.h, feature);
         if (!touch || (touch->within && !is_outside(inputs_, pair_.first, world(touch->point)))) return true;
         add(candidate, feature, node, *touch);

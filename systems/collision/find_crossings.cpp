@@ -7,7 +7,6 @@
 
 #include "jobs/parallel_for.h"
 #include "systems/collision/collider_crossings.h"
-#include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"

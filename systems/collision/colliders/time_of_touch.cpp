@@ -229,13 +229,11 @@ bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& featur
     return geometry.shape != ColliderShape::bucket || feature.of_collider == 0;
 }
 
-/// No way leads around a plane: what has come through it ends behind it, and what a contact stops before it has not,
-/// however near. Of a round body none of it may come in, also on the way.
+}  // namespace
+
 bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature) {
     return geometry.shape == ColliderShape::plane && !(feature.kept.distance > 0);
 }
-
-}  // namespace
 
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature,
                     const std::array<Vec3, 3>& nodes) {

@@ -38,6 +38,10 @@ struct Touch {
 /// of the edges.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
+/// No way leads around a plane: what has come through it ends behind it, and what a contact stops before it has not,
+/// however near. Of a round body none of it may come in, also on the way.
+bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature);
+
 /// No point of the feature comes nearer to the collider than by this while both move for h seconds, m.
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature);
 
