@@ -143,11 +143,14 @@ struct ElementPatches {
     // by block, of those that are viscous and due; none where nothing is viscous; scratch
     Column<ElementViscousImpulse> viscous_impulse;
     Column<std::uint8_t> viscous;  // by block: whether it has one in this step; as many rows; scratch
+    // by block: whether an implicit element of it comes near the stiffness that it is taken to have; as many; scratch
+    Column<std::uint8_t> stiffening;
 
     /// Room for what is viscous.
     void resize_viscous(std::size_t count) {
         viscous_impulse.resize(count);
         viscous.resize(count);
+        stiffening.resize(count);
     }
 };
 

@@ -87,7 +87,11 @@ struct NodeGroups {
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints) {
-        return {.clusters = &binder.value(clusters),
+        // but the matrices, which may still change in a step
+        binder.value(clusters.nodes);
+        binder.value(clusters.body);
+        binder.value(clusters.cluster_of);
+        return {.clusters = &clusters,
                 .rigid = RigidNodes::bind(binder, node, body, rigid),
                 .joints = binder.read(joints.block)};
     }

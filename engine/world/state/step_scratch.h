@@ -57,9 +57,11 @@ struct StepFindings {
     ExternalWork external;
     TakenByRest rest;
     JointMeasures joints;
-    Real relaxed = 0;   // J, taken out by what relaxes in the elements in this step
-    Real viscous = 0;   // J, by the viscosity of fine elements among coarse in this step
-    Real damped = 0;    // J, taken out by damping in this step
+    Real relaxed = 0;  // J, taken out by what relaxes in the elements in this step
+    Real viscous = 0;  // J, by the viscosity of fine elements among coarse in this step
+    Real damped = 0;   // J, taken out by damping in this step
+    // J, brought in by clusters that follow what has stiffened before this try
+    Real stiffened = 0;
     Real strained = 0;  // J, damped by the implicit steps of bodies in this step
 };
 

@@ -28,6 +28,7 @@ bool keep_watch(WorldState& world) {
     ++watch.steps;
     // within a cycle levels must stay
     if (watch.steps < steps_per_round(world) || world.clock.cycle.index != 0) return false;
+    world.record.balance.work += follow_stiffening(world.model);  // what bodies stand goes by it
     world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
     return !watch.second;
@@ -209,6 +210,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
     world.scratch.parameters.draws_late = !model.loaded;  // loads ask for all nodes in every step
+    Real stiffened = 0;                                   // J, brought in by clusters since the last step
     bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
     // by what is called back: the call ends between two steps all the same
     std::exception_ptr thrown;
@@ -247,6 +249,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, tries);
+        stiffened += world.scratch.findings.stiffened;  // whatever becomes of the try
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
@@ -261,7 +264,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         note_inversions(world, report);
         note_limit(world, report);
         left = plan.steps > 1 ? left - plan.h : 0;
-        world.record.balance.work += follow_stiffening(model);
+        world.record.balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world)) {
             world.draw();
             if (clock.offset == 0)
@@ -282,6 +285,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on()) forces.begin_call(model, world.scratch);
     } else {
         drift(0);
+        stiffened += follow_stiffening(model);  // so that no try of the next call is the first to
+        world.record.balance.work += stiffened;
     }
     world.draw();
     world.query_trees.forget();

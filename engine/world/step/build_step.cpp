@@ -12,6 +12,7 @@
 #include "systems/dynamics/checks/limit_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/joints/prepare_joints.h"
@@ -67,6 +68,9 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
                         read(n.position), read(n.velocity), value(p.h), read(e.rotation), outputs<ElementMemory>(e),
                         outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
+    g.stage_with_result("dynamics/stiffen_clusters", w.scratch.findings.stiffened, stiffen_clusters,
+                        inputs<ElementInputs>(e, m.element_nodes, m.materials, b), inputs<StiffenInputs>(b, n),
+                        write(m.patches.stiffening), outputs<StiffenOutputs>(e, m.clusters), if_unknown);
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
             inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
             write(n.force), write(n.velocity_next));

@@ -198,10 +198,8 @@ void keep_shapes(Model& model, std::uint64_t round) {
 
 Real follow_stiffening(Model& model) {
     if (model.clusters.empty()) return 0;
-    return stiffen_clusters(model.all_elements(),
-                            {model.bodies.blocks, model.bodies.cluster_step, model.bodies.asleep, model.nodes.position,
-                             model.nodes.velocity, model.nodes.inverse_mass},
-                            model.elements.implicit_modulus.span(), model.clusters);
+    return stiffen_all_clusters(model.all_elements(), StiffenInputs::bind(Binder(), model.bodies, model.nodes),
+                                StiffenOutputs::bind(Binder(), model.elements, model.clusters));
 }
 
 }  // namespace skerry

@@ -38,7 +38,8 @@ Real take_over_looks(Model& model, Column<Real>& stiffness_sum);
 /// Before a step, of a round of so many: keeps the shapes that are to be looked at beside it.
 void keep_shapes(Model& model, std::uint64_t round);
 
-/// After a committed step: clusters follow what has stiffened. Returns the energy that brings into the balance, J.
+/// Between steps: clusters follow what has stiffened, as they do in each step, and as after it they would in the next.
+/// Returns the energy that brings into the balance, J.
 Real follow_stiffening(Model& model);
 
 // choose_clusters.cpp

@@ -316,6 +316,9 @@ void StepTransaction::begin_call(const Model& model, const Clock& clock) {
     center_ = model.rigid_bodies.center;
     rotation_ = model.rigid_bodies.rotation;
     displacement_ = model.implicit_nodes.displacement;
+    if (model.clusters.empty()) return;
+    modulus_ = model.elements.implicit_modulus;
+    inverse_ = model.clusters.inverse;
 }
 
 void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
@@ -327,6 +330,9 @@ void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
     model.implicit_nodes.displacement = displacement_;
     clock.time = time_;
     clock.offset = 0;
+    if (model.clusters.empty()) return;
+    model.elements.implicit_modulus = modulus_;
+    model.clusters.inverse = inverse_;
 }
 
 }  // namespace skerry

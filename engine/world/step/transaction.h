@@ -65,6 +65,11 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 ///     nodes.velocity_next of bodies at rest     solve_regions          zero, which it is as long as they rest
 ///     nodes.position, nodes.velocity, time,
 ///     rigid_bodies.center and rotation          drift_to (leapfrog)    a copy, of the start of the call
+///     elements.implicit_modulus,
+///     clusters.inverse                          stiffen_clusters       nothing: they follow the shapes at the start of
+///                                                                      the try, as they do at the end of a call; with
+///                                                                      leapfrog, whose shapes drift before, a copy, of
+///                                                                      the start of the call
 ///     clock.cycle, bodies.level between cycles  plan_step              nothing: written again before it is read
 ///     pairs, their search                       find_candidates        nothing: what a search found of the positions
 ///                                                                      at the start of the step stays true of them
@@ -93,6 +98,8 @@ private:
     Column<Vec3> center_;                   // m, of rigid bodies
     Column<Mat3> rotation_;                 // of rigid bodies
     Column<Vec3> displacement_;             // m, of implicit bodies
+    Column<ElementLane> modulus_;           // Pa, elements.implicit_modulus
+    Column<Real> inverse_;                  // 1/kg, clusters.inverse
 };
 
 }  // namespace skerry

@@ -121,10 +121,13 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
 
 /// Squares of how fast the tetrahedra of a block deform, 1/s^2: as |F'|, but not faster than their corners part, over
 /// the altitude. 0 in all lanes where none is faster than `rate` (1/s): in most corners do not even part by that.
-Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate) {
-    const LaneMat3<Real8> parting = parting_of(state, block);
+/// `part_at_most`: m/s, no two nodes of the body part faster.
+Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
-                reach_squared = reach * reach, widest = widest_parting(parting);
+                reach_squared = reach * reach;
+    if (all(Real8{} + part_at_most * part_at_most <= rate * rate * reach_squared)) return Real8{};
+    const LaneMat3<Real8> parting = parting_of(state, block);
+    const Real8 widest = widest_parting(parting);
     if (all(widest <= rate * rate * reach_squared)) return Real8{};
     const Real8 by_corners = reach > 0.0 ? widest / reach_squared : Real8{},
                 by_gradient = rate_squared_of(state, block, parting);
@@ -132,8 +135,9 @@ Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate) 
 }
 
 /// The greatest of these in a block, where it is above the square of `rate`; else 0. Marks the nodes of all that are.
-Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, std::span<std::uint8_t> beside_fast) {
-    const Real8 squared = deforming_squared(state, block, rate);
+Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most,
+                        std::span<std::uint8_t> beside_fast) {
+    const Real8 squared = deforming_squared(state, block, rate, part_at_most);
     if (all(squared <= rate * rate)) return 0;
     for (std::size_t l = 0; l < element_lanes; ++l) {
         if (!(squared[l] > rate * rate)) continue;
@@ -212,8 +216,9 @@ bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body
 }
 
 /// How fast the elements of a body deform, 1/s, where any does faster than `rate`; else 0. Tests from cheap to dear,
-/// each asked only where the one before fails. F' of an element is a mean of those of its tetrahedra.
-Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate,
+/// each asked only where the one before fails. F' of an element is a mean of those of its tetrahedra. `part_at_most`:
+/// m/s, no two nodes of the body part faster.
+Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate, Real part_at_most,
                       std::span<std::uint8_t> beside_fast) {
     if (!parts_faster(executor, state, body, rate)) return 0;
     const auto where_faster = [&](Real squared) { return squared > rate * rate ? std::sqrt(squared) : 0; };
@@ -229,7 +234,7 @@ Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t 
                           [&](std::size_t row) { return look_at(begin + row); });
     };
     const Real of_tetrahedra = of(state.body_blocks[body], [&](std::size_t block) {
-        return look_at_tetrahedra(state, block, rate, beside_fast);
+        return look_at_tetrahedra(state, block, rate, part_at_most, beside_fast);
     });
     if (state.body_element_blocks.empty() || of_tetrahedra == 0) return where_faster(of_tetrahedra);
     const Real of_elements = of(state.body_element_blocks[body],
@@ -289,7 +294,9 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         if (!(state.body_min_altitude[body] > 0) || blocks.size() == 0) continue;
         // two nodes part at most at twice the highest speed
         if (!(2 * speed.body_frame[body] > looked_for * state.body_min_altitude[body])) continue;
-        const Real rate = deformation_rate(executor, state, body, looked_for, beside_fast);
+        constexpr Real rounding = 1e-6;
+        const Real rate =
+            deformation_rate(executor, state, body, looked_for, (2 + rounding) * speed.body_frame[body], beside_fast);
         if (rate > verdict.fastest.rate) verdict.fastest = {rate, static_cast<Index>(body)};
         if (!(rate > max_strain_step / h) || verdict.fault != StepFault::none) continue;  // the first fault counts
         const Fastest fastest = fastest_of(state, body);
@@ -307,7 +314,8 @@ StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, 
     StrainRate fastest;
     for (std::size_t body = 0; body < state.body_node_blocks.size(); ++body) {
         if (!(state.body_min_altitude[body] > 0) || state.body_node_blocks[body].size() == 0) continue;
-        const Real of_body = deformation_rate(executor, state, body, rate, beside_fast);
+        const Real of_body =
+            deformation_rate(executor, state, body, rate, std::numeric_limits<Real>::infinity(), beside_fast);
         if (of_body > fastest.rate) fastest = {of_body, static_cast<Index>(body)};
     }
     return fastest;

@@ -18,7 +18,7 @@ struct ClusterKickInputs {
 
     static ClusterKickInputs bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                                   const BodyTable& body, const bool& any_asleep) {
-        return {.clusters = binder.value(clusters),
+        return {.clusters = binder.read(clusters),
                 .mass = binder.read(node.mass),
                 .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)};
     }

@@ -3,30 +3,21 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "components/lanes.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/elements/quick_stiffness.h"
 #include "systems/dynamics/stability/stiffness_share.h"
-#include "systems/material/with_law.h"
 
 namespace skerry {
 
 namespace {
 
-constexpr Real look_closer = 0.7, too_near = 0.9;  // of the modulus
-constexpr Real raised_to = 2;                      // times what it is
-
-/// Pa, a quick bound on the stiffness of each element; 0 where the law does not stiffen.
-Real8 quick_stiffness(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F) {
-    const MaterialConstants material = elements.material_of(block);
-    Real8 stiffness{};
-    with_law(material.model, [&](auto law) {
-        if constexpr (law.stiffness_varies) stiffness = law.stiffness_bound(material, F);
-    });
-    return stiffness;
-}
+constexpr Real too_near = 0.9;  // of the modulus
+constexpr Real raised_to = 2;   // times what it is
 
 /// to += x factor_x + y factor_y + z factor_z, by component of the factor. Lane by lane the same for each.
 void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& factor, std::span<Real> to) {
@@ -85,33 +76,55 @@ void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<
 
 }  // namespace
 
-Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, std::span<ElementLane> modulus,
-                      NodeClusters& clusters) {
+namespace {
+
+/// Looks at the implicit elements of one block. Returns what it adds to the kinetic energy, J.
+Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, Real beta, std::size_t b,
+                   const StiffenOutputs& out) {
+    const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);
+    if (all(taken <= 0.0)) return 0;
+    const LaneMat3<Real8> F = deformation_of(elements, b, bodies.position);
+    if (all((taken <= 0.0) | (quick_stiffness(elements.material_of(b), F) <= near_stiffness * taken))) return 0;
+    LaneQuaternion<Real8> q{one, zero, zero, zero};
+    const Real8 now = stiffness_of(elements, b, F, q);
     Real energy = 0;
-    const Real8 one = Real8{} + 1.0, zero{};
+    for (std::size_t l = 0; l < element_lanes; ++l) {
+        if (!(taken[l] > 0) || !(now[l] > too_near * taken[l])) continue;
+        const Real more = raised_to * now[l] - taken[l];
+        const Real weight = beta * more * elements.volume[b][l];
+        out.modulus[b][l] += more;
+        add_to_inverse(elements.nodes_of(b), l, weight, bodies.inverse_mass, out.clusters);
+        const LaneMat3<Real8> rate = deformation_of(elements, b, bodies.velocity);
+        energy += weight * inner_product(rate, rate)[l] / 2;
+    }
+    return energy;
+}
+
+/// Of the blocks with which `is_due` goes along.
+template <class IsDue>
+Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out, IsDue&& is_due) {
+    Real energy = 0;
     for (std::size_t body = 0; body < bodies.body_blocks.size(); ++body) {
         if (!(bodies.body_cluster_step[body] > 0) || bodies.body_asleep[body]) continue;
         const Real beta = inertia_of_stiffness(bodies.body_cluster_step[body]);
         const Range blocks = bodies.body_blocks[body];
-        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-            const Real8 taken = load(modulus[b]);
-            if (all(taken <= 0.0)) continue;
-            const LaneMat3<Real8> F = deformation_of(elements, b, bodies.position);
-            if (all((taken <= 0.0) | (quick_stiffness(elements, b, F) <= look_closer * taken))) continue;
-            LaneQuaternion<Real8> q{one, zero, zero, zero};
-            const Real8 now = stiffness_of(elements, b, F, q);
-            for (std::size_t l = 0; l < element_lanes; ++l) {
-                if (!(taken[l] > 0) || !(now[l] > too_near * taken[l])) continue;
-                const Real more = raised_to * now[l] - taken[l];
-                const Real weight = beta * more * elements.volume[b][l];
-                modulus[b][l] += more;
-                add_to_inverse(elements.nodes_of(b), l, weight, bodies.inverse_mass, clusters);
-                const LaneMat3<Real8> rate = deformation_of(elements, b, bodies.velocity);
-                energy += weight * inner_product(rate, rate)[l] / 2;
-            }
-        }
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
+            if (is_due(b)) energy += stiffen_block(elements, bodies, beta, b, out);
     }
     return energy;
+}
+
+}  // namespace
+
+Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, std::span<std::uint8_t> stiffening,
+                      const StiffenOutputs& out) {
+    if (stiffening.empty()) return 0;
+    return stiffen(elements, bodies, out,
+                   [&](std::size_t b) { return std::exchange(stiffening[b], std::uint8_t{0}) != 0; });
+}
+
+Real stiffen_all_clusters(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out) {
+    return stiffen(elements, bodies, out, [](std::size_t) { return true; });
 }
 
 }  // namespace skerry

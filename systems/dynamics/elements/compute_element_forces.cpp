@@ -6,6 +6,7 @@
 #include "components/check.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/elements/quick_stiffness.h"
 #include "systems/material/extract_rotation.h"
 #include "systems/material/relaxation.h"
 #include "systems/material/with_law.h"
@@ -134,6 +135,16 @@ struct Block {
         return std::ranges::any_of(lanes.lane, [](Real of) { return of > 0; });
     }
 
+    /// Whether an implicit element is so strained that its stiffness has to be looked at closely.
+    bool is_stiffening(const Parts<LaneMat3<KernelReal>>& F) const {
+        bool any = false;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const KernelReal taken = part_of<KernelReal>(elements.implicit_modulus, part);
+            any |= !all((taken <= 0.0) | (quick_stiffness(material, F[part]) <= near_stiffness * taken));
+        }
+        return any;
+    }
+
     /// Adds the stress of the strain rate where there is one, and keeps its impulse.
     void add_viscous_stress(const Parts<LaneMat3<KernelReal>>& F, std::span<const Vec3> velocity,
                             const PatchForces& patches, Parts<LaneMat3<KernelReal>>& P) const {
@@ -141,6 +152,7 @@ struct Block {
         Parts<KernelReal> viscosity;
         const bool acts = !implicit || viscosity_of_implicit(F, viscosity);
         if (!patches.viscous.empty()) patches.viscous[block] = acts;
+        if (implicit && !patches.stiffening.empty()) patches.stiffening[block] = is_stiffening(F);
         if (!acts) return;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);

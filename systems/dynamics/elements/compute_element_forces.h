@@ -44,6 +44,15 @@ struct ElementInputs {
     static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                               const MaterialTable& material, const BodyTable& body, const ActiveLevels& active = {},
                               const bool& any_asleep = false) {
+        ElementInputs elements = bind_explicit(binder, element, nodes, material, body, active, any_asleep);
+        elements.implicit_modulus = binder.read(element.implicit_modulus);
+        return elements;
+    }
+    /// The same for who does not ask what implicit elements are taken to have, and need not wait for it.
+    static ElementInputs bind_explicit(const Binder& binder, const ElementBlockTable& element,
+                                       const ElementNodeTable& nodes, const MaterialTable& material,
+                                       const BodyTable& body, const ActiveLevels& active = {},
+                                       const bool& any_asleep = false) {
         return {.first = binder.read(element.first),
                 .count = binder.read(element.count),
                 .node = binder.read(nodes.node),
@@ -66,10 +75,12 @@ struct ElementInputs {
                              .body_cap = binder.read(body.level_cap),
                              .touched = binder.read(element.touched),
                              .body_has_touched = binder.read(body.has_touched)},
-                .mass_form = binder.read(element.mass_form),
-                .implicit_modulus = binder.read(element.implicit_modulus)};
+                .mass_form = binder.read(element.mass_form)};
     }
 };
+
+/// Of the stiffness that an implicit element is taken to have: what comes that near is looked at closely.
+inline constexpr Real near_stiffness = 0.7;
 
 /// The patches and where their sums go.
 struct PatchForces {
@@ -81,6 +92,8 @@ struct PatchForces {
     std::span<const std::uint8_t> touched = {};             // by patch: some block of it is; empty: none
     std::span<ElementViscousImpulse> viscous_impulse = {};  // by block; empty: nothing is viscous
     std::span<std::uint8_t> viscous = {};                   // by block: whether it has one in this step
+    // by block, of those that are due: whether the quick bound of an implicit element is above near_stiffness
+    std::span<std::uint8_t> stiffening = {};
 
     static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
         return {.blocks = binder.read(patches.blocks),
@@ -91,7 +104,8 @@ struct PatchForces {
                 .force = binder.write(patches.force),
                 .touched = binder.read(patches.touched),
                 .viscous_impulse = binder.write(patches.viscous_impulse),
-                .viscous = binder.write(patches.viscous)};
+                .viscous = binder.write(patches.viscous),
+                .stiffening = binder.write(patches.stiffening)};
     }
 };
 

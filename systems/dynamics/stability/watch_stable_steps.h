@@ -21,7 +21,7 @@ struct WatchInputs {
 
     static WatchInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                             const MaterialTable& material, const BodyTable& body, const NodeTable& node) {
-        return {.elements = ElementInputs::bind(binder, element, nodes, material, body),
+        return {.elements = ElementInputs::bind_explicit(binder, element, nodes, material, body),
                 .body_blocks = binder.read(body.blocks),
                 .level_count = binder.read(body.level_count),
                 .mass = binder.read(node.mass)};

@@ -143,7 +143,7 @@ struct RegionInputs {
                 .velocity = binder.read(velocity),
                 .gravity = binder.value(gravity),
                 .key = binder.read(contact.key),
-                .clusters = &binder.value(clusters),
+                .clusters = &binder.read(clusters),
                 .cluster_kick = binder.read(cluster_kick),
                 .rigid = RigidInputs::bind(binder, node, body, rigid),
                 .implicit = ImplicitInputs::bind(binder, body, rigid, implicit, coupling),

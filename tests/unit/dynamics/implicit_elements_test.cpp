@@ -185,10 +185,10 @@ TEST_CASE("an element that stiffens raises its part of the inverse, and what is 
     std::mt19937_64 random(4);
     for (Vec3& v : box.body.velocity) v = test::random_vector(random);
     const auto stiffen = [&](const std::vector<std::uint8_t>& rest) {
-        return stiffen_clusters(
+        return stiffen_all_clusters(
             box.body.inputs(),
             {box.body_blocks, box.cluster_step, rest, box.body.position, box.body.velocity, box.body.inverse_mass},
-            box.body.elements.implicit_modulus, box.clusters);
+            {box.body.elements.implicit_modulus, box.clusters});
     };
     const auto kinetic = [&] {
         const Matrix A = box.inertia();
