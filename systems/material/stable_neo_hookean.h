@@ -70,6 +70,14 @@ struct StableNeoHookean {
                two_over_root_three * square_root(slope * slope * inner_product(F, F));
     }
 
+    /// Above that, of |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1. Equal at rest.
+    template <class T>
+    static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
+        const auto [mu, la] = model_moduli(material);
+        const T slope = la * (J - 1.0) - 0.75 * mu;
+        return 1.125 * mu + (la / 3) * (square * square) + (slope < 0.0 ? -slope : slope) * (square * (1.0 / 3) + 1.0);
+    }
+
     /// Above dP/dF: mu (1 - 1 / (Ic + 1)) X + 2 mu / (Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4
     /// mu) d(cof F). An element pressed together resists shear less than at rest, and at F = 0 not at all: a step that
     /// bounds nothing would be wrong as soon as it opens, so that it counts as stiff as at rest.

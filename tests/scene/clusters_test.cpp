@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "engine/world/step/step.h"
 #include "skerry/world.h"
+#include "systems/dynamics/clusters/implicit_elements.h"
 #include "tests/support/jittered_box.h"
 #include "tests/support/sliver_box.h"
 
@@ -23,6 +25,13 @@ Settings weightless(bool clusters) {
 /// Tetrahedra of many shapes, none smaller than this part of what it would be in an even box.
 Mesh uneven_box(Real least_volume) {
     const test::TetMesh box = test::jittered_box({8, 6, 6}, 0.02, 0.4, 21, least_volume);
+    return {box.nodes, box.tetrahedra};
+}
+
+/// Cells of 2 cm, of which some layers at one end are thinner.
+Mesh graded_box(const std::array<Index, 3>& cells, Index layers, Real thickness) {
+    test::TetMesh box = test::jittered_box(cells, 0.02, 0, 1);
+    for (Vec3& x : box.nodes) x.x() -= 0.02 * (1 - thickness) * std::min<Real>(x.x() / 0.02, layers);
     return {box.nodes, box.tetrahedra};
 }
 
@@ -67,6 +76,37 @@ TEST_CASE("where some elements allow a little less than the others there are clu
         CHECK(clustered.stable_step() > 1.5 * plain.stable_step());
         CHECK(clustered.report().clusters > 0);
     }
+}
+
+TEST_CASE("clusters add at most a hundredth to a moment of inertia, or a quarter of what masses at the nodes do",
+          "[scene][clusters]") {
+    Real most = 0, least = 1;
+    for (const Mesh& mesh :
+         {graded_box({8, 3, 3}, 2, 0.3), graded_box({8, 6, 6}, 2, 0.3), graded_box({8, 6, 6}, 4, 0.5),
+          graded_box({12, 12, 12}, 6, 0.6), sliver_box(0.2, 8, 0.01, 0.005)}) {
+        World world(weightless(true));
+        const BodyHandle body =
+            world.add_body(mesh, {.material = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.47})});
+        REQUIRE(world.stable_step() > 0);  // clusters are found
+        const Model& model = WorldAccess::state_of(world).model;
+        const Real of_lumping =
+            moment_of_lumping(model.tetrahedra.node, model.tetrahedra.volume, model.nodes.rest_position);
+        for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}) {
+            const Vec3 turn = axis.normalized();
+            std::vector<Vec3> velocity;
+            for (const Vec3& x : world.positions(body)) velocity.push_back(turn.cross(x));
+            world.set_velocities(body, velocity);
+            Real of_masses = 0;
+            for (std::size_t n = 0; n < velocity.size(); ++n)
+                of_masses += model.nodes.mass[n] * velocity[n].squaredNorm() / 2;
+            const Real added = added_energy(model) / of_masses;
+            CHECK(added <= std::max<Real>(0.01, of_lumping / 4));
+            most = std::max(most, added);
+            least = std::min(least, added);
+        }
+    }
+    CHECK(most > 0.011);
+    CHECK(least < 0.001);
 }
 
 TEST_CASE("a body with clusters that is strained in one place stands what its shares of mass do", "[scene][clusters]") {

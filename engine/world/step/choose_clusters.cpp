@@ -26,12 +26,13 @@ namespace {
 constexpr Real entry_cost = 0.7;
 /// What it has to save of the cost of a simulated second, for results that differ a little.
 constexpr Real least_gain = 1.5;
-/// The least moment of inertia of a body may grow by this part.
-constexpr Real most_moment = 0.01;
+/// The least moment of inertia of a body may grow by this part, or by so much of what masses at the nodes add to it,
+/// where that is more: 3 to 20 % in meshes as people have them.
+constexpr Real most_moment = 0.01, of_lumping = 0.25;
 constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, a second to invert
 /// Implicit elements are taken to be so much stiffer than they are, so that they may deform for a while.
 constexpr Real headroom = 4;
-constexpr Real most_lengthening = 16;  // of steps
+constexpr Real most_lengthening = 32;  // of steps
 /// Shorter ones could hardly save least_gain.
 constexpr Real least_lengthening = 1.68;
 /// What explicit elements stand by mass forms over what they stand by shares, which the search goes by: of four meshes
@@ -86,19 +87,27 @@ void note_implicit(Model& model, std::size_t b) {
     model.patches.resize_viscous(model.elements.first.size());
 }
 
+/// How much clusters may add to the least moment of inertia of a body, over that.
+Real most_moment_of(const Model& model, std::size_t b) {
+    const Range blocks = model.bodies.tetrahedron_blocks[b];
+    return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
+                                                                rows_of(model.tetrahedra.volume, blocks),
+                                                                model.nodes.rest_position));
+}
+
 struct Found {
     bool possible = false;  // neither too many nor too heavy
-    Real moment = 0;        // that clusters add to the least of the body, over that
+    Real moment = 0;        // that clusters add to the least of the body, over the most that they may
     ClusterSizes sizes{};
 };
 
-Found judged(const Model& model, std::size_t b, const ImplicitShare& share) {
-    if (share.too_many || !(share.moment <= most_moment)) return {};
+Found judged(const Model& model, std::size_t b, const ImplicitShare& share, Real most) {
+    if (share.too_many || !(share.moment <= most)) return {};
     const Range blocks = model.bodies.blocks[b];
     const ClusterSizes sizes = cluster_sizes(
         model.all_elements(), blocks, rows_of(model.elements.implicit_modulus, blocks), model.nodes.inverse_mass);
     if (sizes.largest > largest_cluster) return {};
-    return {true, share.moment, sizes};
+    return {true, share.moment / most, sizes};
 }
 
 ImplicitOutputs outputs_of(Model& model, Range blocks) {
@@ -126,10 +135,11 @@ public:
             twins.search.emplace(model_.all_elements(), blocks, model_.nodes.rest_position, model_.nodes.mass,
                                  stiffness_sum_, outputs_of(model_, blocks));
             twins.searched = b;
+            twins.most_moment = most_moment_of(model_, b);
         }
         const Kept kept(model_, twins.searched);
-        const Found found =
-            judged(model_, twins.searched, twins.search->find({step, step / gain_of_forms, headroom, most_moment}));
+        const ImplicitShare share = twins.search->find({step, step / gain_of_forms, headroom, twins.most_moment});
+        const Found found = judged(model_, twins.searched, share, twins.most_moment);
         Result result{step, found, Kept(model_, twins.searched)};
         kept.put_back(model_, twins.searched);
         result.elements.put_back(model_, b);
@@ -145,6 +155,7 @@ private:
     };
     struct OfTwins {
         std::size_t bodies = 0, searched = 0;
+        Real most_moment = 0;                    // of the search
         std::optional<ImplicitSearch> search{};  // once it was asked for
         std::vector<Result> known{};
     };
@@ -194,7 +205,7 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
 
 struct PlannedBody {
     std::size_t row;
-    Real moment;    // that clusters add to the least of the body, over that
+    Real moment;    // that clusters add to the least of the body, over the most that they may
     Kept elements;  // what they are
 };
 
@@ -240,9 +251,9 @@ void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
     model.bodies.rest_step[b] = std::min(step, stands);
 }
 
-/// s, for which clusters of this moment, made for steps of `step`, are not too heavy.
+/// s, for which clusters of this moment over the most that they may have, made for steps of `step`, are not too heavy.
 Real longest_by_moment(Real step, Real moment) {
-    return moment > 0 ? step * std::sqrt(most_moment / moment) : std::numeric_limits<Real>::infinity();
+    return moment > 0 ? step / std::sqrt(moment) : std::numeric_limits<Real>::infinity();
 }
 
 Real longest_step(const Settings& settings) {
@@ -374,10 +385,12 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
     // by shares, which follow a deformation
     std::ranges::fill(rows_of(model.elements.mass_form, blocks), ElementForm{});
-    const Found found = judged(
-        model, body,
-        add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
-                              {of_clusters, step, headroom, most_moment}, stiffness_sum, outputs_of(model, blocks)));
+    const Real most = most_moment_of(model, body);
+    const Found found =
+        judged(model, body,
+               add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
+                                     {of_clusters, step, headroom, most}, stiffness_sum, outputs_of(model, blocks)),
+               most);
     const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (lasts * step);
     if (found.possible &&
         cost_of(model, entries - before + found.sizes.entries, step) + inversions < cost_of(model, entries, present)) {

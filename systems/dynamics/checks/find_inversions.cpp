@@ -38,9 +38,11 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
 /// m, of the narrowest element of a block; of inverted ones, too: they may turn back, and over again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
-    Real least = std::numeric_limits<Real>::infinity();  // m^2
-    for (std::size_t l = 0; l < element_lanes; ++l)
-        if (rest_volume[l] > 0) least = std::min(least, span[l] > 0 ? volume[l] * volume[l] / span[l] : 0);
+    const Real8 left_over = Real8{} + std::numeric_limits<Real>::infinity();
+    const Real8 squared_width = span > 0.0 ? volume * volume / span : Real8{};
+    const Real8 of_elements = load(rest_volume) > 0.0 ? squared_width : left_over;  // m^2
+    Real least = of_elements[0];
+    for (std::size_t l = 1; l < element_lanes; ++l) least = std::min(least, of_elements[l]);
     return std::sqrt(least);
 }
 

@@ -1,6 +1,5 @@
 #include "systems/dynamics/clusters/find_implicit_elements.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,8 +56,7 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
         const Vec3 x = position[static_cast<std::size_t>(n)] - center;
         second += mass[static_cast<std::size_t>(n)] * x * x.transpose();
     }
-    const Vec3 spread = Eigen::SelfAdjointEigenSolver<Mat3>(second, Eigen::EigenvaluesOnly).eigenvalues();
-    return spread[0] + spread[1];
+    return least_moment_of(second);
 }
 
 /// kg m^2, of a rigid turn, what an implicit element adds: beta c V |omega x|^2 <= beta c V omega^2 for each axis.

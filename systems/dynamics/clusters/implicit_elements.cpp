@@ -1,5 +1,6 @@
 #include "systems/dynamics/clusters/implicit_elements.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +8,11 @@
 #include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
+
+Real least_moment_of(const Mat3& spread) {
+    const Vec3 along = Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+    return along[0] + along[1];
+}
 
 void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
                  std::span<ElementLane> leeway) {
@@ -50,6 +56,39 @@ Real added_energy(const ElementInputs& elements, Range blocks, std::span<const E
         for (std::size_t l = 0; l < element_lanes; ++l) energy += taken[l] * elements.volume[b][l] * square[l];
     }
     return inertia_of_stiffness(step) * energy / 2;
+}
+
+Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
+                       std::span<const Vec3> position) {
+    const auto for_each_tetrahedron = [&](auto&& visit) {
+        for (std::size_t b = 0; b < node.size(); ++b)
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                if (volume[b][l] > 0) visit(b, l, volume[b][l]);
+    };
+    const auto corner = [&](std::size_t b, std::size_t l, std::size_t a) {
+        return position[static_cast<std::size_t>(node[b][a][l])];
+    };
+    Real whole = 0;              // m^3
+    Vec3 center = Vec3::Zero();  // m
+    for_each_tetrahedron([&](std::size_t b, std::size_t l, Real part) {
+        whole += part;
+        for (std::size_t a = 0; a < 4; ++a) center += part / 4 * corner(b, l, a);
+    });
+    if (!(whole > 0)) return 0;
+    center /= whole;
+    Mat3 lumped = Mat3::Zero(), spread = Mat3::Zero();  // m^5, integrals of x x^T
+    for_each_tetrahedron([&](std::size_t b, std::size_t l, Real part) {
+        Vec3 sum = Vec3::Zero();
+        Mat3 squares = Mat3::Zero();
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Vec3 x = corner(b, l, a) - center;
+            sum += x;
+            squares += x * x.transpose();
+        }
+        lumped += part / 4 * squares;
+        spread += part / 20 * (squares + sum * sum.transpose());
+    });
+    return least_moment_of(lumped) / least_moment_of(spread) - 1;
 }
 
 }  // namespace skerry

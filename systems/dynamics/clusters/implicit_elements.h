@@ -26,6 +26,14 @@ Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<con
 Real added_energy(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus, Real step,
                   std::span<const Vec3> velocity);
 
+/// The least moment of inertia, of the integral of x x^T over the mass, x from its centre.
+Real least_moment_of(const Mat3& spread);
+
+/// What masses at the nodes, a quarter of each tetrahedron at each of its corners, add to the least moment of inertia
+/// of a body of one density, over that moment. 0 of a body without volume.
+Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
+                       std::span<const Vec3> position);
+
 /// kg m^2/s^2 per Pa m^3: beta of A = M + beta sum K, for steps up to `step`.
 constexpr Real inertia_of_stiffness(Real step) {
     constexpr Real safety = 1.8;  // step_times_frequency, in place of 2

@@ -84,7 +84,9 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
     const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);
     if (all(taken <= 0.0)) return 0;
     const LaneMat3<Real8> F = deformation_of(elements, b, bodies.position);
-    if (all((taken <= 0.0) | (quick_stiffness(elements.material_of(b), F) <= near_stiffness * taken))) return 0;
+    if (all((taken <= 0.0) |
+            (quick_stiffness(elements.material_of(b), inner_product(F, F), determinant(F)) <= near_stiffness * taken)))
+        return 0;
     LaneQuaternion<Real8> q{one, zero, zero, zero};
     const Real8 now = stiffness_of(elements, b, F, q);
     Real energy = 0;

@@ -116,6 +116,29 @@ struct Block {
         });
     }
 
+    /// Of implicit elements of this |F|^2 and det F: whether they are near enough to rest to have no viscosity.
+    template <class T>
+    static auto is_calm(const T& square, const T& J) {
+        constexpr Real stretched = 6, pressed = 0.3;  // 3 and 1 at rest
+        return (square < stretched) & (J > pressed);
+    }
+
+    /// Whether all elements of the block are implicit ones far from what they are made for, or explicit ones beside
+    /// such: most are, in most steps.
+    [[gnu::always_inline]] bool rests_easy(const Parts<LaneMat3<KernelReal>>& F) const {
+        if (elements.implicit_modulus.empty()) return false;
+        bool any_implicit = false, easy = true;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
+                             taken = part_of<KernelReal>(elements.implicit_modulus, part);
+            const auto near_rest =
+                is_calm(square, J) & (quick_stiffness(material, square, J) <= near_stiffness * taken);
+            easy &= all((taken <= 0.0) | near_rest);
+            any_implicit |= !all(taken <= 0.0);
+        }
+        return any_implicit && easy;
+    }
+
     bool has_implicit() const {
         return !elements.implicit_modulus.empty() &&
                std::ranges::any_of(elements.implicit_modulus[block].lane, [](Real modulus) { return modulus > 0; });
@@ -123,13 +146,12 @@ struct Block {
 
     /// Pa s, of implicit elements that are stretched or pressed by much; 0 of the others. Returns whether any is.
     bool viscosity_of_implicit(const Parts<LaneMat3<KernelReal>>& F, Parts<KernelReal>& viscosity) const {
-        constexpr Real stretched = 6, pressed = 0.3;  // |F|^2, 3 at rest; det F, 1 at rest
         ElementLane lanes{};
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal of_modulus =
                 elements.viscous_time[block] * part_of<KernelReal>(elements.implicit_modulus, part);
-            const auto calm = (inner_product(F[part], F[part]) < stretched) & (determinant(F[part]) > pressed);
-            viscosity[part] = calm ? KernelReal{} : of_modulus;
+            viscosity[part] =
+                is_calm(inner_product(F[part], F[part]), determinant(F[part])) ? KernelReal{} : of_modulus;
             store_part(viscosity[part], lanes, part);
         }
         return std::ranges::any_of(lanes.lane, [](Real of) { return of > 0; });
@@ -140,19 +162,24 @@ struct Block {
         bool any = false;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal taken = part_of<KernelReal>(elements.implicit_modulus, part);
-            any |= !all((taken <= 0.0) | (quick_stiffness(material, F[part]) <= near_stiffness * taken));
+            any |= !all((taken <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
+                                                          determinant(F[part])) <= near_stiffness * taken));
         }
         return any;
     }
 
+    void note(const PatchForces& patches, bool viscous, bool stiffening) const {
+        if (!patches.viscous.empty()) patches.viscous[block] = viscous;
+        if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
+    }
+
     /// Adds the stress of the strain rate where there is one, and keeps its impulse.
-    void add_viscous_stress(const Parts<LaneMat3<KernelReal>>& F, std::span<const Vec3> velocity,
-                            const PatchForces& patches, Parts<LaneMat3<KernelReal>>& P) const {
+    [[gnu::noinline]] void add_viscous_stress(const Parts<LaneMat3<KernelReal>>& F, std::span<const Vec3> velocity,
+                                              const PatchForces& patches, Parts<LaneMat3<KernelReal>>& P) const {
         const bool implicit = has_implicit();
         Parts<KernelReal> viscosity;
         const bool acts = !implicit || viscosity_of_implicit(F, viscosity);
-        if (!patches.viscous.empty()) patches.viscous[block] = acts;
-        if (implicit && !patches.stiffening.empty()) patches.stiffening[block] = is_stiffening(F);
+        note(patches, acts, implicit && is_stiffening(F));
         if (!acts) return;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);
@@ -177,8 +204,12 @@ struct Block {
         Parts<LaneMat3<KernelReal>> F;
         for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
         Parts<LaneMat3<KernelReal>> P = elastic_stress(F, rotation, next);
-        if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0)
-            add_viscous_stress(F, velocity, patches, P);
+        if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
+            if (rests_easy(F))
+                note(patches, false, false);
+            else
+                add_viscous_stress(F, velocity, patches, P);
+        }
         Parts<KernelReal> volume;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             if (material.relaxes() && !next.viscous_strain.empty())

@@ -7,14 +7,15 @@
 
 namespace skerry {
 
-/// Pa, of the material's Hessian in each lane: that of the law; 0 where the law does not stiffen.
+/// Pa, not below the bound of the law in each lane; 0 where the law does not stiffen. `square`: |F|^2, `J`: det F.
 template <class T>
-T quick_stiffness(const MaterialConstants& material, const LaneMat3<T>& F) {
-    T stiffness{};
-    with_law(material.model, [&](auto law) {
-        if constexpr (law.stiffness_varies) stiffness = law.stiffness_bound(material, F);
+[[gnu::always_inline]] inline T quick_stiffness(const MaterialConstants& material, const T& square, const T& J) {
+    return with_law(material.model, [&](auto law) {
+        if constexpr (law.stiffness_varies)
+            return law.rough_stiffness_bound(material, square, J);
+        else
+            return T{};
     });
-    return stiffness;
 }
 
 }  // namespace skerry

@@ -377,6 +377,24 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
     }
 }
 
+TEST_CASE("masses at the nodes add to a moment of inertia as the square of an edge", "[unit][clusters]") {
+    const auto of = [](const test::TetMesh& mesh) {
+        const test::ElasticBody body(mesh, material_constants(MaterialModel::linear, 1e5, 0.4, 1000));
+        return moment_of_lumping(body.tetrahedra.node, body.tetrahedra.volume, body.position);
+    };
+    // of one tetrahedron about its centre a fifth is right: sum x x^T/4 for sum x x^T/20
+    CHECK(of({{{1, 2, 3}, {2, 2, 3}, {1, 4, 3}, {1, 2, 6}}, {{0, 1, 2, 3}}}) == Approx(4));
+    const auto of_box = [&](int cells) {
+        const Mesh box = test::mirrored_box(0.3, cells);
+        return of({box.nodes, box.tetrahedra});
+    };
+    const Real coarse = of_box(4), fine = of_box(8);
+    CHECK(coarse / fine == Approx(4).epsilon(0.01));
+    // each cell of an even box: masses at the corners, c^2/4 along each axis, for c^2/12 of it
+    CHECK(fine == Approx(2.0 / 64).epsilon(0.01));
+    CHECK(moment_of_lumping({}, {}, {}) == 0);
+}
+
 TEST_CASE("tetrahedra have leeway that implicit elements cover", "[unit][clusters]") {
     Ragged<Index> covered;
     for (const Index at : {0, 2, 4, 6, 7}) covered.offset.push_back(at);

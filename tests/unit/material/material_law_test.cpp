@@ -243,6 +243,9 @@ TEST_CASE("stable neo-Hookean: no eigenvalue of the dense Hessian is above the b
                 const Real top = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, 9, 9>>(0.5 * (H + H.transpose()))
                                      .eigenvalues()[8];
                 CHECK(top <= bound * (1 + 1e-7));
+                const Real rough = StableNeoHookean::rough_stiffness_bound(material, F.squaredNorm(), F.determinant());
+                CHECK(rough >= bound * (1 - 1e-12));
+                if (trial == 0 && stretch == Vec3::Ones()) CHECK(rough == Approx(bound).epsilon(1e-12));
                 CHECK(bound > 0);  // a weight of the shares of mass: not nothing, however soft
             }
     }
