@@ -1,6 +1,7 @@
 // One row per rigid body: how it moves as a whole. Its nodes follow (docs/methods/rigid_bodies.md).
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "components/body_table.h"
@@ -25,6 +26,7 @@ struct RigidBodyTable {
     Column<Mat3> rotation;          // principal frame to world
     Column<Vec3> momentum;          // kg m/s
     Column<Vec3> angular_momentum;  // kg m^2/s, about the centre
+    Column<std::uint8_t> large;     // whether what deforms in its frame does so by the laws of its elements
     // The attachment that holds it as a whole, or the frame of what deforms in it, and where the frame of the mesh is
     // in that of the attachment:
     Column<Index> holder;        // row of AttachmentTable, or no_index
@@ -41,10 +43,11 @@ struct RigidBodyTable {
     Column<Mat3> rotation_next;
     // by strain_implicit_bodies: N m s, what keeps the frame of a held body on its way against what deforms in it
     Column<Vec3> hold_moment;
+    Column<std::uint8_t> large_next;
 
     std::size_t size() const { return mass.size(); }
 
-    /// The only list of columns. Derived: by find_holders.
+    /// The only list of columns. Derived: by find_holders. `large` is hashed where it is set.
     void for_each_column(auto&& visit) {
         visit("body", body, ColumnRole::link);
         visit("mass", mass, ColumnRole::state);
@@ -55,6 +58,7 @@ struct RigidBodyTable {
         visit("rotation", rotation, ColumnRole::state);
         visit("momentum", momentum, ColumnRole::state);
         visit("angular_momentum", angular_momentum, ColumnRole::state);
+        visit("large", large, ColumnRole::link);
         visit("holder", holder, ColumnRole::derived);
         visit("held_position", held_position, ColumnRole::derived);
         visit("held_rotation", held_rotation, ColumnRole::derived);
@@ -68,6 +72,7 @@ struct RigidBodyTable {
         visit("center_next", center_next, ColumnRole::scratch);
         visit("rotation_next", rotation_next, ColumnRole::scratch);
         visit("hold_moment", hold_moment, ColumnRole::scratch);
+        visit("large_next", large_next, ColumnRole::scratch);
     }
 };
 

@@ -154,6 +154,10 @@ std::string summary_of(const RunResult& result) {
     text += limit_lines(r);
     for (const std::string& choice : choice_texts(r)) text += line("dynamics", choice);
     if (r.clusters > 0) text += line("clusters", cluster_text(r));
+    if (r.large_strain_steps > 0)
+        text += line("large strain", grouped(r.large_strain_steps) + " steps of implicit bodies, in " +
+                                         grouped(r.newton_steps) + " of Newton's method with " +
+                                         grouped(r.tangent_factors) + " factors");
     if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " +

@@ -200,6 +200,8 @@ std::uint64_t body_hash(Model& model, std::size_t body) {
             const bool its_own =
                 model.rigid_bodies.body[static_cast<std::size_t>(rigid.begin)] == static_cast<Index>(body);
             add_row(hash, its_own);
+            if (const std::uint8_t large = model.rigid_bodies.large[static_cast<std::size_t>(rigid.begin)]; large != 0)
+                add_row(hash, large);
         }
     }
     if (const Range implicit = bodies.implicit[body]; implicit != Range{implicit.begin, implicit.begin}) {

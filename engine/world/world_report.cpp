@@ -120,6 +120,9 @@ std::string StepReport::message() const {
             return "the step was not taken: " + who + " is so far from the origin that neighbouring positions are " +
                    short_text(value) +
                    " of its mean edge apart; put the origin near the bodies, by a local frame of the scene";
+        case StepStatus::unsolved:
+            return "the step was not taken: Newton's method finds none of large strain for " + who +
+                   ", in a thousandth of the step, too; check its loads, velocities and shape, or make it explicit";
         case StepStatus::too_stiff:
             return "the step was not taken: " + who + " stands no step longer than " + short_text(value) +
                    " s, with which time would not go on; check its material, size and shape";

@@ -1,52 +1,40 @@
 #include "systems/material/corotational.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 
 namespace skerry {
 
-namespace {
-
-/// F = R S with R a rotation: from the singular values, the smallest turned round when F is mirrored. Shares nothing
-/// with the kernel.
-struct Polar {
-    Mat3 R;
-    Vec3 stretch;
-};
-
-Polar polar(const Mat3& F) {
-    const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 U = svd.matrixU();
-    Vec3 s = svd.singularValues();
-    if ((U * svd.matrixV().transpose()).determinant() < 0) {
-        U.col(2) *= -1;
-        s[2] *= -1;
-    }
-    return {U * svd.matrixV().transpose(), s};
-}
-
-}  // namespace
-
 Real Corotational::energy_density(const MaterialConstants& material, const Mat3& F) {
-    const Vec3 strain = polar(F).stretch - Vec3::Ones();
+    const Vec3 strain = Stretches(F).stretch - Vec3::Ones();
     return material.shear_modulus * strain.squaredNorm() + 0.5 * material.lame_lambda * strain.sum() * strain.sum();
 }
 
 Mat3 Corotational::stress(const MaterialConstants& material, const Mat3& F) {
-    const Polar p = polar(F);
-    return 2 * material.shear_modulus * (F - p.R) + material.lame_lambda * (p.stretch.sum() - 3) * p.R;
+    const Stretches frames(F);
+    const Mat3 R = frames.left * frames.right.transpose();
+    return 2 * material.shear_modulus * (F - R) + material.lame_lambda * (frames.stretch.sum() - 3) * R;
 }
 
 Real Corotational::stiffness_bound(const MaterialConstants& material, const Mat3& F) {
     const Real mu = material.shear_modulus, la = material.lame_lambda;
-    const Vec3 s = polar(F).stretch;
+    Vec3 s = Stretches(F).stretch;
+    std::ranges::sort(s, std::greater<Real>());
     const Real twist = la * (s.sum() - 3) - 2 * mu;
     // dP/dF = 2 mu on every deviatoric mode, 2 mu + 3 la on R itself; the modes that turn R add twist * 2/(s_i + s_j).
     Real bound = 2 * mu + std::max(Real{0}, 3 * la);
     if (twist > 0) bound = std::max(bound, 2 * mu + twist * 2 / std::max(s[1] + s[2], Real{0}));
     return bound;
+}
+
+Tangent Corotational::tangent(const MaterialConstants& material, const Mat3& F) {
+    constexpr Real least = 1e-3;  // of s_i + s_j, where the frame is about to jump
+    const Real mu = material.shear_modulus, la = material.lame_lambda;
+    const Stretches frames(F);
+    const Vec3& s = frames.stretch;
+    const Real turning = la * (s.sum() - 3) - 2 * mu;
+    Vec3 twist;
+    for (Index k = 0; k < 3; ++k) twist[k] = 2 * mu + 2 * turning / std::max(s[(k + 1) % 3] + s[(k + 2) % 3], least);
+    return without_softening(frames, 2 * mu * Mat3::Identity() + Mat3::Constant(la), Vec3::Constant(2 * mu), twist);
 }
 
 }  // namespace skerry

@@ -3,6 +3,7 @@
 
 #include "components/material_table.h"
 #include "systems/material/lane_math.h"
+#include "systems/material/tangent.h"
 
 namespace skerry {
 
@@ -22,6 +23,10 @@ struct Corotational {
     /// singular values of F, the smallest with the sign of det F (docs/methods/stable_step.md 4.2). Infinite where the
     /// nearest rotation is not unique.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+
+    /// dP/dF: 2 mu 1 + lambda 1 1^T of the stretches, 2 mu of a flip, and of a twist what turning R adds, 2 mu +
+    /// (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j).
+    static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// The same by lanes, with the rotation R nearest to F given.
     template <class T>

@@ -19,4 +19,10 @@ Real Linear::stiffness_bound(const MaterialConstants& material, const Mat3&) {
     return 2 * material.shear_modulus + std::max(Real{0}, 3 * material.lame_lambda);  // lambda < 0: auxetic
 }
 
+Tangent Linear::tangent(const MaterialConstants& material, const Mat3&) {
+    const Real mu = material.shear_modulus;
+    const Mat3 normal = 2 * mu * Mat3::Identity() + Mat3::Constant(material.lame_lambda);
+    return {Mat3::Identity(), Mat3::Identity(), normal, Vec3::Constant(2 * mu), Vec3::Zero()};
+}
+
 }  // namespace skerry

@@ -3,6 +3,7 @@
 
 #include "components/material_table.h"
 #include "systems/material/lane_math.h"
+#include "systems/material/tangent.h"
 
 namespace skerry {
 
@@ -20,6 +21,9 @@ struct Linear {
 
     /// Largest eigenvalue of dP/dF, Pa: that of the rest shape, whatever the deformation.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+
+    /// dP/dF, whatever F is.
+    static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// The same by lanes.
     template <class T>

@@ -17,6 +17,10 @@ Real stiffness_bound(const MaterialConstants& material, const Mat3& F) {
     return with_law(material.model, [&](auto law) { return law.stiffness_bound(material, F); });
 }
 
+Tangent tangent(const MaterialConstants& material, const Mat3& F) {
+    return with_law(material.model, [&](auto law) { return law.tangent(material, F); });
+}
+
 MaterialConstants material_constants(MaterialModel model, Real young_modulus, Real poisson_ratio, Real density) {
     SKERRY_CHECK(young_modulus > 0 && density > 0 && poisson_ratio > -1 && poisson_ratio < 0.5);
     return {.model = model,

@@ -39,4 +39,22 @@ Real StableNeoHookean::stiffness_bound(const MaterialConstants& material, const 
            2 / std::sqrt(Real{3}) * std::abs(la * (F.determinant() - 1) - 0.75 * mu) * F.norm();
 }
 
+Tangent StableNeoHookean::tangent(const MaterialConstants& material, const Mat3& F) {
+    const auto [mu, la] = model_moduli(material);
+    const Stretches frames(F);
+    const Vec3& s = frames.stretch;
+    const Vec3 cof(s[1] * s[2], s[2] * s[0], s[0] * s[1]);
+    const Real inverse = 1 / (s.squaredNorm() + 1), shear = mu - mu * inverse;
+    const Real pressure = la * (s.prod() - 1) - 0.75 * mu;
+    Mat3 normal =
+        shear * Mat3::Identity() + 2 * mu * inverse * inverse * s * s.transpose() + la * cof * cof.transpose();
+    for (Index k = 0; k < 3; ++k) {
+        const Index i = (k + 1) % 3, j = (k + 2) % 3;
+        normal(i, j) += pressure * s[k];
+        normal(j, i) += pressure * s[k];
+    }
+    return without_softening(frames, normal, Vec3::Constant(shear) - pressure * s,
+                             Vec3::Constant(shear) + pressure * s);
+}
+
 }  // namespace skerry

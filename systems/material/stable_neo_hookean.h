@@ -4,6 +4,7 @@
 
 #include "components/material_table.h"
 #include "systems/material/lane_math.h"
+#include "systems/material/tangent.h"
 
 namespace skerry {
 
@@ -34,6 +35,10 @@ struct StableNeoHookean {
     /// (docs/methods/stable_step.md 4.3). The first term is the most that mu (1 - 1 / (Ic + 1)) + 2 mu Ic / (Ic + 1)^2
     /// comes to, at Ic = 3.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+
+    /// dP/dF: with a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu, c the stretches of cof F: a 1 + 2 mu/(Ic + 1)^2 s
+    /// s^T + la c c^T + p s_k of the stretches i, j, a - p s_k of a flip, a + p s_k of a twist.
+    static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// The same by lanes.
     template <class T>

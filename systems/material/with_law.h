@@ -16,6 +16,7 @@ namespace skerry {
 ///                         lanes; else as if it had the one of its rest shape
 ///     stress_flops        of stress by lanes, a tetrahedron: what profile_elements compares times with
 ///     energy_density, stress, stiffness_bound (material, F)     one element, the plain twin of the kernels
+///     tangent (material, F)                                     one element, for Newton steps
 ///     energy_density, stress (material, F[, R])                 by lanes
 ///     rough_stiffness_bound (material, |F|^2, det F)            by lanes, where stiffness_varies: not below the other
 ///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or something above it, as terms

@@ -1,4 +1,5 @@
 // Derivatives by differences, and what stress must be for simple deformations.
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"
@@ -42,6 +43,49 @@ TEST_CASE("stress is the derivative of the energy density", "[property]") {
                 CHECK(std::abs(P.data()[i] - slope) <= 1e-6 * (1 + P.norm()));
             }
         }
+    }
+}
+
+TEST_CASE("a tangent is the derivative of stress without its negative part", "[property]") {
+    std::mt19937_64 random(3);
+    using Matrix9 = Eigen::Matrix<Real, 9, 9>;
+    for (MaterialModel model : test::material_models) {
+        int softened = 0;
+        for (int trial = 0; trial < 200; ++trial) {
+            const MaterialConstants material = material_constants(model, 1, trial % 4 == 0 ? -0.3 : 0.4, 1);
+            Mat3 F = Mat3::Identity() + (trial % 2 ? 0.7 : 0.2) * random_matrix(random);
+            if (trial % 5 == 0) F.col(1) *= -1;
+            if (stiffness_bound(material, F) > 30) continue;  // corotational, where the frame is about to jump
+            Matrix9 slope, found;
+            const Tangent tangent = skerry::tangent(material, F);
+            for (int i = 0; i < 9; ++i) {
+                constexpr Real step = 1e-5;
+                Mat3 unit = Mat3::Zero();
+                unit.data()[i] = 1;
+                const Mat3 by_differences =
+                    (stress(material, F + step * unit) - stress(material, F - step * unit)) / (2 * step);
+                const Mat3 turned = tangent.left.transpose() * unit * tangent.right;
+                Mat3 pull = Mat3::Zero();
+                for (int k = 0; k < 3; ++k) {
+                    const int a = (k + 1) % 3, b = (k + 2) % 3;
+                    pull(k, k) = tangent.normal.row(k).dot(turned.diagonal());
+                    const Real even = (tangent.flip[k] + tangent.twist[k]) / 2,
+                               crossed = (tangent.flip[k] - tangent.twist[k]) / 2;
+                    pull(a, b) = even * turned(a, b) + crossed * turned(b, a);
+                    pull(b, a) = even * turned(b, a) + crossed * turned(a, b);
+                }
+                const Mat3 back = tangent.left * pull * tangent.right.transpose();
+                slope.col(i) = Eigen::Map<const Eigen::Matrix<Real, 9, 1>>(by_differences.data());
+                found.col(i) = Eigen::Map<const Eigen::Matrix<Real, 9, 1>>(back.data());
+            }
+            const Eigen::SelfAdjointEigenSolver<Matrix9> modes((slope + slope.transpose()) / 2);
+            const Matrix9 kept =
+                modes.eigenvectors() * modes.eigenvalues().cwiseMax(0).asDiagonal() * modes.eigenvectors().transpose();
+            softened += modes.eigenvalues().minCoeff() < -1e-3;
+            INFO("model " << name_of(model) << " trial " << trial);
+            CHECK((found - kept).norm() <= 1e-6 * (1 + slope.norm()));
+        }
+        CHECK((model == MaterialModel::linear ? softened == 0 : softened > 20));
     }
 }
 

@@ -17,10 +17,11 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff, stopped };
+enum class StepStatus { ok, not_finite, too_fast, too_far, too_stiff, unsolved, stopped };
 enum class ContactMotion { open, stick, slide };
 /// What keeps a step from being longer (docs/step_length.md). setting: step_size. rest: the stable step of a body as it
-/// is at rest; strain: that of a body as it is deformed. speed: an element would deform by more than max_strain_step
+/// is at rest; strain: that of a body as it is deformed, or one of large strain of an implicit body for which Newton's
+/// method finds nothing longer. speed: an element would deform by more than max_strain_step
 /// in a step; inversion: an element would turn inside out; crossing: surfaces would cross. Speed
 /// is measured before a step; inversions, crossings and sudden impacts are found in tries that are given up, and steps
 /// grow back by a fifth each.
@@ -199,19 +200,21 @@ struct RunCounters {
     std::uint64_t retried = 0;        // steps tried again with what crossed in them as contacts
     std::uint64_t limited = 0;        // steps shorter than step_size of the settings, which a body does not stand
     std::uint64_t inversions = 0;     // elements that turned inside out, each time that one did
-    std::uint64_t contact_sum = 0, iteration_sum = 0;  // contacts, and sweeps of regions, of each step
-    std::uint64_t solved = 0;                          // regions
-    std::uint64_t unconverged = 0;                     // regions
-    std::uint64_t certified = 0;                       // regions whose warm start needed no sweep
-    std::uint64_t closed_form = 0;                     // regions of one contact
-    std::uint64_t separating = 0;                      // regions whose contacts all came apart
-    std::uint64_t frictionless = 0;                    // regions without friction, solved in one row a contact
-    std::uint64_t in_lanes = 0;                        // regions solved side by side with others
-    std::uint64_t frozen = 0;                          // contact steps left out since nothing changed there
-    std::uint64_t contact_steps = 0;                   // contacts times sweeps, of regions that were swept
-    std::uint64_t swept = 0;                           // regions that needed sweeps
-    std::uint64_t element_steps = 0;                   // with multirate: elements times steps
-    std::uint64_t element_impulses = 0;                // of them, how many were evaluated
+    std::uint64_t contact_sum = 0, iteration_sum = 0;     // contacts, and sweeps of regions, of each step
+    std::uint64_t solved = 0;                             // regions
+    std::uint64_t unconverged = 0;                        // regions
+    std::uint64_t certified = 0;                          // regions whose warm start needed no sweep
+    std::uint64_t closed_form = 0;                        // regions of one contact
+    std::uint64_t separating = 0;                         // regions whose contacts all came apart
+    std::uint64_t frictionless = 0;                       // regions without friction, solved in one row a contact
+    std::uint64_t in_lanes = 0;                           // regions solved side by side with others
+    std::uint64_t frozen = 0;                             // contact steps left out since nothing changed there
+    std::uint64_t contact_steps = 0;                      // contacts times sweeps, of regions that were swept
+    std::uint64_t swept = 0;                              // regions that needed sweeps
+    std::uint64_t element_steps = 0;                      // with multirate: elements times steps
+    std::uint64_t element_impulses = 0;                   // of them, how many were evaluated
+    std::uint64_t large_strain_steps = 0;                 // implicit bodies times steps in which their strain was large
+    std::uint64_t newton_steps = 0, tangent_factors = 0;  // of those: Newton's method's, and how often it factored
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
     Index worst_region = 0;                               // contacts of the region that had the worst error

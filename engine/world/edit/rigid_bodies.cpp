@@ -93,6 +93,13 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
+/// After what deforms in its frame was written by hand.
+void note_strain(Model& model, std::size_t body) {
+    const std::size_t r = rigid_row(model, body);
+    model.rigid_bodies.large[r] =
+        model.stiff_bodies[r].becomes_large(rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]));
+}
+
 void give_nodes_velocity(Model& model, std::size_t body) {
     const RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -119,6 +126,7 @@ void append_rigid_body(Model& model, Index row, const NewBody& body) {
     });
     table.body[r] = row;
     table.holder[r] = no_index;
+    table.large[r] = 0;
     const MassProperties found = mass_properties(model, body);
     write_masses(found, r, table);
     table.center[r] = body.position + body.rotation * found.center;
@@ -219,6 +227,7 @@ void write_held_shape(Model& model, std::size_t body) {
             table.rest_center[r] + to_mesh * (model.nodes.position[n] - table.center[r]) - model.nodes.rest_position[n];
         deformation.velocity[k] = to_mesh * model.nodes.velocity[n];
     }
+    note_strain(model, body);
 }
 
 }  // namespace
@@ -337,6 +346,7 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
     for (std::size_t n = 0; n < position.size(); ++n)
         deformation.displacement[n] = table.rest_center[r] + to_mesh * (position[n] - fit.center) - rest[n];
     model.stiff_bodies[r].take_rigid_motion(deformation.displacement);
+    note_strain(model, body);
     std::ranges::copy(position, rows_of(model.nodes.position, model.bodies.nodes[body]).begin());
     give_nodes_velocity(model, body);
 }
@@ -375,8 +385,9 @@ RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
         sums.momentum += momentum;
         sums.angular_momentum += model.nodes.position[n].cross(momentum);
     }
-    sums.elastic = model.stiff_bodies[rigid_row(model, body)].elastic_energy(
-        rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]));
+    const std::size_t r = rigid_row(model, body);
+    sums.elastic = model.stiff_bodies[r].elastic_energy(
+        rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]), model.rigid_bodies.large[r] != 0);
     return sums;
 }
 
@@ -393,7 +404,10 @@ std::vector<Vec3> elastic_forces(const Model& model, std::size_t body) {
     std::vector<Vec3> by_place(displacement.size()), force(displacement.size());
     const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.place(n)); };
     for (std::size_t n = 0; n < displacement.size(); ++n) by_place[place(n)] = displacement[n];
-    stiff.elastic_forces(by_place, force);
+    if (model.rigid_bodies.large[r])
+        stiff.elements().forces(by_place, force);
+    else
+        stiff.elastic_forces(by_place, force);
     std::vector<Vec3> by_node(displacement.size());
     const Mat3 from_mesh = frame_of_mesh(model.rigid_bodies, r);
     for (std::size_t n = 0; n < by_node.size(); ++n) by_node[n] = -(from_mesh * force[place(n)]);
@@ -414,7 +428,8 @@ RigidSums rigid_sums(const Model& model, std::size_t body) {
     const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
     for (std::size_t n = 0; n < velocity.size(); ++n)
         sums.kinetic += model.nodes.mass[first + n] * velocity[n].squaredNorm() / 2;
-    sums.elastic = model.stiff_bodies[r].elastic_energy(rows_of(model.implicit_nodes.displacement, rows));
+    sums.elastic =
+        model.stiff_bodies[r].elastic_energy(rows_of(model.implicit_nodes.displacement, rows), table.large[r] != 0);
     return sums;
 }
 

@@ -318,6 +318,7 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
         require(table.rest_center[r].allFinite() && table.center[r].allFinite(), "center", r, "no place", "numbers");
         require(table.momentum[r].allFinite() && table.angular_momentum[r].allFinite(), "momentum", r,
                 "what is not finite", "numbers");
+        require(table.large[r] <= 1, "large", r, "what is neither", "0 or 1");
     }
 }
 

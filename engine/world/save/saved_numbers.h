@@ -260,6 +260,9 @@ struct MembersOf<RunCounters> {
                           Member{"swept", &S::swept},
                           Member{"element_steps", &S::element_steps},
                           Member{"element_impulses", &S::element_impulses},
+                          Member{"large_strain_steps", &S::large_strain_steps},
+                          Member{"newton_steps", &S::newton_steps},
+                          Member{"tangent_factors", &S::tangent_factors},
                           Member{"max_contacts", &S::max_contacts},
                           Member{"max_regions", &S::max_regions},
                           Member{"largest_region", &S::largest_region},
@@ -271,7 +274,7 @@ struct MembersOf<RunCounters> {
                           Member{"start_penetration", &S::start_penetration},
                           Member{"start_gap_violation", &S::start_gap_violation}};
     }
-    static_assert(sizeof(RunCounters) == 30 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(RunCounters) == 33 * sizeof(Real), "a member is not saved");
 };
 /// All but step_size, which may be none.
 template <>

@@ -17,6 +17,7 @@
 #include "systems/dynamics/checks/find_inversions.h"
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
@@ -62,7 +63,7 @@ struct StepFindings {
     Real damped = 0;   // J, taken out by damping in this step
     // J, brought in by clusters that follow what has stiffened before this try
     Real stiffened = 0;
-    Real strained = 0;  // J, damped by the implicit steps of bodies in this step
+    StrainFindings strained;  // by the implicit steps of bodies
 };
 
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {

@@ -58,6 +58,8 @@ StepStatus status_of(StepFault fault) {
             return StepStatus::too_far;
         case StepFault::too_stiff:
             return StepStatus::too_stiff;
+        case StepFault::unsolved:
+            return StepStatus::unsolved;
         case StepFault::none:
             break;
     }

@@ -109,8 +109,8 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
     const Real work = push_work + external.work + step.findings.joints.work + contacts.outer_work -
-                      contacts.dissipated - step.findings.damped - step.findings.strained - step.findings.relaxed -
-                      step.findings.viscous - step.findings.rest.energy;
+                      contacts.dissipated - step.findings.damped - step.findings.strained.damped -
+                      step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
     balance.impulse += impulse;
     balance.momentum_flow += impulse.norm();

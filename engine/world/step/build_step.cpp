@@ -158,7 +158,7 @@ void list_strains(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
-                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded), read(m.stiff_bodies),
+                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded), make(m.stiff_bodies),
                         value(p.h), value(p.theta), outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
                         make(w.scratch.strain_parts));
 }
@@ -169,8 +169,8 @@ void list_turns(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
             inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep, m.loaded),
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidImpulses>(m.rigid_bodies),
-            inputs<ElasticMotion>(m.implicit_nodes), read(m.nodes.position), value(w.scratch.parameters.h),
-            outputs<RigidTurns>(m.rigid_bodies, m.nodes));
+            inputs<ElasticMotion>(m.implicit_nodes, m.rigid_bodies), read(m.nodes.position),
+            value(w.scratch.parameters.h), outputs<RigidTurns>(m.rigid_bodies, m.nodes));
 }
 
 /// Looks at the step.
@@ -233,7 +233,7 @@ void list_commit(WorldState& w, TaskGraph& g) {
     RigidBodyTable& r = w.model.rigid_bodies;
     g.stage("dynamics/move_rigid_bodies", move_rigid_bodies,
             inputs<RigidBodies>(r, b, n, w.model.any_asleep, w.model.loaded), inputs<RigidImpulses>(r),
-            inputs<ElasticMotion>(w.model.implicit_nodes), read(r.center_next), read(r.rotation_next),
+            inputs<ElasticMotion>(w.model.implicit_nodes, r), read(r.center_next), read(r.rotation_next),
             value(p.draws_late), outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);

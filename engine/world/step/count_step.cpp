@@ -46,10 +46,13 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
         counters.worst_error = regions.error[r];
         counters.worst_region = size;
     }
+    counters.large_strain_steps += findings.strained.newton.solved;
+    counters.newton_steps += findings.strained.newton.steps;
+    counters.tangent_factors += findings.strained.newton.factors;
     counters.inline_steps += scratch.ran_inline;
     counters.resting_steps += scratch.left_out;
-    counters.dissipated += findings.measures.dissipated + findings.damped + findings.strained + findings.relaxed +
-                           findings.viscous + findings.rest.energy;
+    counters.dissipated += findings.measures.dissipated + findings.damped + findings.strained.damped +
+                           findings.relaxed + findings.viscous + findings.rest.energy;
     counters.max_penetration = std::max(counters.max_penetration, findings.measures.max_penetration);
     counters.max_gap_violation = std::max(counters.max_gap_violation, findings.measures.max_gap_violation);
 }

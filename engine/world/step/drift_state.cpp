@@ -46,13 +46,14 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     forget_impulses(r);
     drift_implicit_bodies(ImplicitBodies::bind({}, r, model.bodies, model.materials, i, n, a, model.any_asleep),
                           seconds, i.displacement_next, i.velocity_next);
+    r.large_next = r.large;
     turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.loaded),
-                      RigidHolds::bind({}, r, a), RigidImpulses::bind({}, r), ElasticMotion::bind({}, i), n.position,
+                      RigidHolds::bind({}, r, a), RigidImpulses::bind({}, r), ElasticMotion::bind({}, i, r), n.position,
                       seconds, {r.center_next, r.rotation_next, n.velocity});
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
                       Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
     move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.loaded),
-                      RigidImpulses::bind({}, r), ElasticMotion::bind({}, i), r.center_next, r.rotation_next, false,
+                      RigidImpulses::bind({}, r), ElasticMotion::bind({}, i, r), r.center_next, r.rotation_next, false,
                       RigidMoves::bind({}, r, n, i));
     measure_displacement_of(executor, model, seconds, search);
     add_collider_travel(std::abs(seconds), search.collider_extent, c);

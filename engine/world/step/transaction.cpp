@@ -87,6 +87,9 @@ bool run_stages(WorldState& world) {
     else
         world.graph.run(*world.executor, trace);
     scratch.ran_inline = small;
+    StepVerdict& verdict = scratch.findings.verdict;
+    if (verdict.fault == StepFault::not_finite && scratch.findings.strained.unsolved != no_index)
+        verdict = {StepFault::unsolved, scratch.findings.strained.unsolved};
     return true;
 }
 
@@ -161,6 +164,14 @@ void note_step(const Model& model, const StepPlan& plan, const Tries& tries, Ste
     limits.count_step(limit, handle, name, plan.h);
 }
 
+/// Why a try is given up for a shorter one.
+StepLimit shortened_by(const StepFindings& found) {
+    return found.crossings > 0                          ? StepLimit::crossing
+           : found.verdict.fault == StepFault::too_fast ? StepLimit::speed
+           : found.verdict.fault == StepFault::unsolved ? StepLimit::strain
+                                                        : StepLimit::inversion;
+}
+
 /// The try after one that is given up for a shorter one. What deforms too fast says how long steps may be; of
 /// anything else it is only known that half as long may do.
 Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& tries) {
@@ -180,8 +191,10 @@ Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& 
         next.fastest = fastest.body;
     } else {
         next.longest = plan.h / 2;
-        next.limit = found.crossings > 0 ? StepLimit::crossing : StepLimit::inversion;
-        next.body = found.crossings > 0 ? no_index : found.inversions.body;
+        next.limit = shortened_by(found);
+        next.body = next.limit == StepLimit::strain      ? found.verdict.body
+                    : next.limit == StepLimit::inversion ? found.inversions.body
+                                                         : no_index;
     }
     return next;
 }
@@ -205,12 +218,10 @@ Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& 
 /// Of a try that is given up.
 void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits) {
     const StepFindings& found = scratch.findings;
-    const StepLimit limit = found.crossings > 0                          ? StepLimit::crossing
-                            : found.verdict.fault == StepFault::too_fast ? StepLimit::speed
-                                                                         : StepLimit::inversion;
-    const Index body = limit == StepLimit::crossing ? no_index
-                       : limit == StepLimit::speed  ? found.verdict.body
-                                                    : found.inversions.body;
+    const StepLimit limit = shortened_by(found);
+    const Index body = limit == StepLimit::crossing    ? no_index
+                       : limit == StepLimit::inversion ? found.inversions.body
+                                                       : found.verdict.body;
     const auto [handle, name] = blamed(model, body);
     limits.count_try(limit, handle, name);
 }
@@ -225,7 +236,7 @@ StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan&
     const bool crosses = found.crossings > 0;
     if (scratch.taken()) return StepOutcome::committed;
     if (crosses && ++tries.with_crossings < tries_at_one_length) return StepOutcome::again_with_crossings;
-    if (crosses || found.verdict.fault == StepFault::too_fast) {
+    if (crosses || found.verdict.fault == StepFault::too_fast || found.verdict.fault == StepFault::unsolved) {
         if (plan.h > plan.stable / (crosses ? most_shortening : most_shortening_against_speed))
             return StepOutcome::again_shorter;
         return crosses ? StepOutcome::again_letting_through : StepOutcome::refused;

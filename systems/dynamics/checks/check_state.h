@@ -13,7 +13,7 @@
 
 namespace skerry {
 
-enum class StepFault { none, not_finite, too_fast, too_far, too_stiff };
+enum class StepFault { none, not_finite, too_fast, too_far, too_stiff, unsolved };
 
 /// How fast elements deform: |F'|, or, where that is less, how fast two corners of a tetrahedron part over its
 /// altitude; over the leeway that they have.

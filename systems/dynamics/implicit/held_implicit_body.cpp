@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "systems/dynamics/implicit/solve_large_step.h"
+
 namespace skerry {
 
 namespace {
@@ -42,40 +44,85 @@ LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : stands
     shift = turn.transpose() * (bodies.center[r] - end.center);
 }
 
+namespace {
+
+/// Whether strain is large by the end of a step with these velocities (by place), in the frame of its end.
+bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec3> displacement,
+                   std::span<const Vec3> velocity, Real h, StiffBody& stiff) {
+    if (!stiff.elements().any_bends()) return false;
+    std::vector<Vec3>& at_end = stiff.large_step.within;
+    at_end.resize(of.count);
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        at_end[k] =
+            nodes.frame.carried(nodes.arm(n), displacement[n]) + h * (nodes.held(n) ? nodes.led(n) : velocity[k]);
+    }
+    return stiff.becomes_large_in_places(at_end);
+}
+
+/// Velocities of the step by Newton's method, by place, in the frame of its end. `outer_force`: N, of a node, there.
+bool kick_large(const HeldNodes& nodes, const OfBody& of, std::size_t r, Real within, auto&& outer_force,
+                StiffBody& stiff, std::span<Vec3> out) {
+    LargeStep& step = stiff.large_step;
+    step.resize(of.count);
+    const std::span<const Vec3> displacement = of.rows(nodes.bodies.displacement),
+                                velocity = of.rows(nodes.bodies.velocity);
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        const Vec3 before = nodes.frame.across * velocity[n];
+        step.carried[k] = nodes.frame.carried(nodes.arm(n), displacement[n]);
+        step.velocity[k] = nodes.held(n) ? nodes.led(n) : before;
+        step.impulse[k] = stiff.mass(k) * before + within * outer_force(n);
+    }
+    if (!solve_large_step(inertia_of(nodes.bodies, r, within), within, stiff)) return false;
+    std::ranges::copy(step.velocity, out.begin());
+    return true;
+}
+
+}  // namespace
+
 void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real h, Real theta,
-                    const StiffBody& stiff, bool sound, const ImplicitKicks& out) {
+                    StiffBody& stiff, const ImplicitKicks& out) {
     const OfBody of(bodies, stiff, r);
     const LedFrame frame(bodies, r, h);
     const HeldNodes nodes(bodies, frame, r);
     const std::span<Vec3> impulse = of.rows(out.impulse), force = of.rows(out.elastic_force),
                           next = of.rows(out.velocity_next);
     const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
+    const auto outer_force = [&](std::size_t n) {
+        Vec3 outer = stiff.mass(of.place(n)) * loads.gravity;
+        if (!loads.load.empty()) outer += loads.load[of.first_node + n];
+        return Vec3(frame.turn.transpose() * outer);
+    };
     // The force of the step, but for what free nodes move in it: of its start by 1 - theta, of its end by theta.
     bool carried = !frame.stands;
     for (std::size_t n = 0; n < of.count; ++n) {
         impulse[of.place(n)] = displacement[n];
         carried |= nodes.held(n) && !bodies.node_velocity[of.first_node + n].isZero(0);
     }
-    stiff.elastic_forces(impulse, force);
-    if (carried) {
-        for (std::size_t n = 0; n < of.count; ++n) {
-            Vec3& at_end = impulse[of.place(n)];
-            at_end = frame.carried(nodes.arm(n), displacement[n]);
-            if (nodes.held(n)) at_end += h * nodes.led(n);
+    bool large = bodies.large[r] != 0, sound = true;
+    if (!large) {
+        stiff.elastic_forces(impulse, force);
+        if (carried) {
+            for (std::size_t n = 0; n < of.count; ++n) {
+                Vec3& at_end = impulse[of.place(n)];
+                at_end = frame.carried(nodes.arm(n), displacement[n]);
+                if (nodes.held(n)) at_end += h * nodes.led(n);
+            }
+            stiff.elastic_forces(impulse, next);  // by place, for now
+            for (std::size_t k = 0; k < of.count; ++k)
+                force[k] = (1 - theta) * (frame.across * force[k]) + theta * next[k];
         }
-        stiff.elastic_forces(impulse, next);  // by place, for now
-        for (std::size_t k = 0; k < of.count; ++k) force[k] = (1 - theta) * (frame.across * force[k]) + theta * next[k];
+        for (std::size_t n = 0; n < of.count; ++n) {
+            const std::size_t k = of.place(n);
+            impulse[k] = stiff.mass(k) * (frame.across * velocity[n]) + theta * h * (outer_force(n) - force[k]);
+        }
+        sound = make_factor(bodies, r, h, theta, stiff);
+        if (sound) stiff.respond(impulse);
+        large = sound && becomes_large(nodes, of, displacement, impulse, h, stiff);
     }
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
-        Vec3 outer = stiff.mass(k) * loads.gravity;
-        if (!loads.load.empty()) outer += loads.load[of.first_node + n];
-        impulse[k] =
-            stiff.mass(k) * (frame.across * velocity[n]) + theta * h * (frame.turn.transpose() * outer - force[k]);
-    }
-    if (sound)
-        stiff.respond(impulse);
-    else
+    if (large) sound = kick_large(nodes, of, r, theta * h, outer_force, stiff, impulse);
+    if (!sound)  // the step is refused
         std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
     for (std::size_t n = 0; n < of.count; ++n) {
         if (nodes.held(n)) {
@@ -88,7 +135,33 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
     }
 }
 
-Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, const StiffBody& stiff,
+namespace {
+
+/// N, by place, what elasticity gave nodes in a step of large strain: free ones by what moved them, held ones by the
+/// laws of the elements, but for what Newton's method and contacts leave between both, so that all add up to zero.
+void forces_of_large_step(const HeldNodes& nodes, const OfBody& of, Real inertia, Real theta, Real within,
+                          std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
+                          std::span<Vec3> force) {
+    LargeStep& step = stiff.large_step;
+    const Mat3 to_mesh = nodes.frame.turn.transpose();
+    for (std::size_t n = 0; n < of.count; ++n) step.within[of.place(n)] = step.carried[of.place(n)] + within * next[n];
+    stiff.elements().forces(step.within, force);
+    Vec3 lacking = Vec3::Zero();
+    Real held = 0;
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        held += nodes.held(n);
+        if (!nodes.held(n))
+            force[k] = (step.impulse[k] - inertia * stiff.mass(k) * next[n] + theta * (to_mesh * contact[n])) / within;
+        lacking -= force[k];
+    }
+    for (std::size_t n = 0; n < of.count; ++n)
+        if (nodes.held(n)) force[of.place(n)] += lacking / held;
+}
+
+}  // namespace
+
+Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out) {
     const OfBody of(bodies, stiff, r);
     const LedFrame frame(bodies, r, h);
@@ -112,28 +185,44 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
     }
     if (bodies.asleep(r)) return 0;
     // what deforms pulls at held nodes; that its forces turn by their arms as they are deformed turns the frame back
-    for (std::size_t n = 0; n < of.count; ++n)
-        impulse[of.place(n)] = nodes.held(n) ? Vec3(Vec3::Zero()) : Vec3(next[n]);
-    stiff.elastic_forces(impulse, rate);
+    const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0,
+               is_large = is_large_after(was_large, displacement_next, of, stiff);
+    const bool large = newton || was_large || is_large;
+    out.large_next[r] = is_large;
+    if (newton) {
+        forces_of_large_step(nodes, of, inertia_of(bodies, r, theta * h), theta, theta * h, next, contact, stiff, rate);
+    } else {
+        for (std::size_t n = 0; n < of.count; ++n)
+            impulse[of.place(n)] = nodes.held(n) ? Vec3(Vec3::Zero()) : Vec3(next[n]);
+        stiff.elastic_forces(impulse, rate);
+        for (std::size_t k = 0; k < of.count; ++k) rate[k] = force[k] + theta * h * rate[k];
+    }
     Vec3 moment = Vec3::Zero();
     Real taken = 0;  // J
     for (std::size_t n = 0; n < of.count; ++n) {
         const std::size_t k = of.place(n);
-        const Vec3 of_mesh = force[k] + theta * h * rate[k], pull = frame.turn * of_mesh;
+        const Vec3 &of_mesh = rate[k], pull = frame.turn * of_mesh;
         const Vec3 place = nodes.arm(n) + displacement[n];
         moment += (frame.turn_start * place).cross(pull);
         // less what the hold gives as it turns places against these forces, which add up to zero
-        if (!frame.stands) taken += of_mesh.dot(place - frame.across * place);
+        if (large)
+            taken += h * next[n].dot(of_mesh);
+        else if (!frame.stands)
+            taken += of_mesh.dot(place - frame.across * place);
         if (nodes.held(n)) out.force[of.first_node + n] -= pull;
     }
     out.hold_moment[r] = -h * moment;
     // (theta - 1/2)( dw M dw + du K du ), and the damping of the material
-    for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement_next[n] - displacement[n];
-    stiff.elastic_forces(impulse, rate);
+    if (large) {
+        taken += stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
+    } else {
+        for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement_next[n] - displacement[n];
+        stiff.elastic_forces(impulse, rate);
+    }
     const Real lossy = theta - 0.5, damping = bodies.damping(r);
     for (std::size_t n = 0; n < of.count; ++n) {
         const std::size_t k = of.place(n);
-        taken += lossy * impulse[k].dot(rate[k]);
+        if (!large) taken += lossy * impulse[k].dot(rate[k]);
         if (nodes.held(n)) continue;
         const Vec3 before = frame.across * velocity[n], during = next[n], change = (during - before) / theta;
         taken += stiff.mass(k) * (lossy * change.squaredNorm() + h * damping * during.squaredNorm());

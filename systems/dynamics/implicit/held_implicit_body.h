@@ -23,13 +23,12 @@ struct LedFrame {
     }
 };
 
-/// As kick_implicit_bodies, of one body with its factor, and its `velocity_next` in the frame of the start; `sound`:
-/// there is a factor, else the step is refused.
+/// As kick_implicit_bodies, of one body, and its `velocity_next` in the frame of the start.
 void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real h, Real theta,
-                    const StiffBody& stiff, bool sound, const ImplicitKicks& out);
+                    StiffBody& stiff, const ImplicitKicks& out);
 
 /// As strain_implicit_bodies, of one body. Returns what it damped, less what its hold gave by its moment, J.
-Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, const StiffBody& stiff,
+Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out);
 
 /// As drift_implicit_bodies, of one body.

@@ -8,6 +8,7 @@
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/implicit/held_implicit_body.h"
 #include "systems/dynamics/implicit/of_body.h"
+#include "systems/dynamics/implicit/solve_large_step.h"
 
 namespace skerry {
 
@@ -20,17 +21,70 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
     });
 }
 
-/// With the length of the step to twelve digits: steps that part a time evenly differ in the last ones.
+/// The impulses of momenta, loads and elasticity, but for `force` (by place), on a body that is free; by place.
+void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
+                     std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse) {
+    const std::span<const Vec3> velocity = of.rows(bodies.velocity);
+    const Mat3 turn = bodies.turn(r);
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        impulse[k] = of.stiff.mass(k) * velocity[n];
+        if (!force.empty()) impulse[k] -= within * force[k];
+        if (!loads.load.empty()) impulse[k] += within * (turn.transpose() * loads.load[of.first_node + n]);
+    }
+}
+
+/// By the end of a step with these velocities (by place), where it is not now.
+bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, Real h, const OfBody& of,
+                   StiffBody& stiff) {
+    if (!stiff.elements().any_bends()) return false;
+    std::vector<Vec3>& at_end = stiff.large_step.within;
+    at_end.resize(of.count);
+    for (std::size_t n = 0; n < of.count; ++n) at_end[of.place(n)] = displacement[n] + h * velocity[of.place(n)];
+    return stiff.becomes_large_in_places(at_end);
+}
+
+/// Velocities of the step by Newton's method, by place.
+bool kick_large(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within, StiffBody& stiff,
+                std::span<Vec3> out) {
+    const OfBody of(bodies, stiff, r);
+    LargeStep& step = stiff.large_step;
+    step.resize(of.count);
+    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
+    for (std::size_t n = 0; n < of.count; ++n) {
+        step.carried[of.place(n)] = displacement[n];
+        step.velocity[of.place(n)] = velocity[n];
+    }
+    add_up_impulses(bodies, loads, r, within, {}, of, step.impulse);
+    if (!solve_large_step(inertia_of(bodies, r, within), within, stiff)) return false;
+    std::ranges::copy(step.velocity, out.begin());
+    return true;
+}
+
+}  // namespace
+
+Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within) {
+    return 1 + within * bodies.damping(r);
+}
+
+bool is_large_after(bool was_large, std::span<const Vec3> displacement, const OfBody& of, StiffBody& stiff) {
+    if (was_large || stiff.is_tangent()) return !stiff.becomes_small(displacement);
+    if (!stiff.elements().any_bends()) return false;
+    std::vector<Vec3>& at_end = stiff.large_step.within;
+    at_end.resize(of.count);
+    for (std::size_t n = 0; n < of.count; ++n) at_end[of.place(n)] = displacement[n];
+    return stiff.becomes_large_in_places(at_end);
+}
+
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff) {
+    // with the length of the step to twelve digits: steps that part a time evenly differ in the last ones
     constexpr int bits = 40;
     int exponent = 0;
     const Real fraction = std::frexp(h, &exponent);
     const Real rounded = std::ldexp(std::nearbyint(std::ldexp(fraction, bits)), exponent - bits);
     const Real within = theta * rounded;
-    return stiff.prepare(1 + within * bodies.damping(r), within * within);
+    return stiff.prepare(inertia_of(bodies, r, within), within * within);
 }
-
-}  // namespace
 
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
                           Real theta, StiffBodies& stiff, const ImplicitKicks& out) {
@@ -40,26 +94,29 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
         const std::span<Vec3> next = of.rows(out.velocity_next);
         std::ranges::fill(of.rows(out.contact_impulse), Vec3::Zero());
         std::ranges::fill(next, Vec3::Zero());
+        stiff[r].forget_tangent();
+        stiff[r].large_step.counts = {};
+        stiff[r].large_step.failed = false;
         if (bodies.asleep(r)) return;
         if (bodies.holds.hold(r)) {
-            const bool sound = make_factor(bodies, r, h, theta, stiff[r]);
-            kick_held_body(bodies, loads, r, h, theta, stiff[r], sound, out);
+            kick_held_body(bodies, loads, r, h, theta, stiff[r], out);
             return;
         }
         const std::span<Vec3> impulse = of.rows(out.impulse), force = of.rows(out.elastic_force);
-        const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
-        for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement[n];
-        of.stiff.elastic_forces(impulse, force);
-        const Mat3 turn = bodies.turn(r);
-        for (std::size_t n = 0; n < of.count; ++n) {
-            const std::size_t k = of.place(n);
-            impulse[k] = of.stiff.mass(k) * velocity[n] - theta * h * force[k];
-            if (!loads.load.empty()) impulse[k] += theta * h * (turn.transpose() * loads.load[of.first_node + n]);
+        const std::span<const Vec3> displacement = of.rows(bodies.displacement);
+        bool large = bodies.large[r] != 0, sound = true;
+        if (!large) {
+            for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement[n];
+            of.stiff.elastic_forces(impulse, force);
+            add_up_impulses(bodies, loads, r, theta * h, force, of, impulse);
+            sound = make_factor(bodies, r, h, theta, stiff[r]);
+            if (sound) of.stiff.respond(impulse);
+            large = sound && becomes_large(displacement, impulse, h, of, stiff[r]);
         }
-        if (make_factor(bodies, r, h, theta, stiff[r]))
-            of.stiff.respond(impulse);
-        else  // the step is refused
+        if (large) sound = kick_large(bodies, loads, r, theta * h, stiff[r], impulse);
+        if (!sound)  // the step is refused
             std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
+        const Mat3 turn = bodies.turn(r);
         for (std::size_t n = 0; n < of.count; ++n) {
             next[n] = impulse[of.place(n)];
             out.node_velocity_next[of.first_node + n] += turn * next[n];
@@ -104,7 +161,7 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const std::span<const Index> nodes = coupling.nodes[r];
         if (nodes.empty()) return;
-        make_factor(bodies, r, h, theta, stiff[r]);
+        if (!stiff[r].is_tangent()) make_factor(bodies, r, h, theta, stiff[r]);
         coupling.turn[r] = bodies.holds.hold(r) ? LedFrame(bodies, r, h).turn : bodies.turn(r);
         coupling.impulse_turn[r] = theta * coupling.turn[r].transpose();
         coupling.response[r] = stiff[r].responses(nodes, bodies.nodes(r).begin);
@@ -112,11 +169,12 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
     return true;
 }
 
-Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                            const StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
-                            Column<Real>& damped) {
-    if (!bodies.any()) return 0;
+StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
+                                      StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
+                                      Column<Real>& damped) {
+    if (!bodies.any()) return {};
     damped.assign(bodies.body.size(), 0);
+    std::ranges::copy(bodies.large, out.large_next.begin());
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         if (bodies.holds.hold(r)) {
             damped[r] = strain_held_body(bodies, r, h, theta, stiff[r], out);
@@ -136,9 +194,15 @@ Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, co
         }
         for (std::size_t n = 0; n < of.count; ++n) displacement_next[n] = displacement[n] + h * next[n];
         if (bodies.asleep(r)) return;
+        const bool was_large = bodies.large[r] != 0,
+                   is_large = is_large_after(was_large, displacement_next, of, stiff[r]),
+                   large = was_large || stiff[r].is_tangent() || is_large;
+        out.large_next[r] = is_large;
         for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = next[n];
-        of.stiff.elastic_forces(impulse, rate);
-        Real taken = 0;
+        if (!large) of.stiff.elastic_forces(impulse, rate);
+        Real taken = large ? of.stiff.elastic_energy(displacement, was_large) -
+                                 of.stiff.elastic_energy(displacement_next, is_large)
+                           : Real(0);
         for (std::size_t n = 0; n < of.count; ++n) {
             const std::size_t k = of.place(n);
             const Vec3 &before = velocity[n], &during = next[n];
@@ -150,14 +214,18 @@ Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, co
                 taken += h * load.dot(during - (after - before) / 2);
             }
             taken -= of.stiff.mass(k) / 2 * (after - before).dot(after + before);
-            taken -= h * during.dot(force[k] + h / 2 * rate[k]);
+            if (!large) taken -= h * during.dot(force[k] + h / 2 * rate[k]);
             next[n] = after;
         }
         damped[r] = taken;
     });
-    Real sum = 0;
-    for (const Real of_body : damped) sum += of_body;
-    return sum;
+    StrainFindings found;
+    for (const Real of_body : damped) found.damped += of_body;
+    for (std::size_t r = 0; r < stiff.size(); ++r) {
+        found.newton += stiff[r].large_step.counts;
+        if (found.unsolved == no_index && stiff[r].large_step.failed) found.unsolved = bodies.body[r];
+    }
+    return found;
 }
 
 void drift_implicit_bodies(const ImplicitBodies& bodies, Real seconds, std::span<Vec3> displacement_next,

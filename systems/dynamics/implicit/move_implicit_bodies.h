@@ -26,6 +26,7 @@ using StiffBodies = std::vector<StiffBody>;
 struct ImplicitBodies {
     std::span<const Index> body;                // RigidBodyTable
     std::span<const Mat3> axes, rotation;       // RigidBodyTable
+    std::span<const std::uint8_t> large;        // RigidBodyTable
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
     std::span<const Index> body_material;       // BodyTable
@@ -45,6 +46,7 @@ struct ImplicitBodies {
         return {.body = binder.read(rigid.body),
                 .axes = binder.read(rigid.axes),
                 .rotation = binder.read(rigid.rotation),
+                .large = binder.read(rigid.large),
                 .body_nodes = binder.read(of_body.nodes),
                 .body_implicit = binder.read(of_body.implicit),
                 .body_material = binder.read(of_body.material),
@@ -97,11 +99,11 @@ struct ImplicitKicks {
     }
 };
 
-/// velocity_next = A^-1 P (M w + theta h (Q^T f - K u)), the velocity of the step's displacement, to which
-/// kick_rigid_bodies has come first: nodes get what is added to their motion with the frame. Factors of this step's
-/// length are made where they are not there. Of a body that is held velocities are those in the world, and turned into
-/// the frame of its start; its held nodes have theirs already. Parallel over bodies. Returns false where there is none
-/// (skipped).
+/// velocity_next = A^-1 P (M w + theta h (Q^T f - K u)), or by Newton's method where strain is large, the velocity of
+/// the step's displacement, to which kick_rigid_bodies has come first: nodes get what is added to their motion with the
+/// frame. Factors of this step's length are made where they are not there. Of a body that is held velocities are those
+/// in the world, and turned into the frame of its start; its held nodes have theirs already. Parallel over bodies.
+/// Returns false where there is none (skipped).
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
                           Real theta, StiffBodies& stiff, const ImplicitKicks& out);
 
@@ -115,6 +117,7 @@ struct ImplicitStrains {
     std::span<const Vec3> elastic_force, contact_impulse;                   // ImplicitNodeTable
     std::span<Vec3> impulse, force_rate, velocity_next, displacement_next;  // ImplicitNodeTable
     std::span<Vec3> hold_moment;                                            // RigidBodyTable
+    std::span<std::uint8_t> large_next;                                     // RigidBodyTable
     std::span<Vec3> force;                                                  // N, by node: of held ones
 
     static ImplicitStrains bind(const Binder& binder, ImplicitNodeTable& implicit, RigidBodyTable& rigid,
@@ -126,16 +129,22 @@ struct ImplicitStrains {
                 .velocity_next = binder.write(implicit.velocity_next),
                 .displacement_next = binder.write(implicit.displacement_next),
                 .hold_moment = binder.write(rigid.hold_moment),
+                .large_next = binder.write(rigid.large_next),
                 .force = binder.write(node.force)};
     }
 };
 
+struct StrainFindings {
+    Real damped = 0;  // J, by the step, less what holds by their moments gave
+    NewtonCounts newton;
+    Index unsolved = no_index;  // row of BodyTable: the first whose step of large strain was not found
+};
+
 /// The velocities and displacements at the end of the step, and what elasticity does to held nodes and frames, added to
-/// `force` and written to `hold_moment`. Returns what the step damped, less what holds by their moments gave, J;
-/// `damped` is memory, by row of RigidBodyTable. Parallel over bodies.
-Real strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                            const StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
-                            Column<Real>& damped);
+/// `force` and written to `hold_moment`. `damped` is memory, by row of RigidBodyTable. Parallel over bodies.
+StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
+                                      StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
+                                      Column<Real>& damped);
 
 /// What deforms goes on for `seconds` with the velocity that it has.
 void drift_implicit_bodies(const ImplicitBodies& bodies, Real seconds, std::span<Vec3> displacement_next,

@@ -24,4 +24,12 @@ struct OfBody {
     std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
 };
 
+/// Of the matrix inertia M + within^2 K of a step; `within`: theta h, s.
+Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
+/// Makes that of a step of small strain the matrix of stiff.respond(). Returns false where there is none.
+bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
+
+/// Whether strain is large after a step; `displacement`: m, at its end, by node.
+bool is_large_after(bool was_large, std::span<const Vec3> displacement, const OfBody& of, StiffBody& stiff);
+
 }  // namespace skerry

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace skerry {
@@ -117,6 +118,7 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     inverse_inertia_ = inertia.inverse();
     matrix_ = stiffness_;
     factor_ = BlockCholesky(stiffness_);
+    elements_ = BodyElements(elements, constants, place_);
     slot_of_.assign(mass.size(), no_index);
 }
 
@@ -134,19 +136,57 @@ void StiffBody::hold(std::span<const Real> inverse_mass) {
 
 void StiffBody::forget_factor() {
     inertia_factor_ = stiffness_factor_ = 0;
+    tangent_ = false;
 }
 
-Real StiffBody::elastic_energy(std::span<const Vec3> displacement) const {
-    const auto at = [&](Index place) -> const Vec3& {
-        return displacement[static_cast<std::size_t>(node_[static_cast<std::size_t>(place)])];
-    };
+void StiffBody::forget_columns() {
+    std::ranges::fill(slot_of_, no_index);
+    std::ranges::fill(node_in_, no_index);
+    std::ranges::fill(used_at_, 0);
+    touched_.clear();
+}
+
+bool StiffBody::is_beyond(const Displacements& displacement) const {
+    if (!elements_.any_bends() || elements_.largest_strain(displacement) <= small_strain) return false;
+    const BodyElements::Misfit misfit = elements_.misfit(displacement);
+    return !(misfit.off <= energy_share * misfit.linear);
+}
+
+bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement) {
+    if (!elements_.any_bends()) return false;
+    if (!looked_at_.empty()) {
+        Real way = 0;  // m^2
+        for (std::size_t k = 0; k < displacement.size(); ++k)
+            way = std::max(way, (displacement[k] - looked_at_[k]).squaredNorm());
+        if (way == 0) return large_there_;
+        constexpr Real surely = 1 - 1e-9;  // rounding
+        if (strain_there_ + elements_.strain_by_displacement() * std::sqrt(way) < surely * small_strain) return false;
+    }
+    looked_at_.assign(displacement.begin(), displacement.end());
+    strain_there_ = elements_.largest_strain(displacement);
+    large_there_ = is_beyond(displacement);
+    if (!std::isfinite(strain_there_)) looked_at_.clear();
+    return large_there_;
+}
+
+bool StiffBody::becomes_small(std::span<const Vec3> displacement) const {
+    constexpr Real calmer = 0.25, still = 0.1;  // of the share; of the strain, where energies are mostly rounding
+    const Displacements at(displacement, node_);
+    if (elements_.largest_strain(at) <= still * small_strain) return true;
+    const BodyElements::Misfit misfit = elements_.misfit(at);
+    return misfit.off <= calmer * energy_share * misfit.linear;
+}
+
+Real StiffBody::elastic_energy(std::span<const Vec3> displacement, bool large) const {
+    const Displacements at(displacement, node_);
+    if (large) return elements_.energy(at);
     Real twice = 0;
     for (std::size_t k = 0; k < size(); ++k) {
         const auto row = static_cast<Index>(k);
         for (auto i = static_cast<std::size_t>(stiffness_.offset[k]);
              i < static_cast<std::size_t>(stiffness_.offset[k + 1]); ++i) {
             const Index column = stiffness_.column[i];
-            twice += (column == row ? 1 : 2) * at(row).dot(stiffness_.block[i] * at(column));
+            twice += (column == row ? 1 : 2) * at[row].dot(stiffness_.block[i] * at[column]);
         }
     }
     return twice / 2;
@@ -165,19 +205,63 @@ void StiffBody::take_rigid_motion(std::span<Vec3> velocity) const {
 
 bool StiffBody::prepare(Real inertia, Real stiffness) {
     if (inertia == inertia_factor_ && stiffness == stiffness_factor_) return true;
+    tangent_ = false;
     inertia_factor_ = inertia;
     stiffness_factor_ = stiffness;
     for (std::size_t i = 0; i < matrix_.block.size(); ++i) matrix_.block[i] = stiffness * stiffness_.block[i];
     for (std::size_t k = 0; k < size(); ++k)
         matrix_.block[static_cast<std::size_t>(matrix_.offset[k + 1]) - 1].diagonal().array() += inertia * mass_[k];
     if (is_held()) leave_out_held(held_, mass_, inertia, matrix_);
-    std::ranges::fill(slot_of_, no_index);
-    std::ranges::fill(node_in_, no_index);
-    std::ranges::fill(used_at_, 0);
-    touched_.clear();
+    forget_columns();
     if (factor_.factor(matrix_)) return true;
     forget_factor();
     return false;
+}
+
+bool StiffBody::prepare_tangent(Real inertia, Real stiffness, std::span<const Vec3> displacement) {
+    forget_factor();
+    forget_columns();
+    std::ranges::fill(matrix_.block, Mat3::Zero());
+    elements_.add_tangent(displacement, stiffness, matrix_);
+    for (std::size_t k = 0; k < size(); ++k)
+        matrix_.block[static_cast<std::size_t>(matrix_.offset[k + 1]) - 1].diagonal().array() += inertia * mass_[k];
+    if (is_held()) leave_out_held(held_, mass_, inertia, matrix_);
+    tangent_ = factor_.factor(matrix_);
+    if (tangent_ && !is_held()) find_rigid_answers();
+    return tangent_;
+}
+
+void StiffBody::find_rigid_answers() {
+    shifts_.resize(size());
+    turns_.resize(size());
+    for (std::size_t k = 0; k < size(); ++k) {
+        shifts_[k] = mass_[k] * Mat3::Identity();
+        turns_[k] = -mass_[k] * crossing(arm_[k]);
+    }
+    factor_.solve(std::span(shifts_));
+    factor_.solve(std::span(turns_));
+    Eigen::Matrix<Real, 6, 6> momenta = Eigen::Matrix<Real, 6, 6>::Zero();
+    for (std::size_t k = 0; k < size(); ++k) {
+        const Mat3 moment = mass_[k] * crossing(arm_[k]);
+        momenta.topLeftCorner<3, 3>() += mass_[k] * shifts_[k];
+        momenta.topRightCorner<3, 3>() += mass_[k] * turns_[k];
+        momenta.bottomLeftCorner<3, 3>() += moment * shifts_[k];
+        momenta.bottomRightCorner<3, 3>() += moment * turns_[k];
+    }
+    rigid_inverse_ = momenta.inverse();
+}
+
+template <class X>
+void StiffBody::take_rigid_answer(std::span<X> velocity) const {
+    X momentum = X::Zero(), moment = X::Zero();
+    for (std::size_t k = 0; k < velocity.size(); ++k) {
+        momentum += mass_[k] * velocity[k];
+        moment += mass_[k] * (crossing(arm_[k]) * velocity[k]);
+    }
+    const X shift = rigid_inverse_.topLeftCorner<3, 3>() * momentum + rigid_inverse_.topRightCorner<3, 3>() * moment,
+            turn =
+                rigid_inverse_.bottomLeftCorner<3, 3>() * momentum + rigid_inverse_.bottomRightCorner<3, 3>() * moment;
+    for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] -= shifts_[k] * shift + turns_[k] * turn;
 }
 
 template <class X>
@@ -199,8 +283,13 @@ void StiffBody::respond_to(std::span<X> impulse) const {
         factor_.solve(impulse);
         return;
     }
-    take_rigid_part(impulse);
-    factor_.solve(impulse);
+    if (tangent_) {
+        factor_.solve(impulse);
+        take_rigid_answer(impulse);
+    } else {
+        take_rigid_part(impulse);
+        factor_.solve(impulse);
+    }
     // rounding alone, but of stiff bodies, whose rigid response is far above the elastic one
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] *= mass_[k];
     take_rigid_part(impulse);
@@ -250,7 +339,7 @@ std::span<const Real> StiffBody::responses(std::span<const Index> nodes, Index f
 void StiffBody::find_responses() {
     const std::size_t count = touched_.size(), numbers = 3 * count;
     if (responses_.size() < numbers * numbers) responses_.resize(numbers * numbers);
-    if (inertia_factor_ == 0) {
+    if (inertia_factor_ == 0 && !tangent_) {
         std::ranges::fill(responses_, 0);
         return;
     }

@@ -9,12 +9,43 @@
 #include "components/material_table.h"
 #include "components/types.h"
 #include "systems/dynamics/implicit/block_cholesky.h"
+#include "systems/dynamics/implicit/body_elements.h"
 #include "systems/dynamics/kinds/element_list.h"
 
 namespace skerry {
 
 /// N/m, -df_k/dx_l of an element in its rest shape, for nodes with these gradients (1/m); `volume`: m^3.
 Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec3& gradient_k, const Vec3& gradient_l);
+
+/// What Newton steps of large strain took.
+struct NewtonCounts {
+    std::uint64_t solved = 0;   // steps of bodies
+    std::uint64_t steps = 0;    // of Newton's method
+    std::uint64_t factors = 0;  // of tangents
+
+    NewtonCounts& operator+=(const NewtonCounts& other) {
+        solved += other.solved;
+        steps += other.steps;
+        factors += other.factors;
+        return *this;
+    }
+};
+
+/// One step of a body of large strain, by place (docs/methods/implicit_bodies.md 8).
+struct LargeStep {
+    std::vector<Vec3> carried;   // m, displacements at its end of nodes that stand still
+    std::vector<Vec3> impulse;   // N s, of momentum, loads and weight
+    std::vector<Vec3> velocity;  // m/s, of the step's displacement, without contacts
+    std::vector<Vec3> force;     // N, dU/du, within the step
+    std::vector<Vec3> gradient, direction, within;
+    NewtonCounts counts;
+    bool failed = false;  // no velocity was found
+
+    void resize(std::size_t count) {
+        for (std::vector<Vec3>* column : {&carried, &impulse, &velocity, &force, &gradient, &direction, &within})
+            column->resize(count);
+    }
+};
 
 /// Vectors by node are in the order of elimination: place() says where a node of the body stands.
 class StiffBody {
@@ -38,13 +69,34 @@ public:
     void elastic_forces(std::span<const Vec3> displacement, std::span<Vec3> out) const {
         stiffness_.multiply(displacement, out);
     }
-    /// u K u / 2, J; `displacement`: by node of the body.
-    Real elastic_energy(std::span<const Vec3> displacement) const;
+    /// Whether linear elasticity is no longer good enough: somewhere |F - 1| is above small_strain, and the energies of
+    /// elements are off those of their laws by more than energy_share in all. `displacement`: by node of the body.
+    bool becomes_large(std::span<const Vec3> displacement) const { return is_beyond({displacement, node_}); }
+    /// The same of displacements by place. Looks at elements only where nodes have moved so far since it last did that
+    /// it could be.
+    bool becomes_large_in_places(std::span<const Vec3> displacement);
+    /// Whether linear elasticity is good enough again: by a quarter of that share, or small strain.
+    bool becomes_small(std::span<const Vec3> displacement) const;
+    static constexpr Real small_strain = 0.02, energy_share = 0.01;
+    /// J, u K u / 2, or where strain is `large` by the laws of the elements; `displacement`: by node of the body.
+    Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
     /// Takes the motion as a whole out of velocities (m/s), by node of the body.
     void take_rigid_motion(std::span<Vec3> velocity) const;
     /// Makes A = inertia M + stiffness K the matrix of respond(). A factor that is there is kept. Returns false where
     /// A is not positive definite. Of nodes that are held it has the diagonal alone.
     bool prepare(Real inertia, Real stiffness);
+    /// The same with d2U/du2 of the elements at these displacements (by place) in the place of K, less what of it is
+    /// negative. Always another factor; the next prepare() makes one again, too.
+    bool prepare_tangent(Real inertia, Real stiffness, std::span<const Vec3> displacement);
+    /// Whether the factor is one of prepare_tangent.
+    bool is_tangent() const { return tangent_; }
+    void forget_tangent() {
+        if (tangent_) forget_factor();
+    }
+    /// Of the step that is being made, where its strain is large.
+    LargeStep large_step;
+    const BodyElements& elements() const { return elements_; }
+    bool holds(std::size_t place) const { return is_held() && held_[place] != 0; }
     /// Impulses (N s) to the velocities (m/s) that they give by A^-1. Where the body is free without what moves it as a
     /// whole: that part of the impulses is left out, and velocities have none. Where it is held that of held nodes is
     /// left out, and these have no velocity.
@@ -69,6 +121,12 @@ private:
     void respond_to(std::span<X> impulse) const;
     void find_responses();
     void forget_factor();
+    void forget_columns();
+    bool is_beyond(const Displacements& displacement) const;
+    /// What keeps answers by a tangent free of rigid motion, which it does not leave alone.
+    void find_rigid_answers();
+    template <class X>
+    void take_rigid_answer(std::span<X> velocity) const;
 
     std::vector<Index> place_;        // by node
     std::vector<Index> node_;         // by place
@@ -80,6 +138,14 @@ private:
     BlockRows stiffness_, matrix_;
     Real inertia_factor_ = 0, stiffness_factor_ = 0;  // of A
     BlockCholesky factor_;
+    BodyElements elements_;
+    bool tangent_ = false;
+    std::vector<Mat3> shifts_, turns_;         // by place: A^-1 of the inertia of unit velocities and spins
+    Eigen::Matrix<Real, 6, 6> rigid_inverse_;  // of the momenta of those
+    // of becomes_large_in_places(); empty: it has not looked
+    std::vector<Vec3> looked_at_;  // m, by place
+    Real strain_there_ = 0;
+    bool large_there_ = false;
     // by node: which slot of `columns_` has its column, or no_index
     std::vector<Index> slot_of_;
     std::vector<Index> node_in_;          // by slot

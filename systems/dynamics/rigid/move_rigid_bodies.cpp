@@ -150,6 +150,7 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         out.momentum[r] = led ? Vec3(Vec3::Zero()) : momentum;
         out.angular_momentum[r] = led ? Vec3(Vec3::Zero()) : angular_momentum;
         const ShapeNext shape(bodies, elastic, r);
+        if (shape.deforms()) out.large[r] = elastic.large[r];
         for_each_node(draws_late ? bodies.step_nodes(r) : bodies.nodes(r), [&](std::size_t n) {
             out.position[n] = place.of(shape.at(n));
             if (!shape.deforms()) {

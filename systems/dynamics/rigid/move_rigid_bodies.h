@@ -73,10 +73,12 @@ struct RigidBodies {
 /// How implicit bodies are deformed at the end of the step, in the frames of their meshes: by row of ImplicitNodeTable.
 struct ElasticMotion {
     std::span<const Vec3> displacement, velocity;  // m, m/s
+    std::span<const std::uint8_t> large;           // RigidBodyTable
 
-    static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit) {
+    static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),
-                .velocity = binder.read(implicit.velocity_next)};
+                .velocity = binder.read(implicit.velocity_next),
+                .large = binder.read(rigid.large_next)};
     }
 };
 
@@ -153,6 +155,7 @@ struct RigidMoves {
     std::span<Mat3> rotation;
     std::span<Vec3> position, velocity;                   // by node
     std::span<Vec3> displacement, displacement_velocity;  // ImplicitNodeTable
+    std::span<std::uint8_t> large;
 
     static RigidMoves bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node, ImplicitNodeTable& implicit) {
         return {.center = binder.write(rigid.center),
@@ -162,7 +165,8 @@ struct RigidMoves {
                 .position = binder.write(node.position),
                 .velocity = binder.write(node.velocity),
                 .displacement = binder.write(implicit.displacement),
-                .displacement_velocity = binder.write(implicit.velocity)};
+                .displacement_velocity = binder.write(implicit.velocity),
+                .large = binder.write(rigid.large)};
     }
 };
 

@@ -1,0 +1,132 @@
+#include "systems/dynamics/implicit/body_elements.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "systems/material/material_law.h"
+
+namespace skerry {
+
+BodyElements::BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
+                           std::span<const Index> place)
+    : first_(elements.first_node), gradient_(elements.gradient), volume_(elements.volume) {
+    for (const Index node : elements.node) place_.push_back(place[static_cast<std::size_t>(node)]);
+    std::size_t most = 0;
+    for (std::size_t e = 0; e < size(); ++e) {
+        material_.push_back(part_of(constants[static_cast<std::size_t>(elements.material[e])], elements.part[e]));
+        any_bends_ |= material_.back().model != MaterialModel::linear;
+        Real sum = 0;
+        for (const Vec3& gradient : nodes_of(e).gradient) sum += gradient.norm();
+        strain_by_displacement_ = std::max(strain_by_displacement_, sum);
+        most = std::max(most, elements.nodes_of(e));
+    }
+    turned_.resize(most);
+}
+
+BodyElements::Nodes BodyElements::nodes_of(std::size_t e) const {
+    const std::size_t count = first_[e + 1] - first_[e];
+    return {std::span(place_).subspan(first_[e], count), std::span(gradient_).subspan(first_[e], count)};
+}
+
+Mat3 BodyElements::gradient_of(std::size_t e, const Displacements& displacement) const {
+    const Nodes nodes = nodes_of(e);
+    const Vec3& first = displacement[nodes.place[0]];
+    Mat3 change = Mat3::Zero();
+    for (std::size_t k = 1; k < nodes.place.size(); ++k)
+        change += (displacement[nodes.place[k]] - first) * nodes.gradient[k].transpose();
+    return change;
+}
+
+Real BodyElements::largest_strain(const Displacements& displacement) const {
+    Real squared = 0;
+    for (std::size_t e = 0; e < size(); ++e) {
+        const Real of_element = gradient_of(e, displacement).squaredNorm();
+        if (!(of_element <= squared)) squared = of_element;  // not a number, too
+    }
+    return std::sqrt(squared);
+}
+
+Real BodyElements::energy(const Displacements& displacement) const {
+    Real sum = 0;
+    for (std::size_t e = 0; e < size(); ++e)
+        sum += volume_[e] * energy_density(material_[e], Mat3::Identity() + gradient_of(e, displacement));
+    return sum;
+}
+
+BodyElements::Misfit BodyElements::misfit(const Displacements& displacement) const {
+    Misfit sum{0, 0};
+    for (std::size_t e = 0; e < size(); ++e) {
+        MaterialConstants linear = material_[e];
+        linear.model = MaterialModel::linear;
+        const Mat3 F = Mat3::Identity() + gradient_of(e, displacement);
+        const Real of_linear = volume_[e] * energy_density(linear, F);
+        sum.linear += of_linear;
+        sum.off += std::abs(volume_[e] * energy_density(material_[e], F) - of_linear);
+    }
+    return sum;
+}
+
+void BodyElements::forces(const Displacements& displacement, std::span<Vec3> out) const {
+    std::ranges::fill(out, Vec3::Zero());
+    for (std::size_t e = 0; e < size(); ++e) {
+        const Nodes nodes = nodes_of(e);
+        const Mat3 pull = volume_[e] * stress(material_[e], Mat3::Identity() + gradient_of(e, displacement));
+        Vec3 others = Vec3::Zero();  // so that they add up to zero in each element
+        for (std::size_t k = 1; k < nodes.place.size(); ++k) {
+            const Vec3 of_node = pull * nodes.gradient[k];
+            out[static_cast<std::size_t>(nodes.place[k])] += of_node;
+            others += of_node;
+        }
+        out[static_cast<std::size_t>(nodes.place[0])] -= others;
+    }
+}
+
+void BodyElements::find_blocks(const BlockRows& matrix) {
+    for (std::size_t e = 0; e < size(); ++e) {
+        const std::span<const Index> place = nodes_of(e).place;
+        for (std::size_t k = 0; k < place.size(); ++k)
+            for (std::size_t l = 0; l <= k; ++l) {
+                const auto [column, row] = std::minmax(place[k], place[l]);
+                const auto first = matrix.column.begin() + matrix.offset[static_cast<std::size_t>(row)],
+                           last = matrix.column.begin() + matrix.offset[static_cast<std::size_t>(row) + 1];
+                block_.push_back(static_cast<Index>(std::lower_bound(first, last, column) - matrix.column.begin()));
+            }
+    }
+}
+
+void BodyElements::add_tangent(const Displacements& displacement, Real scale, BlockRows& matrix) {
+    if (block_.empty()) find_blocks(matrix);
+    std::size_t at = 0;
+    for (std::size_t e = 0; e < size(); ++e) {
+        const Nodes nodes = nodes_of(e);
+        const Tangent tangent = skerry::tangent(material_[e], Mat3::Identity() + gradient_of(e, displacement));
+        const Real weight = scale * volume_[e];
+        // of the stretches, and of what is beside the diagonal: even, and with its transpose
+        const Mat3 normal = weight * tangent.normal;
+        Mat3 even = Mat3::Zero(), crossed = Mat3::Zero();
+        for (Index i = 0; i < 3; ++i) {
+            even(i, i) = normal(i, i);
+            for (Index j = 0; j < 3; ++j) {
+                if (i == j) continue;
+                const Index pair = 3 - i - j;
+                even(i, j) = weight * (tangent.flip[pair] + tangent.twist[pair]) / 2;
+                crossed(i, j) = weight * (tangent.flip[pair] - tangent.twist[pair]) / 2;
+            }
+        }
+        for (std::size_t k = 0; k < nodes.place.size(); ++k) turned_[k] = tangent.right.transpose() * nodes.gradient[k];
+        for (std::size_t k = 0; k < nodes.place.size(); ++k)
+            for (std::size_t l = 0; l <= k; ++l) {
+                const Vec3 &g = turned_[k], &other = turned_[l];
+                Mat3 block = normal.cwiseProduct(g * other.transpose()) + crossed.cwiseProduct(other * g.transpose());
+                block.diagonal() = even * g.cwiseProduct(other);
+                block = tangent.left * block * tangent.left.transpose();
+                Mat3& to = matrix.block[static_cast<std::size_t>(block_[at++])];
+                if (nodes.place[k] >= nodes.place[l])
+                    to += block;
+                else
+                    to += block.transpose();
+            }
+    }
+}
+
+}  // namespace skerry

@@ -1,0 +1,108 @@
+#include "systems/dynamics/implicit/solve_large_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skerry {
+
+namespace {
+
+/// What the step makes least: inertia v M v / 2 - v impulse + U(carried + within v).
+class Objective {
+public:
+    Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)
+        : inertia_(inertia), within_(within), stiff_(stiff), step_(step) {}
+
+    /// J, `along` directions further. Leaves places of the middle of that step.
+    Real at(Real along) {
+        Real sum = 0;
+        for (std::size_t k = 0; k < step_.velocity.size(); ++k) {
+            const Vec3 velocity = step_.velocity[k] + along * step_.direction[k];
+            step_.within[k] = step_.carried[k] + within_ * velocity;
+            if (!stiff_.holds(k)) sum += velocity.dot(inertia_ / 2 * stiff_.mass(k) * velocity - step_.impulse[k]);
+        }
+        return sum + stiff_.elements().energy(step_.within);
+    }
+
+    /// By what is in `within`: force, gradient, and the next direction by the factor there is. Returns the decrement
+    /// squared, J.
+    Real turn() {
+        stiff_.elements().forces(step_.within, step_.force);
+        for (std::size_t k = 0; k < step_.velocity.size(); ++k)
+            step_.gradient[k] =
+                inertia_ * stiff_.mass(k) * step_.velocity[k] + within_ * step_.force[k] - step_.impulse[k];
+        return redirect();
+    }
+
+    /// The same where only the factor is another.
+    Real redirect() {
+        for (std::size_t k = 0; k < step_.velocity.size(); ++k) step_.direction[k] = -step_.gradient[k];
+        stiff_.respond(step_.direction);
+        Real decrement = 0;
+        for (std::size_t k = 0; k < step_.velocity.size(); ++k)
+            if (!stiff_.holds(k)) decrement -= step_.gradient[k].dot(step_.direction[k]);
+        return decrement;
+    }
+
+    /// J, what rounding makes of it.
+    Real size() const {
+        Real sum = 0;
+        for (std::size_t k = 0; k < step_.velocity.size(); ++k)
+            if (!stiff_.holds(k)) sum += stiff_.mass(k) * step_.velocity[k].squaredNorm() / 2;
+        return sum + stiff_.elements().energy(step_.within);
+    }
+
+private:
+    Real inertia_, within_;
+    const StiffBody& stiff_;
+    LargeStep& step_;
+};
+
+bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
+    // The decrement, of what it was at first and of all energy; what of it a factor must leave to be used again; steps
+    constexpr Real close = 1e-3, rounding = 1e-13, still_good = 0.1;
+    constexpr int most_steps = 50, most_halvings = 20;
+    LargeStep& step = stiff.large_step;
+    step.counts = {.solved = 1};
+    std::ranges::fill(step.direction, Vec3::Zero());
+    Objective objective(inertia, within, stiff, step);
+    Real value = objective.at(0);
+    const Real size = objective.size();
+    const auto factor = [&] {
+        ++step.counts.factors;
+        return stiff.prepare_tangent(inertia, within * within, step.within);
+    };
+    if (!std::isfinite(value) || !factor()) return false;
+    Real decrement = objective.turn();
+    const Real first = decrement;
+    for (int k = 0; k < most_steps; ++k) {
+        if (!std::isfinite(decrement)) return false;
+        if (decrement <= std::max(close * close * first, rounding * size)) return true;
+        ++step.counts.steps;
+        constexpr Real enough = 1e-4;  // of the decrease that the slope promises
+        Real along = 1, next = objective.at(along);
+        for (int halved = 0; !(next <= value - enough * along * decrement + rounding * size); ++halved) {
+            if (halved == most_halvings) return false;
+            along /= 2;
+            next = objective.at(along);
+        }
+        value = next;
+        for (std::size_t n = 0; n < step.velocity.size(); ++n) step.velocity[n] += along * step.direction[n];
+        const Real before = decrement;
+        decrement = objective.turn();
+        if (decrement > still_good * still_good * before) {
+            if (!factor()) return false;
+            decrement = objective.redirect();
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+bool solve_large_step(Real inertia, Real within, StiffBody& stiff) {
+    stiff.large_step.failed = !find_velocity(inertia, within, stiff);
+    return !stiff.large_step.failed;
+}
+
+}  // namespace skerry

@@ -1,0 +1,46 @@
+#include "systems/material/tangent.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace skerry {
+
+Stretches::Stretches(const Mat3& F) {
+    // By F^T F, in a third of the time of the singular values, where no stretch is so small that its square is lost.
+    constexpr Real flat = 1e-4;  // of the largest squared stretch
+    const Eigen::SelfAdjointEigenSolver<Mat3> squares(F.transpose() * F);
+    const Vec3& squared = squares.eigenvalues();
+    if (squared[0] > flat * squared[2]) {
+        right = squares.eigenvectors();
+        if (right.determinant() < 0) right.col(0) *= -1;
+        stretch = squared.cwiseSqrt();
+        if (F.determinant() < 0) stretch[0] *= -1;
+        left = F * right * stretch.cwiseInverse().asDiagonal();
+        return;
+    }
+    const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    left = svd.matrixU();
+    right = svd.matrixV();
+    stretch = svd.singularValues();
+    if (left.determinant() < 0) {
+        left.col(2) *= -1;
+        stretch[2] *= -1;
+    }
+    if (right.determinant() < 0) {
+        right.col(2) *= -1;
+        stretch[2] *= -1;
+    }
+}
+
+Tangent without_softening(const Stretches& frames, const Mat3& normal, const Vec3& flip, const Vec3& twist) {
+    Tangent tangent{frames.left, frames.right, normal, flip.cwiseMax(0), twist.cwiseMax(0)};
+    if (Eigen::LLT<Mat3>(normal).info() == Eigen::Success) return tangent;
+    const Eigen::SelfAdjointEigenSolver<Mat3> modes(normal);
+    tangent.normal =
+        modes.eigenvectors() * modes.eigenvalues().cwiseMax(0).asDiagonal() * modes.eigenvectors().transpose();
+    return tangent;
+}
+
+}  // namespace skerry

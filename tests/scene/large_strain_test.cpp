@@ -1,0 +1,303 @@
+// Implicit bodies of large strain in whole steps (docs/methods/implicit_bodies.md 8).
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/support/temporary_folder.h"
+#include "tests/support/worlds.h"
+
+using namespace skerry;
+using namespace skerry::test;
+
+namespace {
+
+Settings settings_of(Real h, Real theta, const Vec3& gravity) {
+    Settings settings;
+    settings.gravity = gravity;
+    settings.step_size = h;
+    settings.theta = theta;
+    settings.sleep = false;
+    return settings;
+}
+
+/// Nodes with the smallest x, or the largest.
+std::vector<Index> end_of(const Mesh& mesh, bool far) {
+    Real end = mesh.nodes.front().x();
+    for (const Vec3& x : mesh.nodes) end = far ? std::max(end, x.x()) : std::min(end, x.x());
+    std::vector<Index> nodes;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (std::abs(mesh.nodes[n].x() - end) < 1e-9) nodes.push_back(static_cast<Index>(n));
+    return nodes;
+}
+
+/// A bar along x that is held at its end.
+struct Cantilever {
+    Mesh mesh;
+    World world;
+    BodyHandle body;
+
+    Cantilever(const Settings& settings, const MaterialSettings& of, const Mesh& bar,
+               BodyDynamics dynamics = BodyDynamics::implicit_elastic, ElementKind kind = ElementKind::smoothed)
+        : mesh(bar), world(settings) {
+        body = world.add_body(mesh, {.material = world.add_material(of), .dynamics = dynamics, .element = kind});
+        world.attach(body, end_of(mesh, false), Motion{});
+    }
+    Vec3 tip() const {
+        Vec3 sum = Vec3::Zero();
+        const std::vector<Index> end = end_of(mesh, true);
+        for (const Index n : end) sum += world.positions(body)[static_cast<std::size_t>(n)];
+        return sum / static_cast<Real>(end.size());
+    }
+    void pull_at_end(const Vec3& force) {
+        std::vector<Vec3> load(mesh.nodes.size(), Vec3::Zero());
+        const std::vector<Index> end = end_of(mesh, true);
+        for (const Index n : end) load[static_cast<std::size_t>(n)] = force / static_cast<Real>(end.size());
+        world.set_loads(body, load);
+    }
+};
+
+Real energy_of(const World& world) {
+    const WorldReport report = world.report();
+    return report.energy.kinetic + report.energy.elastic + report.energy.potential;
+}
+
+const Mesh bar = mesh::box({1, 0.1, 0.1}, {8, 1, 1});
+
+/// A free bar that is stretched and twisted, and turns.
+struct Twisted {
+    World world;
+    BodyHandle body;
+
+    explicit Twisted(const Settings& settings, MaterialModel model = MaterialModel::stable_neo_hookean)
+        : world(settings) {
+        body = world.add_body(
+            bar, {.material = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .model = model}),
+                  .velocity = {0.3, 0.2, 0.1},
+                  .dynamics = BodyDynamics::implicit_elastic});
+        std::vector<Vec3> shape;
+        for (const Vec3& x : bar.nodes) {
+            const Vec3 turned = Eigen::AngleAxis<Real>(1.5 * x.x(), Vec3::UnitX()) * x;
+            shape.push_back({1.3 * x.x(), turned.y(), turned.z()});
+        }
+        world.set_positions(body, shape);
+    }
+};
+
+/// A soft ball above a plane.
+struct Dropped {
+    World world;
+    BodyHandle body;
+
+    Dropped(const Settings& settings, BodyDynamics dynamics, Real damping) : world(settings) {
+        body = world.add_body(mesh::ball(0.25, 4),
+                              {.material = world.add_material(lossless(
+                                   {.young_modulus = 5e4, .poisson_ratio = 0.3, .friction = 0.5, .damping = damping})),
+                               .position = {0, 0, 0.5},
+                               .dynamics = dynamics});
+        world.add_collider(Plane{});
+    }
+    Real height() const {
+        Real low = 1e9, high = -1e9;
+        for (const Vec3& x : world.positions(body)) {
+            low = std::min(low, x.z());
+            high = std::max(high, x.z());
+        }
+        return high - low;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a thin bar that is bent by a load at its end is an elastica", "[scene][implicit]") {
+    const Mesh thin = mesh::box({1, 0.05, 0.05}, {20, 1, 1});
+    const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
+    const auto tip_under = [&](Real load) {
+        Cantilever scene(settings_of(0.05, 1, Vec3::Zero()),
+                         {.young_modulus = 1e7, .poisson_ratio = 0.3, .damping = 20, .model = model}, thin);
+        const Vec3 start = scene.tip();
+        scene.pull_at_end({0, 0, -load});
+        REQUIRE(scene.world.advance(5).ok());
+        CHECK((scene.world.report().large_strain_steps > 0) == (load > 1));
+        return Vec3(scene.tip() - start);
+    };
+    // what bends it, by how little a small load does: alpha / 3 of its length, alpha = P L^2 / (E I)
+    constexpr Real small = 1e-3;
+    const Real stiffness = small / (-3 * tip_under(small).z());
+    // Mattiasson 1981: alpha, down and back over the length
+    const std::array<std::array<Real, 3>, 3> table{
+        {{1, 0.301721, 0.056433}, {2, 0.493457, 0.160642}, {5, 0.713792, 0.387628}}};
+    for (const auto& [alpha, down, back] : table) {
+        CAPTURE(name_of(model), alpha);
+        const Vec3 found = tip_under(alpha * stiffness);
+        CHECK(-found.z() == Approx(down).epsilon(0.02));
+        CHECK(-found.x() == Approx(back).epsilon(0.03));
+        CHECK(std::abs(found.y()) < 0.01);
+    }
+}
+
+TEST_CASE("a bent cantilever swings as an explicit one, to the order of the step", "[scene][implicit]") {
+    const auto kind = GENERATE(ElementKind::linear, ElementKind::smoothed);
+    const MaterialSettings soft =
+        lossless({.young_modulus = kind == ElementKind::linear ? 3e5 : 1e6, .poisson_ratio = 0.3});
+    const auto tip_after = [&](Real h, BodyDynamics dynamics) {
+        Settings settings = settings_of(h, 1, {0, 0, -standard_gravity});
+        if (dynamics == BodyDynamics::explicit_elastic) settings.step_size.reset();
+        Cantilever scene(settings, soft, bar, dynamics, kind);
+        std::vector<Vec3> arc;  // by 0.8 rad, so that strain is large from the beginning
+        for (const Vec3& x : bar.nodes) {
+            const Real angle = 0.8 * (x.x() + 0.5), radius = 1 / 0.8 + x.z();
+            arc.push_back({radius * std::sin(angle) - 0.5, x.y(), radius * std::cos(angle) - 1 / 0.8});
+        }
+        scene.world.set_positions(scene.body, arc);
+        const Vec3 start = scene.tip();
+        CHECK(start.z() < -0.35);
+        REQUIRE(scene.world.advance(0.3).ok());
+        return Vec3(scene.tip() - start);
+    };
+    const Vec3 by_explicit = tip_after(0, BodyDynamics::explicit_elastic);
+    CHECK(by_explicit.norm() > 0.2);
+    std::array<Real, 4> error;
+    for (std::size_t k = 0; k < error.size(); ++k)
+        error[k] = (tip_after(0.01 / static_cast<Real>(1 << k), BodyDynamics::implicit_elastic) - by_explicit).norm();
+    CAPTURE(name_of(kind), error);
+    CHECK(error[0] < 0.05);
+    for (std::size_t k = 1; k < error.size(); ++k) CHECK(error[k - 1] / error[k] == Approx(2).epsilon(0.2));
+}
+
+TEST_CASE("a free bar that is let go stretched and twisted keeps its momenta and gains no energy",
+          "[scene][implicit]") {
+    const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
+    const Real theta = GENERATE(1.0, 0.75);
+    CAPTURE(name_of(model), theta);
+    constexpr Real h = 1.0 / 240;
+    Twisted scene(settings_of(h, theta, Vec3::Zero()), model);
+    const WorldReport before = scene.world.report();
+    CHECK(before.energy.elastic > 10 * before.energy.kinetic);
+    Real energy = energy_of(scene.world);
+    for (int k = 0; k < 120; ++k) {
+        REQUIRE(scene.world.advance(h).ok());
+        const Real now = energy_of(scene.world);
+        CHECK(now < energy * (1 + 1e-12));
+        energy = now;
+    }
+    const WorldReport after = scene.world.report();
+    CHECK(after.large_strain_steps > 50);
+    CHECK((after.momentum - before.momentum).norm() < 1e-13 * before.momentum.norm());
+    CHECK(after.energy_error_share < 1e-11);
+    CHECK(after.newton_steps < 4 * after.large_strain_steps);
+}
+
+TEST_CASE("a soft implicit ball that lands is pressed flat as an explicit one, and rests as flat",
+          "[scene][implicit]") {
+    const auto least_height = [](BodyDynamics dynamics) {
+        Settings settings = settings_of(1.0 / 240, 0.55, {0, 0, -standard_gravity});
+        if (dynamics == BodyDynamics::explicit_elastic) settings = {.gravity = settings.gravity, .sleep = false};
+        Dropped scene(settings, dynamics, 0);
+        Real least = scene.height(), energy = energy_of(scene.world);
+        const Real whole = energy;
+        for (int k = 0; k < 100; ++k) {
+            REQUIRE(scene.world.advance(1.0 / 240).ok());
+            least = std::min(least, scene.height());
+            // where linear elasticity is left, energy jumps by a hundredth of what is elastic
+            if (dynamics == BodyDynamics::implicit_elastic) CHECK(energy_of(scene.world) < energy + 2e-3 * whole);
+            energy = energy_of(scene.world);
+        }
+        CHECK((scene.world.report().large_strain_steps > 20) == (dynamics == BodyDynamics::implicit_elastic));
+        CHECK(scene.world.report().energy_error_share < 1e-2);
+        return least;
+    };
+    const Real by_explicit = least_height(BodyDynamics::explicit_elastic);
+    CHECK(by_explicit < 0.33);
+    CHECK(least_height(BodyDynamics::implicit_elastic) == Approx(by_explicit).epsilon(0.03));
+
+    const auto height_at_rest = [](BodyDynamics dynamics) {
+        Settings settings = settings_of(1.0 / 240, 1, {0, 0, -standard_gravity});
+        if (dynamics == BodyDynamics::explicit_elastic) settings = {.gravity = settings.gravity, .sleep = false};
+        Dropped scene(settings, dynamics, 20);
+        REQUIRE(scene.world.advance(4).ok());
+        return scene.height();
+    };
+    const Real still = height_at_rest(BodyDynamics::explicit_elastic);
+    CHECK(still < 0.49);
+    CHECK(0.5 - height_at_rest(BodyDynamics::implicit_elastic) == Approx(0.5 - still).epsilon(0.02));
+}
+
+TEST_CASE("soft implicit bodies that fall on each other exchange momentum, and energy adds up", "[scene][implicit]") {
+    World world(settings_of(1.0 / 240, 1, {0, 0, -standard_gravity}));
+    const auto soft = world.add_material({.young_modulus = 5e4, .poisson_ratio = 0.3, .friction = 0.5});
+    const auto add = [&](const Mesh& mesh, Real z) {
+        return world.add_body(mesh,
+                              {.material = soft, .position = {0, 0, z}, .dynamics = BodyDynamics::implicit_elastic});
+    };
+    const BodyHandle below = add(mesh::box({0.4, 0.4, 0.2}, {4, 4, 2}), 0.12);
+    add(mesh::ball(0.15, 3), 0.6);
+    world.add_collider(Plane{});
+    REQUIRE(world.advance(1.5).ok());
+    const WorldReport report = world.report();
+    CHECK(report.large_strain_steps > 50);
+    CHECK(report.energy_error_share < 1e-11);
+    CHECK(report.momentum_error_share < 1e-11);
+    CHECK(report.unconverged == 0);
+    CHECK(report.max_penetration < 1e-4);
+    CHECK(report.energy.dissipated > 0);
+    CHECK(world.positions(below)[0].z() > 0);
+}
+
+TEST_CASE("an implicit body of small strain moves as one of a linear material, bit by bit", "[scene][implicit]") {
+    const auto shape_of = [](MaterialModel model) {
+        World world(settings_of(1.0 / 240, 0.55, {0, 0, -standard_gravity}));
+        const auto stiff = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .model = model});
+        const BodyHandle body =
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = stiff,
+                                                                   .position = {0, 0, 0.2},
+                                                                   .angular_velocity = {1, 2, 3},
+                                                                   .dynamics = BodyDynamics::implicit_elastic});
+        world.add_collider(Plane{});
+        REQUIRE(world.advance(1).ok());
+        CHECK(world.report().large_strain_steps == 0);
+        return std::vector<Vec3>(world.positions(body).begin(), world.positions(body).end());
+    };
+    CHECK(shape_of(MaterialModel::stable_neo_hookean) == shape_of(MaterialModel::linear));
+}
+
+TEST_CASE("bodies of large strain go on bit by bit when they are cloned or saved, on any number of workers",
+          "[scene][implicit]") {
+    const auto make = [](int threads) {
+        Settings settings = settings_of(1.0 / 240, 0.75, {0, 0, -standard_gravity});
+        settings.threads = threads;
+        Dropped scene(settings, BodyDynamics::implicit_elastic, 1);
+        const auto soft = scene.world.add_material({.young_modulus = 1e5});
+        const Mesh held = mesh::box({0.5, 0.1, 0.1}, {5, 1, 1});
+        const BodyHandle body = scene.world.add_body(
+            held, {.material = soft, .position = {1, 0, 1}, .dynamics = BodyDynamics::implicit_elastic});
+        scene.world.attach(body, end_of(held, false), {.angular_velocity = {0, 0, 1}});
+        return scene.world.clone();
+    };
+    World reference = make(1), with_three = make(3);
+    for (World* world : {&reference, &with_three}) REQUIRE(world->advance(0.3).ok());
+    CHECK(reference.report().large_strain_steps > 20);
+    const TemporaryFolder folder;
+    reference.save(folder.path() / "world");
+    World loaded = World::load(folder.path() / "world"), cloned = reference.clone();
+    CHECK(loaded.report().newton_steps == reference.report().newton_steps);
+    for (World* world : {&reference, &loaded, &cloned, &with_three}) REQUIRE(world->advance(0.2).ok());
+    CHECK(loaded.state_hash() == reference.state_hash());
+    CHECK(cloned.state_hash() == reference.state_hash());
+    CHECK(with_three.state_hash() == reference.state_hash());
+}
+
+TEST_CASE("a step of large strain that is not found is refused whole, and says whose it was", "[scene][implicit]") {
+    Cantilever scene(settings_of(0.01, 1, {0, 0, -standard_gravity}), {.young_modulus = 1e5}, bar);
+    REQUIRE(scene.world.advance(0.2).ok());
+    const std::uint64_t before = scene.world.state_hash();
+    scene.pull_at_end({0, 0, -1e200});
+    const std::uint64_t loaded = scene.world.state_hash();
+    const StepReport refused = scene.world.advance(0.01);
+    CHECK(refused.status == StepStatus::unsolved);
+    CHECK(refused.body == scene.body);
+    CHECK_THAT(refused.message(), Catch::Contains("Newton's method finds none"));
+    CHECK(scene.world.state_hash() == loaded);
+    scene.pull_at_end(Vec3::Zero());
+    CHECK(scene.world.state_hash() == before);
+    CHECK(scene.world.advance(0.2).ok());
+}

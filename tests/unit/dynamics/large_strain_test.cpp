@@ -1,0 +1,247 @@
+// Implicit bodies of large strain: elements by their laws against explicit bodies and differences, and steps by
+// Newton's method (docs/methods/implicit_bodies.md 8).
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "systems/dynamics/elements/element_energy.h"
+#include "systems/dynamics/implicit/solve_large_step.h"
+#include "tests/support/elastic_body.h"
+#include "tests/support/element_kinds.h"
+#include "tests/support/material_models.h"
+#include "tests/support/random.h"
+
+using namespace skerry;
+using test::ElasticBody;
+using test::jittered_box;
+
+namespace {
+
+StiffBody stiff_body_of(const ElasticBody& body) {
+    return StiffBody(body.list, body.constants.span(), body.mass, body.position);
+}
+
+ElasticBody rubber(MaterialModel model, ElementKind kind = ElementKind::linear) {
+    return ElasticBody(jittered_box({2, 3, 2}, 0.1, 0.2, 1), material_constants(model, 1e5, 0.3, 1100),
+                       Mat3::Identity(), kind);
+}
+
+std::vector<Vec3> random_vectors(std::size_t count, Real size, unsigned seed) {
+    test::Random random(seed);
+    std::vector<Vec3> vectors(count);
+    for (Vec3& v : vectors) v = size * random.vector();
+    return vectors;
+}
+
+/// m, by place: a bend of some ten degrees and a stretch, and noise.
+std::vector<Vec3> bent(const StiffBody& stiff, const ElasticBody& body, Real noise) {
+    const std::vector<Vec3> by_node = random_vectors(stiff.size(), noise, 7);
+    std::vector<Vec3> placed(stiff.size());
+    for (std::size_t n = 0; n < stiff.size(); ++n) {
+        const Vec3& x = body.position[n];
+        placed[static_cast<std::size_t>(stiff.place(n))] =
+            Vec3(-1.5 * x.y() * x.y() + 0.05 * x.x(), 0.1 * x.y(), 1.2 * x.x() * x.y()) + by_node[n];
+    }
+    return placed;
+}
+
+void hold_some(StiffBody& stiff) {
+    std::vector<Real> inverse_mass(stiff.size(), 1);
+    for (const std::size_t node : {0u, 2u, 5u, 6u}) inverse_mass[node] = 0;
+    stiff.hold(inverse_mass);
+}
+
+/// A step thrown from rest: nodes have velocities that would strain elements by some tenths.
+void begin_step(StiffBody& stiff, const std::vector<Vec3>& displacement, const std::vector<Vec3>& velocity) {
+    LargeStep& step = stiff.large_step;
+    step.resize(stiff.size());
+    step.carried = displacement;
+    step.velocity = velocity;
+    for (std::size_t k = 0; k < stiff.size(); ++k) step.impulse[k] = stiff.mass(k) * velocity[k];
+}
+
+}  // namespace
+
+TEST_CASE("elements of an implicit body of large strain have the forces and energy of explicit ones",
+          "[dynamics][implicit]") {
+    const auto kind = GENERATE(from_range(std::begin(test::element_kinds), std::end(test::element_kinds)));
+    const auto model = GENERATE(from_range(std::begin(test::material_models), std::end(test::material_models)));
+    const auto executor = make_executor(Backend::serial, 1);
+    ElasticBody body = rubber(model, kind);
+    const StiffBody stiff = stiff_body_of(body);
+    const std::vector<Vec3> u = bent(stiff, body, 0.01);
+    CHECK(stiff.elements().largest_strain(u) > 0.2);
+    std::vector<Vec3> force(u.size());
+    stiff.elements().forces(u, force);
+    for (std::size_t n = 0; n < u.size(); ++n) body.position[n] += u[static_cast<std::size_t>(stiff.place(n))];
+    body.compute_forces(*executor);
+    Real size = 0, difference = 0;
+    for (std::size_t n = 0; n < u.size(); ++n) {
+        size += body.force[n].squaredNorm();
+        difference += (body.force[n] + force[static_cast<std::size_t>(stiff.place(n))]).squaredNorm();
+    }
+    CHECK(std::sqrt(difference / size) < 1e-12);
+    CHECK(stiff.elements().energy(u) ==
+          Approx(elastic_energy(body.inputs(), body.blocks, body.position)).epsilon(1e-12));
+}
+
+TEST_CASE("the tangent of an implicit body is the slope of its forces", "[dynamics][implicit]") {
+    const auto kind = GENERATE(from_range(std::begin(test::element_kinds), std::end(test::element_kinds)));
+    const auto model = GENERATE(from_range(std::begin(test::material_models), std::end(test::material_models)));
+    const ElasticBody body = rubber(model, kind);
+    StiffBody stiff = stiff_body_of(body);
+    hold_some(stiff);
+    // Stretched, so that nothing of it is negative; but not where an element has only the volumetric part, in which
+    // something is.
+    const bool parted =
+        std::ranges::any_of(body.list.part, [](ElementPart part) { return part == ElementPart::volume; });
+    const Real stretch = parted && model == MaterialModel::stable_neo_hookean ? 0 : 1;
+    std::vector<Vec3> u(stiff.size());
+    const Mat3 turn = Eigen::AngleAxis<Real>(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    const std::vector<Vec3> noise = random_vectors(stiff.size(), stretch * 2e-3, 3);
+    for (std::size_t n = 0; n < u.size(); ++n) {
+        const Vec3& x = body.position[n];
+        const Vec3 stretched = x + stretch * Vec3(0.15 * x.x(), 0.1 * x.y(), 0.12 * x.z());
+        u[static_cast<std::size_t>(stiff.place(n))] =
+            (model == MaterialModel::linear ? stretched : Vec3(turn * stretched)) - x + noise[n];
+    }
+    constexpr Real inertia = 1.1, stiffness = 1e-4;
+    REQUIRE(stiff.prepare_tangent(inertia, stiffness, u));
+    // A A^-1 r = r, with A by differences
+    std::vector<Vec3> impulse = random_vectors(stiff.size(), 1, 11);
+    for (std::size_t k = 0; k < stiff.size(); ++k)
+        if (stiff.holds(k)) impulse[k].setZero();
+    std::vector<Vec3> velocity = impulse;
+    stiff.respond(velocity);
+    constexpr Real step = 1e-6;
+    std::vector<Vec3> up = u, down = u, pulled(u.size()), pushed(u.size());
+    for (std::size_t k = 0; k < u.size(); ++k) {
+        up[k] += step * velocity[k];
+        down[k] -= step * velocity[k];
+    }
+    stiff.elements().forces(up, pulled);
+    stiff.elements().forces(down, pushed);
+    Real size = 0, difference = 0;
+    for (std::size_t k = 0; k < u.size(); ++k) {
+        if (stiff.holds(k)) {
+            CHECK(velocity[k].isZero(0));
+            continue;
+        }
+        const Vec3 found = inertia * stiff.mass(k) * velocity[k] + stiffness / (2 * step) * (pulled[k] - pushed[k]);
+        size += impulse[k].squaredNorm();
+        difference += (found - impulse[k]).squaredNorm();
+    }
+    CHECK(std::sqrt(difference / size) < 1e-6);
+}
+
+TEST_CASE("a free implicit body of large strain answers without rigid motion, and evenly", "[dynamics][implicit]") {
+    const ElasticBody body = rubber(MaterialModel::stable_neo_hookean);
+    StiffBody stiff = stiff_body_of(body);
+    REQUIRE(stiff.prepare_tangent(1, 1e-3, bent(stiff, body, 0)));
+    REQUIRE(stiff.is_tangent());
+    const std::vector<Vec3> impulse = random_vectors(stiff.size(), 1, 5), other = random_vectors(stiff.size(), 1, 6);
+    std::vector<Vec3> velocity = impulse, other_velocity = other;
+    stiff.respond(velocity);
+    stiff.respond(other_velocity);
+    Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero(), sum = Vec3::Zero(), center = Vec3::Zero();
+    Real mass = 0, there = 0, back = 0, work = 0;
+    for (std::size_t n = 0; n < stiff.size(); ++n) {
+        mass += body.mass[n];
+        center += body.mass[n] * body.position[n];
+    }
+    center /= mass;
+    for (std::size_t n = 0; n < stiff.size(); ++n) {
+        const auto k = static_cast<std::size_t>(stiff.place(n));
+        momentum += body.mass[n] * velocity[k];
+        moment += (body.position[n] - center).cross(body.mass[n] * velocity[k]);
+        sum += impulse[k];
+        there += other[k].dot(velocity[k]);
+        back += impulse[k].dot(other_velocity[k]);
+        work += impulse[k].dot(velocity[k]);
+    }
+    CHECK(momentum.norm() < 1e-13 * sum.norm());
+    CHECK(moment.norm() < 1e-13 * sum.norm());
+    CHECK(there == Approx(back).epsilon(1e-10));
+    CHECK(work > 0);
+    // at rest it is the matrix of small strain
+    StiffBody small = stiff_body_of(body);
+    REQUIRE(small.prepare(1, 1e-3));
+    REQUIRE(stiff.prepare_tangent(1, 1e-3, std::vector<Vec3>(stiff.size(), Vec3::Zero())));
+    std::vector<Vec3> by_tangent = impulse, by_stiffness = impulse;
+    stiff.respond(by_tangent);
+    small.respond(by_stiffness);
+    for (std::size_t k = 0; k < stiff.size(); ++k)
+        CHECK((by_tangent[k] - by_stiffness[k]).norm() < 1e-10 * by_stiffness[k].norm());
+    REQUIRE(stiff.prepare(1, 1e-3));
+    CHECK(!stiff.is_tangent());
+    CHECK(std::ranges::equal(stiff.column(7), small.column(7)));
+}
+
+TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dynamics][implicit]") {
+    const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
+    const bool held = GENERATE(true, false);
+    const Real noise = GENERATE(0.0, 0.03);  // m, of cells of 0.1 m: some are inside out
+    CAPTURE(model, held, noise);
+    const ElasticBody body = rubber(model);
+    StiffBody stiff = stiff_body_of(body);
+    if (held) hold_some(stiff);
+    std::vector<Vec3> velocity = random_vectors(stiff.size(), 2, 13);
+    if (held)
+        for (std::size_t k = 0; k < stiff.size(); ++k)
+            if (stiff.holds(k)) velocity[k].setZero();
+    constexpr Real within = 0.01;
+    begin_step(stiff, bent(stiff, body, noise), velocity);
+    REQUIRE(solve_large_step(1, within, stiff));
+    const LargeStep& step = stiff.large_step;
+    CHECK(step.counts.steps > 1);
+    CHECK(step.counts.factors >= 1);
+    CHECK(step.counts.factors <= step.counts.steps + 1);
+    // what is left of the equation, as what A^-1 makes of it, against the whole kick
+    std::vector<Vec3> left(stiff.size()), at_end(stiff.size()), force(stiff.size());
+    for (std::size_t k = 0; k < stiff.size(); ++k) at_end[k] = step.carried[k] + within * step.velocity[k];
+    stiff.elements().forces(at_end, force);
+    Real kick = 0, missing = 0;
+    for (std::size_t k = 0; k < stiff.size(); ++k)
+        left[k] = stiff.mass(k) * step.velocity[k] + within * force[k] - step.impulse[k];
+    stiff.respond(left);
+    for (std::size_t k = 0; k < stiff.size(); ++k) {
+        if (stiff.holds(k)) {
+            CHECK(step.velocity[k] == velocity[k]);
+            continue;
+        }
+        kick += (step.velocity[k] - velocity[k]).squaredNorm();
+        missing += left[k].squaredNorm();
+    }
+    CHECK(std::sqrt(missing / kick) < 1e-2);
+}
+
+TEST_CASE("what is not finite has no step of large strain", "[dynamics][implicit]") {
+    const ElasticBody body = rubber(MaterialModel::stable_neo_hookean);
+    StiffBody stiff = stiff_body_of(body);
+    std::vector<Vec3> velocity(stiff.size(), Vec3::Zero());
+    velocity[3].x() = std::numeric_limits<Real>::quiet_NaN();
+    begin_step(stiff, bent(stiff, body, 0), velocity);
+    CHECK(!solve_large_step(1, 0.01, stiff));
+}
+
+TEST_CASE("that strain becomes large is seen by bounds as by looking each time", "[dynamics][implicit]") {
+    const auto model = GENERATE(from_range(std::begin(test::material_models), std::end(test::material_models)));
+    const ElasticBody body = rubber(model);
+    StiffBody stiff = stiff_body_of(body);
+    const std::vector<Vec3> shape = bent(stiff, body, 0);
+    int large = 0;
+    for (int k = 0; k < 200; ++k) {
+        const Real size = std::pow(std::sin(0.05 * k), 2);
+        std::vector<Vec3> in_places(stiff.size()), by_node(stiff.size());
+        for (std::size_t n = 0; n < stiff.size(); ++n)
+            by_node[n] = in_places[static_cast<std::size_t>(stiff.place(n))] =
+                size * shape[static_cast<std::size_t>(stiff.place(n))];
+        const bool by_bounds = stiff.becomes_large_in_places(in_places);
+        CHECK(by_bounds == stiff.becomes_large(by_node));
+        CHECK(by_bounds == stiff.becomes_large_in_places(in_places));
+        CHECK(!(by_bounds && stiff.becomes_small(by_node)));
+        large += by_bounds;
+    }
+    CHECK((model == MaterialModel::linear ? large == 0 : large > 20));
+    CHECK(large < 180);
+}
