@@ -1,5 +1,5 @@
 // profile_implicit_factor: what the factor of an implicit body costs, by its size, and whole steps of such bodies
-// beside explicit ones: the tables of docs/methods/implicit_bodies.md 3 and 6.
+// beside explicit ones: the tables of docs/methods/implicit_bodies.md 3, 6 and 8.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
@@ -66,6 +66,46 @@ Steps time_steps(int cells, BodyDynamics dynamics) {
     return took;
 }
 
+struct LargeSteps {
+    double each = 0;                 // s of CPU time, the median
+    double newton = 0, factors = 0;  // of each
+};
+
+/// Of a cube of smoothed elements that is so soft that it sinks in by a third of its height, while it does.
+LargeSteps time_large_steps(int cells, BodyDynamics dynamics) {
+    const Real step = dynamics == BodyDynamics::implicit_elastic ? 1.0 / 240 : 1e-4;  // s
+    Settings settings;
+    settings.step_size = step;
+    settings.backend = Backend::serial;
+    settings.clusters = false;
+    World world(settings);
+    const MaterialHandle material = world.add_material({.young_modulus = 3e3, .poisson_ratio = 0.3});
+    world.add_body(mesh::box(Vec3::Constant(0.1), {cells, cells, cells}),
+                   {.material = material, .position = {0, 0, 0.05}, .dynamics = dynamics});
+    world.add_collider(Plane{});
+    world.advance(0.04);
+    const WorldReport before = world.report();
+    std::vector<double> later;
+    for (int i = 0; i < 20; ++i) {
+        const double start = profiling::cpu_seconds();
+        world.advance(step);
+        later.push_back(profiling::cpu_seconds() - start);
+    }
+    const WorldReport after = world.report();
+    const auto solved = static_cast<double>(after.large_strain_steps - before.large_strain_steps);
+    return {profiling::median(later), static_cast<double>(after.newton_steps - before.newton_steps) / solved,
+            static_cast<double>(after.tangent_factors - before.tangent_factors) / solved};
+}
+
+void print_large_steps(int cells) {
+    const LargeSteps as_explicit = time_large_steps(cells, BodyDynamics::explicit_elastic);
+    const LargeSteps as_implicit = time_large_steps(cells, BodyDynamics::implicit_elastic);
+    std::printf("| %d | %d | %.3f | %.2f | %.1f | %.1f | %.0f |\n", 6 * cells * cells * cells,
+                (cells + 1) * (cells + 1) * (cells + 1), 1e3 * as_explicit.each, 1e3 * as_implicit.each,
+                as_implicit.newton, as_implicit.factors, as_implicit.each / as_explicit.each);
+    std::fflush(stdout);
+}
+
 void print_steps(int cells) {
     const Steps as_explicit = time_steps(cells, BodyDynamics::explicit_elastic);
     const Steps as_implicit = time_steps(cells, BodyDynamics::implicit_elastic);
@@ -84,7 +124,17 @@ int main(int argc, char** argv) {
     bool steps = false;
     app.add_flag("--steps", steps,
                  "instead: whole steps of cubes of smoothed elements on a floor, explicit and implicit");
+    bool large = false;
+    app.add_flag("--large", large, "instead: the same of cubes that are pressed flat");
     CLI11_PARSE(app, argc, argv);
+    if (large) {
+        std::printf(
+            "| tetrahedra | nodes | explicit step, ms | implicit step, ms | Newton steps | factors "
+            "| implicit over explicit |\n|---|---|---|---|---|---|---|\n");
+        for (const int cells : {2, 4, 8})
+            if (cells <= most) print_large_steps(cells);
+        return 0;
+    }
     if (steps) {
         std::printf(
             "| tetrahedra | nodes | explicit step, ms | implicit step, ms | first one, ms | implicit over explicit |\n"

@@ -41,12 +41,13 @@ struct MaterialSettings {
 };
 
 /// How a body moves. explicit_elastic: it deforms, in steps that its stiffest element stands. implicit_elastic: it
-/// deforms by little (linear elasticity in the frame that moves with it, by backward Euler), in any step; for what is
-/// stiff (docs/methods/implicit_bodies.md). rigid: as a whole, with the mass and the inertia of its mesh; of its
-/// materials only density, friction and restitution count (docs/methods/rigid_bodies.md). Rigid and implicit bodies set
-/// no step and do not touch themselves. automatic: implicit where that is predicted to cost less
-/// than half as much and the body deforms by little, else explicit; decided when the body is added, for the step that
-/// the bodies which are there then allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6).
+/// deforms by linear elasticity in the frame that moves with it, and by Newton's method where strain is large, by
+/// backward Euler, in any step; for what is stiff (docs/methods/implicit_bodies.md). rigid: as a whole, with the mass
+/// and the inertia of its mesh; of its materials only density, friction and restitution count
+/// (docs/methods/rigid_bodies.md). Rigid and implicit bodies set no step and do not touch themselves. automatic:
+/// implicit where that is predicted to cost less than half as much and the body deforms by little, else explicit;
+/// decided when the body is added, for the step that the bodies which are there then allow (World::dynamics_choice;
+/// docs/methods/implicit_bodies.md 6).
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
 template <>
 struct EnumNames<BodyDynamics> {
