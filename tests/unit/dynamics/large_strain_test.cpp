@@ -228,10 +228,10 @@ TEST_CASE("that strain becomes large is seen by bounds as by looking each time",
     const auto model = GENERATE(from_range(std::begin(test::material_models), std::end(test::material_models)));
     const ElasticBody body = rubber(model);
     StiffBody stiff = stiff_body_of(body);
-    const std::vector<Vec3> shape = bent(stiff, body, 0);
+    const std::vector<Vec3> shape = random_vectors(stiff.size(), 0.02, 17);  // rough: bounds are near
     int large = 0;
-    for (int k = 0; k < 200; ++k) {
-        const Real size = std::pow(std::sin(0.05 * k), 2);
+    for (int k = 0; k < 600; ++k) {
+        const Real size = 0.2 * std::pow(std::sin(0.01 * k), 2);
         std::vector<Vec3> in_places(stiff.size()), by_node(stiff.size());
         for (std::size_t n = 0; n < stiff.size(); ++n)
             by_node[n] = in_places[static_cast<std::size_t>(stiff.place(n))] =
@@ -243,5 +243,5 @@ TEST_CASE("that strain becomes large is seen by bounds as by looking each time",
         large += by_bounds;
     }
     CHECK((model == MaterialModel::linear ? large == 0 : large > 20));
-    CHECK(large < 180);
+    CHECK(large < 580);
 }
