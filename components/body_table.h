@@ -52,7 +52,9 @@ struct BodyTable {
     Column<Index> pinned_count;     // nodes without freedom
     Column<Real> contact_distance;  // m, thickness of the contact shell; two bodies keep the mean of theirs
     // Of a rigid body that is round: its core is its first nodes, the middle of a sphere or the two ends of the axis of
-    // a capsule, and its surface is as far from the core as its radius, m. 0: it has triangles
+    // a capsule, and its surface is as far from the core as its radius, m. Of a cylinder three: its middle, that of one
+    // end, and a place of the rim there, which say where its surface is; the radius is that of the ball around it. 0:
+    // it has triangles
     Column<Index> core_nodes;
     Column<Real> round_radius;
     Column<Real> mean_edge;     // m, of the surface at rest

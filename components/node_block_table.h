@@ -14,10 +14,11 @@ namespace skerry {
 // spins. The others draw it.
 inline constexpr Index sphere_step_nodes = 13;   // the middle, and the corners of an icosahedron
 inline constexpr Index capsule_step_nodes = 12;  // two ends of the axis, a pole and four at the rim around either
+inline constexpr Index cylinder_core_nodes = 3;  // of a cylinder all nodes count: its rims tell how it turns
 
 /// Of all nodes of a body those that a step looks at; `core_nodes`: as in BodyTable.
 inline Range step_nodes_of(Range all, Index core_nodes) {
-    if (core_nodes == 0) return all;
+    if (core_nodes == 0 || core_nodes == cylinder_core_nodes) return all;
     return {all.begin, std::min(all.begin + (core_nodes == 1 ? sphere_step_nodes : capsule_step_nodes), all.end)};
 }
 

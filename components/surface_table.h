@@ -13,8 +13,8 @@ namespace skerry {
 /// Boundary triangles, counter-clockwise seen from outside. Each vertex and each edge of a body is owned by exactly one
 /// of its triangles (the lowest that has it), so that a pair of close triangles yields each pair of features once.
 ///
-/// A round body has one without area, its core: three times the middle of a sphere, or both ends of the axis of a
-/// capsule, the second twice. Of the latter the first side is an edge; other sides have none (no_index).
+/// A round body has one without area, its core: three times the middle of a sphere or cylinder, or both ends of the
+/// axis of a capsule, the second twice. Of the latter the first side is an edge; other sides have none (no_index).
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k joins node k and node (k + 1) % 3

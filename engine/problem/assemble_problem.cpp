@@ -73,6 +73,7 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
         return matrix;
     };
     const auto arm_of = [&](const RigidPoints& body, const Touch& touch) {
+        if (!body.touch.empty()) return body.touch[static_cast<std::size_t>(touch.contact)];
         return Vec3(body.arm[static_cast<std::size_t>(touch.node)] -
                     std::copysign(body.radius, touch.weight) *
                         contacts.normal[static_cast<std::size_t>(touch.contact)]);

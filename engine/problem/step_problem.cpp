@@ -70,6 +70,22 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
+/// Of a cylinder: where the contacts that are in the problem, rows of the step's, touch it.
+void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
+    const RigidNodes& rigid = contacts.rigid.nodes;
+    const Index middle = body.node.front();
+    if (!rigid.is_cylinder(middle)) return;
+    body.touch.assign(rows.size(), Vec3::Zero());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto row = static_cast<std::size_t>(rows[i]);
+        const Stencil& stencil = contacts.stencil[row];
+        for (std::size_t a = 0; a < 4; ++a)
+            if (stencil.weight[a] != 0 && stencil.node[a] == middle)
+                body.touch[i] = stencil.weight[a] *
+                                rigid.beside_core(middle, stencil.weight[a], row, contacts.normal[row], contacts.touch);
+    }
+}
+
 /// The implicit bodies that contacts touch.
 std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
     std::vector<StrainedPoints> bodies;
@@ -109,8 +125,9 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
         lumped.weight.push_back(step.contacts.stencil[row].weight);
         lumped.normal.push_back(step.contacts.normal[row]);
         const RigidInputs& rigid = step.contacts.rigid;
-        const Vec3 rolling = rigid.nodes.rolling(step.contacts.stencil[row], step.contacts.normal[row],
-                                                 [&](std::size_t r) { return rigid.spins.kicked(r); });
+        const Vec3 rolling =
+            rigid.nodes.rolling(step.contacts.stencil[row], row, step.contacts.normal[row], step.contacts.touch,
+                                [&](std::size_t r) { return rigid.spins.kicked(r); });
         lumped.offset.push_back(contact.bias * step.contacts.normal[row] - step.contacts.surface_velocity[row] -
                                 midpoint_slip(step.contacts, static_cast<Index>(row), step.free_velocity) + rolling);
         lumped.friction.push_back(contact.friction.slide);
@@ -120,6 +137,7 @@ StepProblem step_problem(const StepContacts& step, const SolverSettings& setting
     }
     lumped.coupled = coupled_nodes(step.contacts);
     lumped.rigid = rigid_points(step.contacts);
+    for (RigidPoints& body : lumped.rigid) add_touches(step.contacts, result.contact, body);
     lumped.strained = strained_points(step.contacts);
     result.problem = assemble_problem(lumped, {});
     result.problem.description = description_of(step, settings);

@@ -238,6 +238,9 @@ std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
     if (const auto& capsule = body.shape.capsule)
         return "a capsule of radius " + with_unit(capsule->radius, "m") + " and length " +
                with_unit(capsule->length, "m") + " (" + how + ")";
+    if (const auto& cylinder = body.shape.cylinder)
+        return "a cylinder of radius " + with_unit(cylinder->radius, "m") + " and height " +
+               with_unit(cylinder->height, "m") + " (" + how + ")";
     return grouped(kind.mesh.tetrahedra) + " tetrahedra (" + how + "), mean edge " +
            with_unit(kind.mesh.mean_edge, "m");
 }
@@ -391,6 +394,8 @@ int inspect_scene(const InspectOptions& options) {
             const BodyShapeEntry& shape = plan.bodies[kind.body].shape;
             if (shape.sphere) body["sphere_radius"] = shape.sphere->radius;
             if (shape.capsule) body["capsule"] = {{"radius", shape.capsule->radius}, {"length", shape.capsule->length}};
+            if (shape.cylinder)
+                body["cylinder"] = {{"radius", shape.cylinder->radius}, {"height", shape.cylinder->height}};
             if (kind.sets_step())
                 body.update({{"stable_dt", kind.bound.step},
                              {"element", name_of(kind.bound.element)},

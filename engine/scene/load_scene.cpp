@@ -79,6 +79,7 @@ Scene build_scene(const ScenePlan& plan) {
         bodies.push_back(called_at(body.place, [&] {
             if (body.shape.sphere) return world.add_body(*body.shape.sphere, settings);
             if (body.shape.capsule) return world.add_body(*body.shape.capsule, settings);
+            if (body.shape.cylinder) return world.add_body(*body.shape.cylinder, settings);
             return world.add_body(plan.meshes[body.mesh], settings);
         }));
         pins.emplace_back();

@@ -30,8 +30,9 @@ Mesh make_mesh(const MeshEntry& entry) {
 }
 
 Mesh picture_of(const BodyShapeEntry& shape) {
-    return shape.sphere ? mesh::sphere_picture(shape.sphere->radius)
-                        : mesh::capsule_picture(shape.capsule->radius, shape.capsule->length);
+    if (shape.sphere) return mesh::sphere_picture(shape.sphere->radius);
+    if (shape.capsule) return mesh::capsule_picture(shape.capsule->radius, shape.capsule->length);
+    return mesh::cylinder_picture(shape.cylinder->radius, shape.cylinder->height);
 }
 
 SurfaceMesh make_surface(const MeshEntry& entry) {

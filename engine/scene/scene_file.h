@@ -78,6 +78,7 @@ struct RepeatEntry {
 struct BodyShapeEntry {
     std::optional<Sphere> sphere;
     std::optional<Capsule> capsule;
+    std::optional<Cylinder> cylinder;
 };
 struct BodyEntry {
     std::string name;

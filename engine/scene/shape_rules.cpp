@@ -209,7 +209,8 @@ const Rule<BodyShapeEntry>& rule_of<BodyShapeEntry>() {
     static const auto rule = Rule<BodyShapeEntry>("body_shape", "The shape of a rigid body without a mesh.")
                                  .key("sphere", &BodyShapeEntry::sphere, {.meaning = "a solid sphere"})
                                  .key("capsule", &BodyShapeEntry::capsule, {.meaning = "a solid capsule"})
-                                 .exactly_one({"sphere", "capsule"});
+                                 .key("cylinder", &BodyShapeEntry::cylinder, {.meaning = "a solid cylinder"})
+                                 .exactly_one({"sphere", "capsule", "cylinder"});
     return rule;
 }
 

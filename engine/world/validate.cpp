@@ -276,6 +276,12 @@ void validate(const Capsule& capsule, const BodySettings& body) {
     require_round("capsule", body, object);
 }
 
+void validate(const Cylinder& cylinder, const BodySettings& body) {
+    const std::string object = titled("body", body.name);
+    ShapeCheck{object}(cylinder);
+    require_round("cylinder", body, object);
+}
+
 void validate(const Motion& motion, const std::string& object) {
     require_finite(object, "motion.velocity", motion.velocity);
     require_finite(object, "motion.angular_velocity", motion.angular_velocity);

@@ -14,6 +14,7 @@ void validate(const MaterialSettings& material, const Settings& settings);
 void validate(const Mesh& mesh, const BodySettings& body);
 void validate(const Sphere& sphere, const BodySettings& body);
 void validate(const Capsule& capsule, const BodySettings& body);
+void validate(const Cylinder& cylinder, const BodySettings& body);
 /// Of a body that has its rows: that its stable step is a number.
 void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);

@@ -237,6 +237,13 @@ BodyHandle World::add_body(const Capsule& capsule, const BodySettings& body) {
     return add_valid_body(*state_, mesh::capsule_picture(capsule.radius, capsule.length), body, {2, capsule.radius});
 }
 
+BodyHandle World::add_body(const Cylinder& cylinder, const BodySettings& body) {
+    validate(cylinder, body);
+    const Real around = std::hypot(cylinder.radius, cylinder.height / 2);
+    return add_valid_body(*state_, mesh::cylinder_picture(cylinder.radius, cylinder.height), body,
+                          {cylinder_core_nodes, around});
+}
+
 ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& collider) {
     validate(shape, collider);
     state_->require_between_steps("add_collider");

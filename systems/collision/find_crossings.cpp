@@ -8,6 +8,7 @@
 #include "jobs/parallel_for.h"
 #include "systems/collision/collider_crossings.h"
 #include "systems/collision/contact_rows.h"
+#include "systems/collision/cylinder_crossings.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/candidate_lanes.h"
@@ -183,6 +184,9 @@ Real collider_extent(const CollisionInputs& inputs, Index body, Index collider) 
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
     Range nodes = inputs.body.nodes[body];
+    if (is_cylinder(inputs, body))
+        return (inputs.position[nodes.begin] - inputs.collider.motion[collider].position).norm() +
+               inputs.body.round_radius[body];
     if (inputs.body.round_radius[body] > 0) nodes.end = nodes.begin + inputs.body.core_nodes[body];
     Real furthest = 0;
     for (Index n = nodes.begin; n < nodes.end; ++n)
@@ -235,7 +239,9 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
         const bool in_front = reach.travel_bound <= pairs.travel_bound[p];
         const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && in_front;
         if (slow || !is_watched(inputs, pairs, p)) continue;
-        if (pairs.kind[p] == PairKind::collider)
+        if (has_cylinder(inputs, pairs, p))
+            tested += find_cylinder_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
+        else if (pairs.kind[p] == PairKind::collider)
             tested += find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
         else if (in_front && settings.use_budgets)
             tested += PairCrossings(inputs, motion, pairs, p, found)

@@ -10,6 +10,7 @@
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/look_at_collider.h"
+#include "systems/collision/look_at_cylinder.h"
 #include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/edge_edge_contact.h"
 #include "systems/collision/narrow/point_triangle_contact.h"
@@ -183,6 +184,7 @@ private:
 
 Real look_at_candidates(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
                         PairTable& pairs, Column<ContactRow>& found, Column<NearCandidate>& near) {
+    if (has_cylinder(inputs, pairs, p)) return look_at_cylinder(inputs, settings, h, p, range, pairs, found);
     if (pairs.kind[p] == PairKind::collider) return look_at_collider(inputs, settings, h, p, range, pairs, found);
     return PairContacts(inputs, settings, h, pairs, p, found, near).run(range);
 }

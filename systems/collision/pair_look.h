@@ -72,6 +72,10 @@ protected:
         found_.push_back(row);
     }
 
+    void add(const ContactRow& row) {
+        if (moves(row.stencil)) found_.push_back(row);
+    }
+
     /// Whether no other triangle among the candidates of the same point is nearer than `depth`: all that are as near
     /// are candidates, in one row. `squared(i)`: distance of the point of candidate c to the triangle of candidate i.
     bool is_nearest(Index c, Real depth, auto&& squared) const {
@@ -101,6 +105,7 @@ protected:
     std::span<Real> asleep_until_;
     PairScale scale_;
     Real near_ = 0;
+    SurfaceProperties surface_;
 
 private:
     bool all_asleep(Index begin, Index end) const {
@@ -120,7 +125,6 @@ private:
     }
 
     Column<ContactRow>& found_;
-    SurfaceProperties surface_;
     bool prepared_ = false;
 };
 

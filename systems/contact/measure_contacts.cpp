@@ -74,6 +74,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
                                  const RoundSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,
                                  Friction friction) {
     const std::size_t count = contacts.size();
+    const TouchPlaces places{contacts.point.span(), contacts.distance.span()};
     SKERRY_CHECK(slip.size() == count && state.size() == count);
     // a fixed number of parts, so that their sums need no memory; their borders depend on the contact count alone
     constexpr std::size_t part_limit = 64, smallest_part = 128;
@@ -85,8 +86,9 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
             const Vec3& normal = contacts.normal[i];
             const Vec3& impulse = contacts.impulse[i];
             const Stencil& stencil = contacts.stencil[i];
-            const Vec3 after = relative_velocity(stencil, contacts.surface_velocity[i], velocity_next) +
-                               spins.nodes.rolling(stencil, normal, [&](std::size_t r) { return spins.after(r); });
+            const Vec3 after =
+                relative_velocity(stencil, contacts.surface_velocity[i], velocity_next) +
+                spins.nodes.rolling(stencil, i, normal, places, [&](std::size_t r) { return spins.after(r); });
             slip[i] = after - after.dot(normal) * normal;
             state[i] = state_of(impulse, normal, contacts.static_friction[i], contacts.dynamic_friction[i], friction);
             part.max_penetration = std::max(part.max_penetration, -contacts.distance[i]);
@@ -94,8 +96,9 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
             part.stick_count += state[i] == ContactState::stick;
             part.slide_count += state[i] == ContactState::slide;
             if (state[i] == ContactState::open) continue;
-            const Vec3 before = relative_velocity(stencil, contacts.surface_velocity[i], velocity) +
-                                spins.nodes.rolling(stencil, normal, [&](std::size_t r) { return spins.before(r); });
+            const Vec3 before =
+                relative_velocity(stencil, contacts.surface_velocity[i], velocity) +
+                spins.nodes.rolling(stencil, i, normal, places, [&](std::size_t r) { return spins.before(r); });
             part.dissipated -= 0.5 * impulse.dot(before + after);
             add_outer(stencil, contacts.surface_velocity[i], impulse, inverse_mass, velocity, velocity_next, part);
         }

@@ -8,6 +8,7 @@
 #include "components/body_table.h"
 #include "components/contact_table.h"
 #include "components/joint_table.h"
+#include "components/node_block_table.h"
 #include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
@@ -15,11 +16,28 @@
 
 namespace skerry {
 
+/// Where contacts touch: ContactTable. Only read of cylinders, whose surface the normal alone does not tell.
+struct TouchPlaces {
+    std::span<const Vec3> point{};
+    std::span<const Real> distance{};
+
+    static TouchPlaces bind(const Binder& binder, const ContactTable& contact) {
+        return {.point = binder.read(contact.point), .distance = binder.read(contact.distance)};
+    }
+
+    /// m, on the surface of the first partner (`weight` > 0) or of the second.
+    Vec3 on(Real weight, std::size_t contact, const Vec3& normal) const {
+        return weight > 0 ? Vec3(point[contact] + distance[contact] * normal) : point[contact];
+    }
+};
+
 struct RigidNodes {
     std::span<const Index> node_body;      // NodeTable
     std::span<const Range> body_nodes;     // BodyTable
     std::span<const Range> body_rigid;     // BodyTable; empty: no body is rigid
     std::span<const Real> round_radius{};  // BodyTable; empty: no body is round
+    std::span<const Index> core_nodes{};   // BodyTable; empty: the same
+    std::span<const Vec3> center{};        // RigidBodyTable; empty: the same
 
     static RigidNodes bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                            const RigidBodyTable& rigid) {
@@ -27,7 +45,9 @@ struct RigidNodes {
         return {.node_body = binder.read(node.body),
                 .body_nodes = binder.read(body.nodes),
                 .body_rigid = binder.read_if(any, body.rigid),
-                .round_radius = binder.read_if(any, body.round_radius)};
+                .round_radius = binder.read_if(any, body.round_radius),
+                .core_nodes = binder.read_if(any, body.core_nodes),
+                .center = binder.read_if(any, rigid.center)};
     }
 
     bool any() const { return !body_rigid.empty(); }
@@ -42,16 +62,33 @@ struct RigidNodes {
         return round_radius.empty() ? 0
                                     : round_radius[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
     }
+    bool is_cylinder(Index node) const {
+        return !core_nodes.empty() &&
+               core_nodes[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])] == cylinder_core_nodes;
+    }
+    /// m: from the place in the core of a round body, whose nodes have weights of the sum 1 or -1, to where a contact
+    /// touches it, times that sum: -radius normal. Of a cylinder, whose middle is the place, to where it is touched.
+    Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
+                     const TouchPlaces& places) const {
+        if (!is_cylinder(node)) return -radius(node) * normal;
+        return weight * (places.on(weight, contact, normal) - center[static_cast<std::size_t>(row(node))]);
+    }
     /// m/s: by how much the surfaces of the round bodies in a contact pass each other by their spins, where they touch.
-    /// The place of a core has nodes of the stencil whose weights have the sum 1 or -1, and it is touched at -radius
-    /// normal from there, or at +radius normal. `spin(r)`: rad/s, by row of RigidBodyTable.
-    Vec3 rolling(const Stencil& stencil, const Vec3& normal, auto&& spin) const {
+    /// `spin(r)`: rad/s, by row of RigidBodyTable.
+    Vec3 rolling(const Stencil& stencil, std::size_t contact, const Vec3& normal, const TouchPlaces& places,
+                 auto&& spin) const {
         Vec3 sum = Vec3::Zero();
         if (round_radius.empty()) return sum;
-        for (std::size_t a = 0; a < 4; ++a)
-            if (const Real r = radius(stencil.node[a]); r > 0 && stencil.weight[a] != 0)
-                sum -= std::abs(stencil.weight[a]) * r *
-                       spin(static_cast<std::size_t>(row(stencil.node[a]))).cross(normal);
+        for (std::size_t a = 0; a < 4; ++a) {
+            const Index node = stencil.node[a];
+            const Real weight = stencil.weight[a];
+            if (weight == 0 || !(radius(node) > 0)) continue;
+            const Vec3 turning = spin(static_cast<std::size_t>(row(node)));
+            if (is_cylinder(node))
+                sum += turning.cross(beside_core(node, weight, contact, normal, places));
+            else
+                sum -= std::abs(weight) * radius(node) * turning.cross(normal);
+        }
         return sum;
     }
     /// The first node of the rigid body that a node belongs to, or itself.

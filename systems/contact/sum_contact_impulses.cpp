@@ -45,14 +45,13 @@ void sum_contact_impulses(const ContactSumInputs& contacts, const Vec3& moment_p
         // contacts of a pair stand together
         if (pairs.empty() || pairs.back().partners != partners) pairs.push_back({.partners = partners});
         const bool analytic = contacts.second_body[c] == no_index;
-        const auto radius = [&](Index body) { return contacts.round_radius[static_cast<std::size_t>(body)]; };
-        const Vec3 first_arm =
-            arm(stencil, 1, contacts.position, moment_point) - radius(contacts.first_body[c]) * normal;
-        const Vec3 on_first = first_arm.cross(impulse);
-        const Vec3 second_arm =
-            analytic
-                ? Vec3(contacts.point[c] - moment_point)
-                : Vec3(arm(stencil, -1, contacts.position, moment_point) + radius(contacts.second_body[c]) * normal);
+        const auto arm_of = [&](Index body, Real sign) -> Vec3 {
+            const auto b = static_cast<std::size_t>(body);
+            if (contacts.core_nodes[b] == cylinder_core_nodes) return contacts.touch.on(sign, c, normal) - moment_point;
+            return arm(stencil, sign, contacts.position, moment_point) - sign * contacts.round_radius[b] * normal;
+        };
+        const Vec3 on_first = arm_of(contacts.first_body[c], 1).cross(impulse);
+        const Vec3 second_arm = analytic ? Vec3(contacts.point[c] - moment_point) : arm_of(contacts.second_body[c], -1);
         const Vec3 on_second = -second_arm.cross(impulse);
         const Real along = impulse.dot(normal), sign = turned ? -1 : 1;
         PairSums& pair = pairs.back();

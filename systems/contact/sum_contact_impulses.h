@@ -10,6 +10,7 @@
 #include "components/contact_table.h"
 #include "components/node_table.h"
 #include "jobs/access.h"
+#include "systems/contact/node_groups.h"
 
 namespace skerry {
 
@@ -63,6 +64,8 @@ struct ContactSumInputs {
     std::span<const Vec3> position;      // m, by node: where the impulses act
     std::span<const Real> inverse_mass;  // 1/kg, by node
     std::span<const Index> held;         // nodes
+    std::span<const Index> core_nodes;   // BodyTable
+    TouchPlaces touch;
 
     static ContactSumInputs bind(const Binder& binder, const ContactTable& contact, const BodyTable& body,
                                  const NodeTable& node, const AttachmentTable& attachment) {
@@ -78,7 +81,9 @@ struct ContactSumInputs {
                 .round_radius = binder.read(body.round_radius),
                 .position = binder.read(node.position),
                 .inverse_mass = binder.read(node.inverse_mass),
-                .held = binder.read(attachment.node)};
+                .held = binder.read(attachment.node),
+                .core_nodes = binder.read(body.core_nodes),
+                .touch = TouchPlaces::bind(binder, contact)};
     }
 };
 

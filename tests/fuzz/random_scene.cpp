@@ -269,6 +269,10 @@ private:
                 of_capsules_.chance(0.5)
                     ? Json{{"capsule", {{"radius", size * of_capsules_.within(0.1, 0.4)}, {"length", size / 2}}}}
                     : Json{{"sphere", {{"radius", size / 2}}}};
+            if (of_cylinders_.chance(0.35))
+                body["shape"] = Json{{"cylinder",
+                                      {{"radius", size * of_cylinders_.within(0.1, 0.5)},
+                                       {"height", size * of_cylinders_.by_decade(0.1, 1)}}}};
             body["dynamics"] = name_of(BodyDynamics::rigid);
         }
         return body;
@@ -327,6 +331,7 @@ private:
     RandomNumbers of_meshes_{~seed_ * 3};
     RandomNumbers of_spheres_{~seed_ * 5};
     RandomNumbers of_capsules_{~seed_ * 7};
+    RandomNumbers of_cylinders_{~seed_ * 11};
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material
     Real wave_speed_ = 0;               // m/s, of it

@@ -48,9 +48,9 @@ struct RandomScene {
 std::filesystem::path write_random_scene(const RandomScene& scene, const std::filesystem::path& folder,
                                          const std::string& name);
 
-/// The same seed gives the same scene on every machine. Spheres, capsules, bodies of all built-in shapes and of poor
-/// meshes that overlap, touch or nearly touch; 1 mm to 100 m, E 1e3 to 1e9 Pa, nu -0.3 to 0.499, density 1 to 1e4
-/// kg/m^3, friction 0 to 10, speeds up to 100 m/s; every kind of collider, still or moved; pins, self contact, all
+/// The same seed gives the same scene on every machine. Spheres, capsules, cylinders, bodies of all built-in shapes and
+/// of poor meshes that overlap, touch or nearly touch; 1 mm to 100 m, E 1e3 to 1e9 Pa, nu -0.3 to 0.499, density 1 to
+/// 1e4 kg/m^3, friction 0 to 10, speeds up to 100 m/s; every kind of collider, still or moved; pins, self contact, all
 /// methods, laws and switches.
 RandomScene make_random_scene(std::uint64_t seed);
 

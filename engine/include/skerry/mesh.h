@@ -51,6 +51,10 @@ Mesh sphere_picture(Real radius);
 /// flat, and `length` (m) is that of the straight part.
 Mesh capsule_picture(Real radius, Real length);
 
+/// What a rigid cylinder is drawn with: its first node is in the middle, the second in the middle of the upper end, at
+/// z = height/2, all others but one lie on its rims. Its faces are flat.
+Mesh cylinder_picture(Real radius, Real height);
+
 /// A solid cylinder of the given radius and height: `resolution` elements across the diameter (odd: the next even
 /// number).
 Mesh cylinder(Real radius, Real height, int resolution);

@@ -91,6 +91,7 @@ struct RigidPoints {
     Real inverse_mass = 0;                // 1/kg
     Mat3 inverse_inertia = Mat3::Zero();  // 1/(kg m^2)
     Real radius = 0;                      // m, of a round body: its nodes, the core, are touched that far beside
+    std::vector<Vec3> touch{};            // m, of a cylinder, by contact: where it is touched, from the centre of mass
 };
 
 /// Nodes of a body that moves implicitly, beside those of its motion as a whole (RigidPoints).

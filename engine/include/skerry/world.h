@@ -66,6 +66,9 @@ public:
     /// The same of a rigid capsule, its axis along z of its frame; the first two nodes are the ends of the axis
     /// (mesh::capsule_picture). `capsule.length` > 0.
     BodyHandle add_body(const Capsule& capsule, const BodySettings& body);
+    /// The same of a rigid cylinder, round about z of its frame, with flat ends and sharp rims; the first node is its
+    /// middle (mesh::cylinder_picture).
+    BodyHandle add_body(const Cylinder& cylinder, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Takes the freedom of nodes (local numbers) of a body: they stay where they are, or follow the motion from now
     /// on. Constant velocities turn them about `pivot`; keys are poses at absolute times, and the nodes are attached to

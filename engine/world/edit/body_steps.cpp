@@ -77,6 +77,8 @@ std::vector<Real> densities(const Model& model, const NewBody& body) {
 RoundMass round_mass(const Model& model, const NewBody& body) {
     const Real density = model.materials.constants[static_cast<std::size_t>(body.material)].density,
                radius = body.round_radius, length = body.axis_length();
+    if (body.is_cylinder())
+        return {0, 2 * std::numbers::pi * density * body.rim_radius() * body.rim_radius() * body.half_height()};
     return {4 * std::numbers::pi / 3 * density * radius * radius * radius,
             std::numbers::pi * density * radius * radius * length};
 }

@@ -36,6 +36,10 @@ struct NewBody {
     bool has_frame() const { return dynamics != BodyDynamics::explicit_elastic; }
     /// m, of what is round: 0 of a sphere.
     Real axis_length() const { return core_nodes == 2 ? (nodes[1] - nodes[0]).norm() : 0; }
+    bool is_cylinder() const { return core_nodes == cylinder_core_nodes; }
+    /// m, of a cylinder.
+    Real half_height() const { return (nodes[1] - nodes[0]).norm(); }
+    Real rim_radius() const { return (nodes[2] - nodes[1]).norm(); }
     Index material_of(std::size_t of_tetrahedron) const {
         return tetrahedron_material.empty() ? material : tetrahedron_material[of_tetrahedron];
     }

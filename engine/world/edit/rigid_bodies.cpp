@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Of the solid that tetrahedra fill, or of a sphere or a capsule along z, in the frame of the mesh.
+/// Of the solid that tetrahedra fill, or of a sphere, or a capsule or cylinder along z, in the frame of the mesh.
 struct MassProperties {
     Real mass = 0;               // kg
     Vec3 center = Vec3::Zero();  // m
@@ -18,6 +18,11 @@ struct MassProperties {
 };
 
 MassProperties mass_properties(const Model& model, const NewBody& body) {
+    if (body.is_cylinder()) {
+        const Real mass = round_mass(model, body).sum(), radius = body.rim_radius(), half = body.half_height(),
+                   across = mass * (radius * radius / 4 + half * half / 3);
+        return {mass, body.nodes[0], {across, across, mass * radius * radius / 2}, Mat3::Identity()};
+    }
     if (body.core_nodes > 0) {
         const auto [ball, shaft] = round_mass(model, body);
         const Real radius = body.round_radius, length = body.axis_length();

@@ -99,7 +99,7 @@ std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
 
 std::optional<RoundSolid> StartSearch::round(Index body) const {
     const Index core = model_.bodies.core_nodes[body];
-    if (core == 0) return std::nullopt;
+    if (core == 0 || core == cylinder_core_nodes) return std::nullopt;
     const Vec3* const end = &model_.nodes.position[model_.bodies.nodes[body].begin];
     return RoundSolid{{end[0] + shift(body), end[core - 1] + shift(body)}, core == 2, model_.bodies.round_radius[body]};
 }

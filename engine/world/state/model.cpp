@@ -73,10 +73,19 @@ std::optional<Model::RoundShape> Model::round_shape(std::size_t body) const {
         return RoundShape{{ColliderShape::sphere, {radius, 0, 0}},
                           {middle, Mat3::Identity(), Vec3::Zero(), Vec3::Zero()}};
     const auto r = static_cast<std::size_t>(bodies.rigid[body].begin);
+    const RigidMotion place{rigid_bodies.center[r], rigid_bodies.rotation[r] * rigid_bodies.axes[r].transpose(),
+                            Vec3::Zero(), Vec3::Zero()};
     const Real length = (nodes.rest_position[first + 1] - nodes.rest_position[first]).norm();
-    return RoundShape{{ColliderShape::capsule, {radius, length / 2, 0}},
-                      {rigid_bodies.center[r], rigid_bodies.rotation[r] * rigid_bodies.axes[r].transpose(),
-                       Vec3::Zero(), Vec3::Zero()}};
+    if (core == cylinder_core_nodes) {
+        const Real of_rim = (nodes.rest_position[first + 2] - nodes.rest_position[first + 1]).norm();
+        return RoundShape{{ColliderShape::cylinder, {of_rim, length, 0}}, place};
+    }
+    return RoundShape{{ColliderShape::capsule, {radius, length / 2, 0}}, place};
+}
+
+const char* Model::round_name(std::size_t body) const {
+    const Index core = bodies.core_nodes[body];
+    return core == 1 ? "sphere" : core == 2 ? "capsule" : "cylinder";
 }
 
 Index Model::user_tetrahedron(std::size_t body, Index place) const {
@@ -186,12 +195,14 @@ void Model::append_outline(std::size_t body) {
     const Index core = bodies.core_nodes[body];
     const bool has_tetrahedra = core == 0 && !record.tetrahedra.empty();
     std::vector<BoundaryTriangle> triangles;
-    if (core > 0)
-        triangles.push_back({{0, core - 1, core - 1}, no_index});
-    else if (has_tetrahedra)
+    if (core > 0) {
+        const Index end = core == 2 ? 1 : 0;
+        triangles.push_back({{0, end, end}, no_index});
+    } else if (has_tetrahedra) {
         triangles = boundary_triangles(record.tetrahedra);
-    else
+    } else {
         for (const auto& triangle : record.surface) triangles.push_back({triangle, no_index});
+    }
     const Index first_tetrahedron = has_tetrahedra ? bodies.tetrahedron_blocks[body].begin * element_lanes : no_index;
     const SurfaceRanges ranges = append_surface(triangles, bodies.nodes[body].begin, first_tetrahedron, surface);
     bodies.triangles[body] = ranges.triangles;

@@ -131,8 +131,8 @@ struct Model {
     };
     /// nullopt: it has faces.
     std::optional<RoundShape> round_shape(std::size_t body) const;
-    /// "sphere" or "capsule", of a body that is round.
-    const char* round_name(std::size_t body) const { return bodies.core_nodes[body] == 1 ? "sphere" : "capsule"; }
+    /// "sphere", "capsule" or "cylinder", of a body that is round.
+    const char* round_name(std::size_t body) const;
     bool is_rigid(std::size_t body) const { return dynamics_of(body) == BodyDynamics::rigid; }
     BodyDynamics dynamics_of(std::size_t body) const {
         return !has_frame(body)                    ? BodyDynamics::explicit_elastic

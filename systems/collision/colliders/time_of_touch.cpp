@@ -255,7 +255,7 @@ Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature&
 }
 
 std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
-                                 const TouchingFeature& feature) {
+                                 const TouchingFeature& feature, Real* time_of_touch) {
     const RelativeMotion moving(motion, h, feature);
     const Real speed = moving.greatest_speed();
     Nodes nodes = moving.at(0);
@@ -277,6 +277,7 @@ std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMo
     }
     if (!touch.in_face) return std::nullopt;
     touch.within = touches_within(feature, touch, nodes);
+    if (time_of_touch != nullptr) *time_of_touch = time;
     return touch;
 }
 

@@ -48,8 +48,8 @@ Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature&
 /// How they touch at the time of the step at which they are near contact, or nothing when they do not come as near;
 /// conservative advancement, as time_of_contact; of a node and a plane, how they are at the end if it is behind then.
 /// Nothing of what touches or overlaps at the start, and of a face whose edges touch first: they are looked at by
-/// themselves.
+/// themselves. `time_of_touch`: where it is put, as a fraction of the step; null: nobody asks.
 std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
-                                 const TouchingFeature& feature);
+                                 const TouchingFeature& feature, Real* time_of_touch = nullptr);
 
 }  // namespace skerry

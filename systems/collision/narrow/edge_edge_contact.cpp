@@ -109,6 +109,12 @@ private:
 
 }  // namespace
 
+bool edge_faces(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, const Vec3& direction,
+                bool nearly_flat) {
+    const Wedge wedge(surface, position, edge, 0, nearly_flat);
+    return wedge.convex() && wedge.faces(direction);
+}
+
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real near, Surfaces surfaces) {
     const auto &ea = surface.edges.node[first], &eb = surface.edges.node[second];

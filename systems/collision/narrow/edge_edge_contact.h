@@ -27,4 +27,9 @@ struct EdgeEdgeContact {
 EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const Vec3> position, Index first,
                                   Index second, const PairScale& scale, Real near, Surfaces surfaces);
 
+/// Whether what is nearly straight, or bends outward, touches an edge of a surface from a direction (unit, normal to
+/// the edge): no face at the edge comes nearer. `nearly_flat`: those count, too.
+bool edge_faces(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, const Vec3& direction,
+                bool nearly_flat);
+
 }  // namespace skerry

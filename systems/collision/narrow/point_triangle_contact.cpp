@@ -168,4 +168,10 @@ bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> posit
     return offset.dot(normal) > 0;
 }
 
+bool vertex_holds_place(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
+                        const PairScale& scale) {
+    const Query q{surface, position, scale, offset, offset.norm()};
+    return offset.dot(vertex_normal(q, vertex, [&](const Vec3& side) { return offset.dot(side) <= q.tie(side); })) > 0;
+}
+
 }  // namespace skerry

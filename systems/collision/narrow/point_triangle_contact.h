@@ -41,4 +41,8 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale);
 
+/// Whether a vertex holds a place at `offset` from it: no face around it comes nearer to that place.
+bool vertex_holds_place(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
+                        const PairScale& scale);
+
 }  // namespace skerry

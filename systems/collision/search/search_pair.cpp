@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/check.h"
+#include "components/node_block_table.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/search/leaf_features.h"
 #include "systems/collision/search/search_collider.h"
@@ -41,8 +42,8 @@ public:
           radius_squared_(radius_ * radius_),
           edge_radius_squared_((pair.scale.edge_depth + pair.margin) * (pair.scale.edge_depth + pair.margin)),
           self_(pair.kind == PairKind::self),
-          first_core_(inputs.body.core_nodes[pair.first]),
-          second_core_(inputs.body.core_nodes[pair.second]) {}
+          first_is_point_(is_point(inputs.body.core_nodes[pair.first])),
+          second_is_point_(is_point(inputs.body.core_nodes[pair.second])) {}
 
     void run() {
         push(inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin);
@@ -56,6 +57,8 @@ public:
     }
 
 private:
+    static bool is_point(Index core_nodes) { return core_nodes == 1 || core_nodes == cylinder_core_nodes; }
+
     const BvhNode& node(Index row) const { return inputs_.bvh_node[row]; }
     const Vec3& position(Index n) const { return inputs_.position[n]; }
 
@@ -105,10 +108,11 @@ private:
         const unsigned of_a = lanes_near(a, box_b, radius_squared_);
         if (of_a == 0) return;
         const unsigned of_b = lanes_near(b, box_a, radius_squared_);
-        // A sphere is the point that is held against faces and axes: where a node of them is nearest, that finds it,
-        // too, and a node within a flat face holds nothing back. Of two spheres the first is held against the second.
-        if (second_core_ != 1 || first_core_ == 1) compare_points(a, of_a, b, corners_[1], false);
-        if (first_core_ != 1) compare_points(b, of_b, a, corners_[0], true);
+        // A sphere, or the ball around a cylinder, is the point that is held against faces and axes: where a node of
+        // them is nearest, that finds it, too, and a node within a flat face holds nothing back. Of two spheres the
+        // first is held against the second.
+        if (!second_is_point_ || first_is_point_) compare_points(a, of_a, b, corners_[1], false);
+        if (!first_is_point_) compare_points(b, of_b, a, corners_[0], true);
         const LeafEdges &own = edges_of(a, edges_[0]), &other = edges_of(b, edges_[1]);
         std::array<unsigned, 3> near;
         if (!any_near(other, box_a, near)) return;
@@ -234,7 +238,7 @@ private:
     const Real radius_squared_;
     const Real edge_radius_squared_;  // edges are looked at less deep
     const bool self_;
-    const Index first_core_, second_core_;  // nodes, as in BodyTable
+    const bool first_is_point_, second_is_point_;  // the core of a sphere or cylinder
     // of the leaves last at hand, of the first tree and of the second: of two leaves compared often one stays
     std::array<LeafEdges, 2> edges_;
     std::array<LeafCorners, 2> corners_;

@@ -35,12 +35,16 @@ struct RigidInputs {
     /// 1/kg
     Real inverse_mass(std::size_t r) const { return holder.empty() || holder[r] == no_index ? 1 / mass[r] : 0; }
     Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
-    bool is_capsule(Index r) const {
-        return !core_nodes.empty() && core_nodes[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])] == 2;
-    }
+    bool is_capsule(Index r) const { return core_of(r) == 2; }
+    bool is_cylinder(Index r) const { return core_of(r) == cylinder_core_nodes; }
     /// m, of one that is round
     Real radius(Index r) const {
         return nodes.round_radius[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
+    }
+
+    /// Nodes, of a row of RigidBodyTable.
+    Index core_of(Index r) const {
+        return core_nodes.empty() ? 0 : core_nodes[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
 
     static RigidInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
@@ -123,6 +127,7 @@ struct RegionInputs {
     std::span<const Index> first_body{}, second_body{};
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // s
+    TouchPlaces touch{};                 // of cylinders
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
@@ -151,7 +156,8 @@ struct RegionInputs {
                 .first_body = binder.read(contact.first_body),
                 .second_body = binder.read(contact.second_body),
                 .body_kind = binder.read(body.kind),
-                .still_time = binder.read(body.still_time)};
+                .still_time = binder.read(body.still_time),
+                .touch = TouchPlaces::bind(binder, contact)};
     }
 };
 

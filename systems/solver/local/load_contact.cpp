@@ -20,10 +20,12 @@ inline AroundKick around_kick(const RegionInputs& inputs, Index row, std::span<c
         velocity.now += stencil.weight[a] * velocity_next[stencil.node[a]];
     }
     const Vec3& normal = inputs.normal[row];
-    velocity.before +=
-        inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spins.before(r); });
-    velocity.now +=
-        inputs.rigid.nodes.rolling(stencil, normal, [&](std::size_t r) { return inputs.rigid.spins.kicked(r); });
+    const RigidInputs& rigid = inputs.rigid;
+    const auto contact = static_cast<std::size_t>(row);
+    velocity.before += rigid.nodes.rolling(stencil, contact, normal, inputs.touch,
+                                           [&](std::size_t r) { return rigid.spins.before(r); });
+    velocity.now += rigid.nodes.rolling(stencil, contact, normal, inputs.touch,
+                                        [&](std::size_t r) { return rigid.spins.kicked(r); });
     if (inputs.implicit.any())
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0)

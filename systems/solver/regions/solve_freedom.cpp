@@ -99,7 +99,7 @@ private:
             [&](Index node) { return place_of(node); },
             [&](Index node, Real weight) {
                 const Index body = rigid.row(node);
-                if (body != no_index) add_term(part, body, node, weight, contact_normal(i));
+                if (body != no_index) add_term(part, body, node, weight, i);
                 return body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index;
             });
         data_.impulse[first_ + i].setZero();
@@ -129,7 +129,7 @@ private:
         return stage_.inputs.normal[static_cast<std::size_t>(region_.row[i])];
     }
 
-    void add_term(RigidPart& part, Index body, Index node, Real weight, const Vec3& normal) {
+    void add_term(RigidPart& part, Index body, Index node, Real weight, std::size_t i) {
         const RigidInputs& rigid = stage_.inputs.rigid;
         Index k = 0;
         while (k < part.term_count && part.term[static_cast<std::size_t>(k)].row != body) ++k;
@@ -137,11 +137,10 @@ private:
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            // a round body touches beside its core: at -radius normal of weights of sum 1, at radius normal of -1
-            term = {.row = body,
-                    .slot = static_cast<Index>(2 * place),
-                    .arm = padded(-rigid.nodes.radius(node) * normal),
-                    .spin_step = {}};
+            // a round body touches beside its core
+            const Vec3 beside = rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
+                                                        contact_normal(i), stage_.inputs.touch);
+            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};
         }
         term.weight += weight;
         term.arm += weight * padded(rigid.position[static_cast<std::size_t>(node)] -

@@ -1,0 +1,323 @@
+#include "systems/collision/cylinder_crossings.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "systems/collision/colliders/time_of_touch.h"
+#include "systems/collision/cylinders/nearest_bound.h"
+#include "systems/collision/cylinders/shape_facets.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/narrow/winding_number.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+namespace {
+
+// Crossings stand beside what touches at the start of the step. Of a triangle: three corners, edges and two rims; of a
+// shape what touches at the end, and one on the way.
+constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
+                crossing_of_facets = touches_of_shape - 1;
+static_assert(crossing_of_triangle + 8 <= touches_of_triangle);
+
+// What comes less far than this part of what is thinner does not come through it between the start and the end.
+constexpr Real thin_fraction = 0.5;
+
+class CylinderCrossings {
+public:
+    CylinderCrossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, Index p,
+                      Column<ContactRow>& found)
+        : inputs_(inputs),
+          motion_(motion),
+          of_(inputs, pairs, p),
+          cylinder_(cylinder_in_step(inputs, motion, of_.cylinder)),
+          scale_(pair_scale(inputs, of_.kind, pairs.first[p], pairs.second[p])),
+          surface_(pair_surface(inputs, of_.kind, pairs.first[p], pairs.second[p])),
+          candidates_(pairs.candidates[p].span()),
+          asleep_until_(pairs.asleep_until[p].span()),
+          found_(found) {}
+
+    std::uint64_t run(Range range, Real travel_bound) {
+        std::uint64_t tested = 0;
+        for (Index c = range.begin; c < range.end; ++c)
+            if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c]);
+        return tested;
+    }
+
+private:
+    using Kind = TouchingFeature::Kind;
+
+    bool test(const Candidate& candidate) {
+        if (of_.kind == PairKind::collider)
+            return against_shape(candidate, inputs_.collider.geometry[of_.other], inputs_.collider.motion[of_.other],
+                                 second_local(candidate.feature), {});
+        const Index core = inputs_.body.core_nodes[of_.other], first = inputs_.body.nodes[of_.other].begin;
+        if (core == 0) return against_triangle(candidate);
+        if (core != cylinder_core_nodes) return against_core(candidate, core, first);
+        const RigidCylinder other = cylinder_in_step(inputs_, motion_, of_.other);
+        return against_shape(candidate, other.geometry, other.motion, 0,
+                             stencil_of_cylinder(cylinder_.middle, {first, first, first}, {1, 0, 0}));
+    }
+
+    bool against_triangle(const Candidate& candidate) {
+        const Index t = candidate.second;
+        const TriangleTable& table = inputs_.surface.triangles;
+        const auto& node = table.node[t];
+        if (!can_move(node)) return false;
+        TouchingFeature face = feature_of(Kind::face, node);
+        const LocalFace local{cylinder_.local(face.position[0]), cylinder_.local(face.position[1]),
+                              cylinder_.local(face.position[2])};
+        if (!may_meet(face, distance_bound(cylinder_.geometry, local))) return false;
+        for (Index k = 0; k < 3; ++k) {
+            const Index next = (k + 1) % 3;
+            if (table.owned_vertices[t] >> k & 1)
+                look(candidate, crossing_of_triangle + k, feature_of(Kind::node, {node[k], no_index, no_index}),
+                     {node[k], node[k], node[k]});
+            if (table.owned_edges[t] >> k & 1)
+                look(candidate, crossing_of_triangle + 3 + k, feature_of(Kind::edge, {node[k], node[next], no_index}),
+                     {node[k], node[next], node[k]});
+        }
+        for (Index rim = 0; rim < 2; ++rim) {
+            face.of_collider = rim * collider_point_count(ColliderShape::cylinder) / 2;
+            look(candidate, crossing_of_triangle + 6 + rim, face, node);
+        }
+        return true;
+    }
+
+    void look(const Candidate& candidate, Index number, const TouchingFeature& feature,
+              const std::array<Index, 3>& node) {
+        if (!may_meet(feature, nearest(feature).distance)) return;
+        const std::optional<Hit> hit = first_hit(feature);
+        if (!hit || (hit->touch.within && !is_outside(inputs_, of_.other, cylinder_.world(hit->touch.point)))) return;
+        add(candidate, number, stencil_of_cylinder(cylinder_.middle, node, hit->touch.weight), feature, *hit);
+    }
+
+    bool against_core(const Candidate& candidate, Index core, Index first) {
+        const std::array<Index, 3> node{first, first + core - 1, first};
+        if (!can_move(node)) return false;
+        TouchingFeature feature = feature_of(core == 1 ? Kind::node : Kind::edge, node);
+        feature.kept.distance = inputs_.body.round_radius[of_.other];
+        if (!may_meet(feature, nearest(feature).distance)) return false;
+        if (const std::optional<Hit> hit = first_hit(feature))
+            add(candidate, crossing_of_shape, stencil_of_cylinder(cylinder_.middle, node, hit->touch.weight), feature,
+                *hit);
+        return true;
+    }
+
+    /// `stencil`: of the pair, where the other is a body.
+    bool against_shape(const Candidate& candidate, const ColliderGeometry& other, const RigidMotion& other_motion,
+                       Index part, const std::optional<Stencil>& stencil) {
+        if (!(inputs_.inverse_mass[cylinder_.middle] > 0) && !stencil) return false;
+        const RigidMotion place = seen_from(cylinder_.motion, other_motion);
+        touches_.clear();
+        const Real bound = shape_distance_bound(cylinder_.geometry, other, part, place, touches_);
+        if (other.shape == ColliderShape::plane) return against_plane(candidate, other_motion, bound);
+        const RigidMotion other_end = at_end(other_motion);
+        const Real furthest =
+            motion_.h * (other_motion.angular_velocity.norm() * collider_radius(other) + other_motion.velocity.norm()) +
+            greatest_way_of_cylinder();
+        if (!(furthest > slow_fraction * bound)) return false;
+        touch_shape(cylinder_.geometry, other, part, place, furthest + scale_.shell, touches_);
+        if (!(furthest > slow_fraction * shape_distance_bound(cylinder_.geometry, other, part, place, touches_)))
+            return false;
+        const bool overlap =
+            std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
+        const Stencil of_pair = stencil.value_or(stencil_of_cylinder(cylinder_.middle, {}, {}));
+        const auto velocity = [&](const Vec3& at) {
+            return stencil ? Vec3(Vec3::Zero()) : velocity_of(other_motion, at);
+        };
+        if (!overlap && add_end(candidate, other, part, other_motion, other_end, of_pair, velocity)) return true;
+        if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other)))
+            add_facets(candidate, other, part, other_motion, other_end, of_pair, velocity);
+        return true;
+    }
+
+    /// What would overlap at the end of the step, exactly, and what would nearly touch beside it: held by the one it
+    /// would come into the other. Returns whether anything would overlap.
+    bool add_end(const Candidate& candidate, const ColliderGeometry& other, Index part, const RigidMotion& other_motion,
+                 const RigidMotion& other_end, const Stencil& stencil, auto&& velocity) {
+        const RigidMotion end = at_end(cylinder_.motion);
+        touches_.clear();
+        touch_shape(cylinder_.geometry, other, part, seen_from(end, other_end), scale_.shell, touches_);
+        if (std::none_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; }))
+            return false;
+        for (const CylinderTouch& touch : touches_) {
+            const Vec3 normal = end.rotation * touch.normal, on_other = end.position + end.rotation * touch.on_other,
+                       arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
+                       at_start = other_motion.position + other_motion.rotation * (other_end.rotation.transpose() *
+                                                                                   (on_other - other_end.position));
+            put(candidate, crossing_of_shape + touch.number, stencil, arm, normal,
+                normal.dot(cylinder_.motion.position + arm - at_start), velocity(at_start));
+        }
+        return true;
+    }
+
+    /// What its facets would meet first on the way.
+    void add_facets(const Candidate& candidate, const ColliderGeometry& other, Index part,
+                    const RigidMotion& other_motion, const RigidMotion& other_end, const Stencil& stencil,
+                    auto&& velocity) {
+        std::optional<Hit> first;
+        TouchingFeature of_first{};
+        ShapeFacets(other, part).for_each([&](const Facet& facet) {
+            TouchingFeature feature{.kind = facet.kind, .of_collider = 0, .position = {}};
+            for (std::size_t i = 0; i < feature.nodes(); ++i) {
+                feature.position[i] = other_motion.position + other_motion.rotation * facet.at[i];
+                feature.displacement[i] = other_end.position + other_end.rotation * facet.at[i] - feature.position[i];
+            }
+            feature.kept = kept(facet.radius);
+            for (Index rim = 0; rim < (facet.kind == Kind::face ? 2 : 1); ++rim) {
+                feature.of_collider = rim * collider_point_count(ColliderShape::cylinder) / 2;
+                if (!may_meet(feature, nearest(feature).distance)) continue;
+                const std::optional<Hit> hit = first_hit(feature);
+                if (!hit || hit->touch.within || (first && first->time <= hit->time)) continue;
+                first = hit;
+                of_first = feature;
+            }
+        });
+        if (first) add(candidate, crossing_of_facets, stencil, of_first, *first, velocity(along_of(of_first, *first)));
+    }
+
+    /// No way leads around it: the end tells.
+    bool against_plane(const Candidate& candidate, const RigidMotion& plane, Real distance) {
+        if (!(greatest_way_of_cylinder() + motion_.h * plane.velocity.norm() +
+                  motion_.h * plane.angular_velocity.norm() *
+                      ((cylinder_.motion.position - plane.position).norm() + greatest_way_of_cylinder() +
+                       ball_radius()) >
+              distance) ||
+            distance < 0)
+            return false;
+        const RigidMotion end = at_end(cylinder_.motion), plane_end = at_end(plane);
+        const Vec3 normal = plane_end.rotation.col(2), local = end.rotation.transpose() * normal;
+        Vec3 deepest = -cylinder_.geometry.size[1] * (local[2] > 0 ? 1 : -1) * Vec3::UnitZ();
+        const Real out = local.head<2>().norm();
+        if (out > 0) deepest.head<2>() = -cylinder_.geometry.size[0] / out * local.head<2>();
+        if (!(normal.dot(end.position + end.rotation * deepest - plane_end.position) < 0)) return true;
+        const Vec3 arm = cylinder_.motion.rotation * deepest;
+        const Real along = normal.dot(cylinder_.motion.position + arm - plane.position);
+        put(candidate, crossing_of_shape, stencil_of_cylinder(cylinder_.middle, {}, {}), arm, normal, along,
+            velocity_of(plane, cylinder_.motion.position + arm));
+        return true;
+    }
+
+    struct Hit {
+        Touch touch;
+        Real time;  // fraction of the step
+    };
+    std::optional<Hit> first_hit(const TouchingFeature& feature) const {
+        Real time = 0;
+        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion_.h, feature, &time);
+        return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
+    }
+    Touch nearest(const TouchingFeature& feature) const {
+        std::array<Vec3, 3> local;
+        for (std::size_t i = 0; i < feature.nodes(); ++i) local[i] = cylinder_.local(feature.position[i]);
+        return nearest_touch(cylinder_.geometry, feature, local);
+    }
+    bool may_meet(const TouchingFeature& feature, Real distance) const {
+        return greatest_approach(cylinder_.motion, motion_.h, feature) > slow_fraction * distance;
+    }
+
+    /// How the cylinder is turned when it is met.
+    Mat3 rotation_at(Real time) const {
+        return rotation_matrix(time * motion_.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
+    }
+    /// m: the place of the feature that is met, at the start of the step.
+    static Vec3 along_of(const TouchingFeature& feature, const Hit& hit) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
+        return sum;
+    }
+    void add(const Candidate& candidate, Index number, const Stencil& stencil, const TouchingFeature& feature,
+             const Hit& hit, const Vec3& surface_velocity = Vec3::Zero()) {
+        const Vec3 normal = -(rotation_at(hit.time) * hit.touch.normal),
+                   arm = cylinder_.motion.rotation * hit.touch.point;
+        const Real along = normal.dot(cylinder_.motion.position + arm - along_of(feature, hit)) - feature.kept.distance;
+        put(candidate, number, stencil, arm, normal, along, surface_velocity);
+    }
+    /// `arm`: m, from the middle to what is touched, at the start of the step as the other places here; `along`: the
+    /// distance there at the start of the step.
+    void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
+             Real along, const Vec3& surface_velocity) {
+        // features that turn by more than a right angle have not overlapped
+        const Real distance = std::max(along, Real(0));
+        const Vec3 point = cylinder_.motion.position + arm - distance * normal;
+        found_.push_back(contact_row(
+            inputs_, of_, {candidate.feature, number, stencil, point, normal, distance, scale_.shell, surface_velocity},
+            surface_));
+    }
+
+    /// What a contact stops at the shell has not crossed, however far it came.
+    KeptApart kept(Real radius) const {
+        return {radius, scale_.shell > 0 ? contact_slack * scale_.shell : std::numeric_limits<Real>::infinity()};
+    }
+    TouchingFeature feature_of(Kind kind, const std::array<Index, 3>& node) const {
+        TouchingFeature feature{.kind = kind, .of_collider = 0, .position = {}};
+        feature.kept = kept(0);
+        for (std::size_t i = 0; i < feature.nodes(); ++i) {
+            feature.position[i] = inputs_.position[node[i]];
+            feature.displacement[i] = motion_.of(node[i]);
+        }
+        return feature;
+    }
+    bool can_move(const std::array<Index, 3>& node) const {
+        return inputs_.inverse_mass[cylinder_.middle] > 0 ||
+               std::any_of(node.begin(), node.end(), [&](Index n) { return inputs_.inverse_mass[n] > 0; });
+    }
+    static RigidMotion seen_from(const RigidMotion& from, const RigidMotion& motion) {
+        const Mat3 back = from.rotation.transpose();
+        return {back * (motion.position - from.position), back * motion.rotation, Vec3::Zero(), Vec3::Zero()};
+    }
+    RigidMotion at_end(const RigidMotion& motion) const {
+        return {motion.position + motion_.h * motion.velocity,
+                rotation_matrix(motion_.h * motion.angular_velocity) * motion.rotation, Vec3::Zero(), Vec3::Zero()};
+    }
+    /// m: none of its parts is thinner, halved.
+    static Real thickness(const ColliderGeometry& geometry) {
+        const Vec3& size = geometry.size;
+        switch (geometry.shape) {
+            case ColliderShape::box:
+                return size.minCoeff();
+            case ColliderShape::cylinder:
+                return std::min(size[0], size[1]);
+            case ColliderShape::bucket:
+                return size[2] / 2;
+            case ColliderShape::sphere:
+            case ColliderShape::capsule:
+            case ColliderShape::plane:
+            case ColliderShape::mesh:
+                break;
+        }
+        return size[0];
+    }
+    Real ball_radius() const { return std::hypot(cylinder_.geometry.size[0], cylinder_.geometry.size[1]); }
+    Real greatest_way_of_cylinder() const {
+        return motion_.h *
+               (cylinder_.motion.velocity.norm() + cylinder_.motion.angular_velocity.norm() * ball_radius());
+    }
+    static Vec3 velocity_of(const RigidMotion& motion, const Vec3& point) {
+        return motion.velocity + motion.angular_velocity.cross(point - motion.position);
+    }
+
+    const CollisionInputs& inputs_;
+    const StepMotion& motion_;
+    const CylinderPair of_;
+    const RigidCylinder cylinder_;
+    const PairScale scale_;
+    const SurfaceProperties surface_;
+    std::span<const Candidate> candidates_;
+    std::span<const Real> asleep_until_;
+    Column<ContactRow>& found_;
+    CylinderTouches touches_;
+};
+
+}  // namespace
+
+std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
+                                      Index p, Range range, Real travel_bound, Column<ContactRow>& found) {
+    return CylinderCrossings(inputs, motion, pairs, p, found).run(range, travel_bound);
+}
+
+}  // namespace skerry

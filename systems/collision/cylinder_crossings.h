@@ -1,0 +1,13 @@
+// What a rigid cylinder would come into or through in this step.
+#pragma once
+
+#include "components/pair_table.h"
+#include "systems/collision/cylinders/cylinder_row.h"
+
+namespace skerry {
+
+/// Looks at the candidates of a pair with a cylinder that can have met by `travel_bound`. Returns how many were tested.
+std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
+                                      Index p, Range range, Real travel_bound, Column<ContactRow>& found);
+
+}  // namespace skerry

@@ -1,0 +1,417 @@
+#include "systems/collision/cylinders/cylinder_touches.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "systems/collision/colliders/edge_contact.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/geometry/closest_points.h"
+
+namespace skerry {
+
+namespace {
+
+// rad: an end that is tilted by less stands on places that turn with it, which a cylinder at rest keeps.
+constexpr Real standing_tilt = 1e-4;
+// Sine of the angle between an end and a side from which on it lies on one place of its rim alone.
+constexpr Real lying_tilt = 0.5;
+// rad: by how much what touches may lie beyond the normals of an edge or rim, as of capsules (4.5).
+constexpr Real rim_angle = 0.03;
+// A gradient this near to the axis, or to its plane, is that of an end or of the side.
+constexpr Real place_rounding = 1e-9;
+// Places are over a side, and beside its border by rounding, by this fraction of its size.
+constexpr Real over_fraction = 1e-9;
+// A distance along a rim that changes by less than this is constant.
+constexpr Real level_slope = 1e-9;
+constexpr int looks_around = 16;                           // at a rim, between which a minimum is looked for
+constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // rad
+
+// Numbers of touches with a shape.
+constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
+                of_round_sides = 240;
+
+Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
+    return {radius * direction[0], radius * direction[1], z};
+}
+
+/// A circle about z, the edge between a side around the axis and one across it.
+struct Rim {
+    Real radius, z;       // m
+    Real outward, along;  // 1 or -1: where the normals of its sides point
+    bool faces(const Vec3& normal, const Vec3& direction) const {
+        return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;
+    }
+};
+
+/// The least distances along a circle, each between two places of a round of looks; of a stretch of one distance both
+/// ends.
+template <class Distance, class Visit>
+void for_each_minimum(const Rim& rim, Distance&& distance_at, Visit&& visit) {
+    struct Look {
+        Vec3 direction;
+        SurfacePoint on;
+        Real slope;
+    };
+    const auto look = [&](Real turn) {
+        Look at;
+        at.direction = {std::cos(turn), std::sin(turn), 0};
+        at.on = distance_at(rim_place(rim.radius, rim.z, at.direction));
+        at.slope = at.on.normal.dot(Vec3(-at.direction[1], at.direction[0], 0));
+        return at;
+    };
+    constexpr Real round = 2 * std::numbers::pi, between = round / looks_around;
+    Index number = 0;
+    std::optional<Real> first, last;  // rad, where they were found
+    // where the slope passes a value between two places
+    const auto find = [&](Real low, Real high, Real slope, const Look& behind) {
+        Look found = behind;
+        while (high - low > turn_tolerance) {
+            const Real middle = 0.5 * (low + high);
+            const Look there = look(middle);
+            if (there.slope < slope) {
+                low = middle;
+            } else {
+                high = middle;
+                found = there;
+            }
+        }
+        const bool again = (last && high - *last < same_place) || (first && high - *first > round - same_place);
+        last = high;
+        if (!first) first = high;
+        // a kink of the other is an edge of its own
+        if (!again && number < of_rim && std::abs(found.slope) < rim_angle) visit(number++, found.direction, found.on);
+    };
+    Look before = look(0);
+    for (int i = 1; i <= looks_around; ++i) {
+        const Look after = look(i * between);
+        const bool falls = before.slope<-level_slope, rises = after.slope> level_slope;
+        const Real low = (i - 1) * between, high = i * between;
+        // a look that is at a minimum is no stretch
+        if (falls && after.slope >= -level_slope) {
+            const Look beyond = rises ? after : look(high + same_place);
+            if (beyond.slope > level_slope)
+                find(low, rises ? high : high + same_place, 0, beyond);
+            else
+                find(low, high, -level_slope, after);
+        } else if (!falls && before.slope <= level_slope && rises) {
+            const bool stretch = look(low - same_place).slope >= -level_slope;
+            find(stretch ? low : low - same_place, high, stretch ? level_slope : 0, after);
+        }
+        before = after;
+    }
+}
+
+/// A flat side of a shape, in its frame.
+struct FlatSide {
+    Vec3 normal, at;
+    enum class Region : std::uint8_t { all, rectangle, disc } region;
+    Vec3 half;                  // m, of a rectangle
+    Real inner = 0, outer = 0;  // m, radii of a disc
+
+    bool holds(const Vec3& p) const {
+        switch (region) {
+            case Region::all:
+                return true;
+            case Region::rectangle:
+                for (int i = 0; i < 3; ++i)
+                    if (normal[i] == 0 && std::abs(p[i]) > (1 + over_fraction) * half[i]) return false;
+                return true;
+            case Region::disc:
+                break;
+        }
+        const Real r = p.head<2>().norm();
+        return r >= (1 - over_fraction) * inner && r <= (1 + over_fraction) * outer;
+    }
+};
+
+/// Touches of the cylinder with one part of a shape.
+class ShapeTouches {
+public:
+    ShapeTouches(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
+                 Real near, CylinderTouches& found)
+        : own_(cylinder), other_(other), part_(part), place_(place), near_(near), found_(found) {}
+
+    void run() {
+        switch (other_.shape) {
+            case ColliderShape::plane:
+                touch_side(0, {Vec3::UnitZ(), Vec3::Zero(), FlatSide::Region::all, {}});
+                return;
+            case ColliderShape::sphere:
+                touch_ball(own_, place_.position, other_.size[0], near_, found_);
+                return;
+            case ColliderShape::capsule: {
+                const Vec3 half = other_.size[1] * place_.rotation.col(2);
+                touch_capsule(own_, place_.position - half, place_.position + half, other_.size[0], near_, found_);
+                return;
+            }
+            case ColliderShape::box:
+                touch_rims();
+                for (Index side = 0; side < 6; ++side) touch_side(side, side_of_box(side));
+                touch_corners();
+                touch_edges();
+                return;
+            case ColliderShape::cylinder:
+                touch_rims();
+                for (Index rim = 0; rim < 2; ++rim) touch_rim_of_other(rim, rim_of(other_, rim));
+                for (Index side = 0; side < 2; ++side) touch_side(side, end_of(other_, side));
+                for (Index end = 0; end < 2; ++end) touch_end(2 + end, end);
+                touch_round_sides(other_.size[0], -other_.size[1], other_.size[1]);
+                return;
+            case ColliderShape::bucket:
+                touch_bucket();
+                return;
+            case ColliderShape::mesh:
+                break;
+        }
+    }
+
+private:
+    static Rim rim_of(const ColliderGeometry& cylinder, Index end) {
+        const Real up = end == 0 ? 1 : -1;
+        return {cylinder.size[0], up * cylinder.size[1], 1, up};
+    }
+    static FlatSide end_of(const ColliderGeometry& cylinder, Index end) {
+        const Vec3 normal(0, 0, end == 0 ? 1 : -1);
+        return {normal, cylinder.size[1] * normal, FlatSide::Region::disc, {}, 0, cylinder.size[0]};
+    }
+    FlatSide side_of_box(Index side) const {
+        Vec3 normal = Vec3::Zero();
+        normal[side / 2] = side % 2 == 0 ? 1 : -1;
+        return {normal, normal.cwiseProduct(other_.size), FlatSide::Region::rectangle, other_.size};
+    }
+
+    Vec3 to_other(const Vec3& p) const { return place_.rotation.transpose() * (p - place_.position); }
+    Vec3 from_other(const Vec3& p) const { return place_.position + place_.rotation * p; }
+    SurfacePoint other_at(const Vec3& p) const {
+        SurfacePoint on = local_distance(other_, to_other(p), part_);
+        on.normal = place_.rotation * on.normal;
+        on.point = from_other(on.point);
+        return on;
+    }
+    /// A place behind a side may be nearer to another one.
+    static bool is_before(const FlatSide& side, Real height, const ColliderGeometry& geometry, Index part,
+                          const Vec3& p) {
+        return height >= 0 || local_distance(geometry, p, part).normal.dot(side.normal) > 1 - over_fraction;
+    }
+    void add(Index number, Real distance, const Vec3& normal, const Vec3& on_other) {
+        if (distance <= near_) found_.add({number, distance, normal, on_other});
+    }
+
+    /// Where the rims of the cylinder are nearest to the other.
+    void touch_rims() {
+        for (Index end = 0; end < 2; ++end) {
+            const Rim rim = rim_of(own_, end);
+            for_each_minimum(
+                rim, [&](const Vec3& p) { return other_at(p); },
+                [&](Index k, const Vec3& direction, const SurfacePoint& on) {
+                    if (rim.faces(-on.normal, direction)) add(of_rim * end + k, on.distance, on.normal, on.point);
+                });
+        }
+    }
+
+    /// Where a rim of the other is nearest to the cylinder.
+    void touch_rim_of_other(Index rim_number, const Rim& rim) {
+        for_each_minimum(
+            rim,
+            [&](const Vec3& p) {
+                SurfacePoint on = local_distance(own_, from_other(p), 0);
+                on.normal = place_.rotation.transpose() * on.normal;
+                return on;
+            },
+            [&](Index k, const Vec3& direction, const SurfacePoint& on) {
+                if (!rim.faces(-on.normal, direction)) return;
+                add(of_other_rims + of_rim * rim_number + k, on.distance, -(place_.rotation * on.normal),
+                    from_other(rim_place(rim.radius, rim.z, direction)));
+            });
+    }
+
+    /// Points of the rims over a flat side of the other, and where the rim of a disc passes them.
+    void touch_side(Index number, const FlatSide& side) {
+        const Vec3 normal = place_.rotation * side.normal;
+        const Vec3 at = from_other(side.at);
+        const bool stands = normal.head<2>().norm() <= lying_tilt;
+        const auto over = [&](Index k, const Vec3& p) {
+            const Real height = normal.dot(p - at);
+            const Vec3 foot = p - height * normal;
+            if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
+                add(of_sides + of_side * number + k, height, normal, foot);
+        };
+        // of what is round the points that come furthest are found along the rims
+        const bool all = side.region == FlatSide::Region::all;
+        if (!all && !stands) return;
+        for (const RimPoints::Point& p : RimPoints(own_, normal)) {
+            const Index end = p.number / RimPoints::most_of_rim, k = p.number % RimPoints::most_of_rim;
+            if (all)
+                add(p.number, normal.dot(p.at - at), normal, p.at - normal.dot(p.at - at) * normal);
+            else if ((end == 0) == (normal[2] < 0))
+                over(k, p.at);
+        }
+        if (side.region != FlatSide::Region::disc) return;
+        const Rim rim = rim_of(own_, normal[2] < 0 ? 0 : 1);
+        Index k = RimPoints::most_of_rim;
+        for_each_passing(
+            rim, [&](const Vec3& p) { return to_other(p).head<2>().norm() - side.outer; },
+            [&](const Vec3& p) {
+                if (k < of_side) over(k++, p);
+            });
+    }
+
+    /// Points of a rim of the other, a cylinder, over an end of this one.
+    void touch_end(Index number, Index end) {
+        const FlatSide side = end_of(own_, end);
+        const Vec3 normal = place_.rotation.transpose() * side.normal;  // as the other sees it
+        if (normal.head<2>().norm() > lying_tilt) return;
+        const auto over = [&](Index k, const Vec3& p) {
+            const Vec3 here = from_other(p);
+            const Real height = side.normal.dot(here - side.at);
+            if (side.holds(here) && is_before(side, height, own_, 0, here))
+                add(of_sides + of_side * number + k, height, -side.normal, here);
+        };
+        for (const RimPoints::Point& p : RimPoints(other_, normal))
+            if ((p.number / RimPoints::most_of_rim == 0) == (normal[2] < 0))
+                over(p.number % RimPoints::most_of_rim, p.at);
+    }
+
+    template <class Value, class Visit>
+    void for_each_passing(const Rim& rim, Value&& value_at, Visit&& visit) const {
+        const auto at = [&](Real turn) { return rim_place(rim.radius, rim.z, {std::cos(turn), std::sin(turn), 0}); };
+        constexpr Real between = 2 * std::numbers::pi / looks_around;
+        Real before = value_at(at(0));
+        for (int i = 1; i <= looks_around; ++i) {
+            const Real after = value_at(at(i * between));
+            if ((before < 0) != (after < 0)) {
+                Real low = (i - 1) * between, high = i * between;
+                while (high - low > turn_tolerance) {
+                    const Real middle = 0.5 * (low + high);
+                    ((value_at(at(middle)) < 0) == (before < 0) ? low : high) = middle;
+                }
+                visit(at(0.5 * (low + high)));
+            }
+            before = after;
+        }
+    }
+
+    void touch_corners() {
+        for (Index k = 0; k < 8; ++k) {
+            const Vec3 sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+            const Vec3 at = from_other(sign.cwiseProduct(other_.size));
+            const SurfacePoint on = local_distance(own_, at, 0);
+            if (!(on.distance <= near_)) continue;
+            const Vec3 normal = place_.rotation.transpose() * -on.normal;
+            const bool faces = (normal.cwiseProduct(sign).array() >= -over_fraction).all();
+            if (faces || place_of(on.normal) == CylinderPlace::end) add(of_corners + k, on.distance, -on.normal, at);
+        }
+    }
+
+    void touch_edges() {
+        Index edge = 0;
+        for (int along = 0; along < 3; ++along)
+            for (int k = 0; k < 4; ++k, ++edge) {
+                Vec3 out = Vec3::Zero();
+                out[(along + 1) % 3] = k & 1 ? 1 : -1;
+                out[(along + 2) % 3] = k & 2 ? 1 : -1;
+                const Vec3 middle = out.cwiseProduct(other_.size), half = other_.size[along] * Vec3::Unit(along);
+                const Vec3 a = from_other(middle - half), b = from_other(middle + half);
+                if (!(edge_distance(own_, 0, a, b) <= near_)) continue;
+                const EdgeContact contact = edge_contact(own_, 0, a, b);
+                for (std::size_t i = 0; i < contact.count; ++i) {
+                    const EdgePoint& touch = contact.point[i];
+                    const Vec3 normal = place_.rotation.transpose() * -touch.on.normal;
+                    if ((normal.cwiseProduct(out).array() >= -rim_angle).all())
+                        add(of_edges + 8 * edge + touch.number, touch.on.distance, -touch.on.normal,
+                            a + touch.s * (b - a));
+                }
+            }
+    }
+
+    /// Two sides that cross, of the other one between two heights; parallel ones touch at their rims.
+    void touch_round_sides(Real radius, Real low, Real high) {
+        const Vec3 half = own_.size[1] * Vec3::UnitZ();
+        const SegmentSegment nearest =
+            closest_points_of_segments(-half, half, from_other({0, 0, low}), from_other({0, 0, high}));
+        const Real length = std::sqrt(nearest.distance_squared);
+        if (!nearest.interior || !(length > 0)) return;
+        const Vec3 normal = (nearest.on_first - nearest.on_second) / length;
+        // what is within a hollow side does not touch it from outside
+        if (other_.shape == ColliderShape::bucket && length < radius) return;
+        add(of_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
+    }
+
+    void touch_bucket() {
+        const Real inner = other_.size[0], height = other_.size[1], wall = other_.size[2], outer = inner + wall;
+        touch_rims();
+        if (part_ == 0) {
+            touch_side(0, {Vec3::UnitZ(), Vec3::Zero(), FlatSide::Region::disc, {}, 0, inner});
+            touch_side(1, {-Vec3::UnitZ(), {0, 0, -wall}, FlatSide::Region::disc, {}, 0, outer});
+            return;
+        }
+        touch_rim_of_other(0, {inner, height, -1, 1});
+        touch_rim_of_other(1, {outer, height, 1, 1});
+        touch_rim_of_other(2, {outer, -wall, 1, -1});
+        touch_side(0, {Vec3::UnitZ(), {0, 0, height}, FlatSide::Region::disc, {}, inner, outer});
+        touch_round_sides(outer, -wall, height);
+    }
+
+    const ColliderGeometry &own_, &other_;
+    const Index part_;
+    const RigidMotion& place_;
+    const Real near_;
+    CylinderTouches& found_;
+};
+
+}  // namespace
+
+RimPoints::RimPoints(const ColliderGeometry& cylinder, const Vec3& normal) {
+    const Real tilt = normal.head<2>().norm();
+    const Vec3 deepest = tilt > 0 ? Vec3(-normal[0] / tilt, -normal[1] / tilt, 0) : Vec3(Vec3::UnitX());
+    for (Index end = 0; end < 2; ++end) {
+        const auto put = [&](Index k, const Vec3& direction) {
+            point[count++] = {most_of_rim * end + k,
+                              rim_place(cylinder.size[0], end == 0 ? cylinder.size[1] : -cylinder.size[1], direction)};
+        };
+        put(0, deepest);
+        if (tilt > lying_tilt) continue;
+        const bool stands = tilt <= standing_tilt;
+        const Vec3 first = stands ? Vec3(Vec3::UnitX()) : deepest, second(-first[1], first[0], 0);
+        if (stands) put(1, first);
+        put(2, second);
+        put(3, -first);
+        put(4, -second);
+        for (Index k = 0; stands && k < 4; ++k)
+            put(5 + k, std::sqrt(Real(0.5)) * Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, 0));
+    }
+}
+
+CylinderPlace place_of(const Vec3& gradient) {
+    if (gradient.head<2>().norm() <= place_rounding) return CylinderPlace::end;
+    return std::abs(gradient[2]) <= place_rounding ? CylinderPlace::side : CylinderPlace::rim;
+}
+
+void touch_ball(const ColliderGeometry& cylinder, const Vec3& middle, Real radius, Real near, CylinderTouches& found) {
+    const SurfacePoint on = local_distance(cylinder, middle, 0);
+    if (on.distance - radius <= near)
+        found.add({0, on.distance - radius, -on.normal, middle - radius * on.normal, {1, 0}});
+}
+
+void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& b, Real radius, Real near,
+                   CylinderTouches& found) {
+    const auto add = [&](Index number, Real s, const SurfacePoint& on) {
+        if (on.distance - radius <= near)
+            found.add({number, on.distance - radius, -on.normal, a + s * (b - a) - radius * on.normal, {1 - s, s}});
+    };
+    add(0, 0, local_distance(cylinder, a, 0));
+    add(1, 1, local_distance(cylinder, b, 0));
+    const EdgeContact contact = edge_contact(cylinder, 0, a, b);
+    for (std::size_t i = 0; i < contact.count; ++i)
+        add(2 + contact.point[i].number, contact.point[i].s, contact.point[i].on);
+}
+
+void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
+                 Real near, CylinderTouches& found) {
+    ShapeTouches(cylinder, other, part, place, near, found).run();
+}
+
+}  // namespace skerry

@@ -1,0 +1,35 @@
+// Where the rigid cylinders are, from the nodes of their cores (BodyTable::core_nodes).
+#pragma once
+
+#include "components/collider_table.h"
+#include "components/node_block_table.h"
+#include "systems/collision/inputs/collision_inputs.h"
+#include "systems/collision/inputs/step_motion.h"
+
+namespace skerry {
+
+/// A rigid cylinder as a collider sees itself: features of others are looked at in its frame.
+struct RigidCylinder {
+    ColliderGeometry geometry;
+    RigidMotion motion;
+    Index middle;  // row of NodeTable
+
+    Vec3 local(const Vec3& point) const { return motion.rotation.transpose() * (point - motion.position); }
+    Vec3 world(const Vec3& point) const { return motion.position + motion.rotation * point; }
+    Vec3 velocity_at(const Vec3& point) const {
+        return motion.velocity + motion.angular_velocity.cross(point - motion.position);
+    }
+};
+
+inline bool is_cylinder(const CollisionInputs& inputs, Index body) {
+    return inputs.body.core_nodes[body] == cylinder_core_nodes;
+}
+
+/// At the start of the step, with its velocities then.
+RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body);
+
+/// With the velocities that take it where it will be at the end of the step. It is round: the turn is the least that
+/// takes its axis there.
+RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body);
+
+}  // namespace skerry
