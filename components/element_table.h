@@ -74,6 +74,9 @@ struct ElementBlockTable {
     Column<Index> material;                     // row of MaterialTable
     Column<ElementPart> part;
     Column<std::uint8_t> opens_patch;  // 1: the block is the first of a patch
+    // 1: in all lanes nodes 0, 1 and 2 are nodes 0, 1 and 3 of the block before, which is of the same patch; both have
+    // four
+    Column<std::uint8_t> continues_fan;
     // s, stress of the strain rate over that of the strain of fine elements among coarse, or over modulus and strain of
     // the implicit ones that the block has; else 0
     Column<Real> viscous_time;
@@ -82,7 +85,7 @@ struct ElementBlockTable {
     // 1: in every step of the present cycle, since contacts act on nodes of the block
     Column<std::uint8_t> touched;
 
-    /// The only list of columns: resize, erase, hash and save walk it.
+    /// The only list of columns: resize, erase, hash and save walk it. Derived: continues_fan by build_patches.
     void for_each_column(auto&& visit) {
         visit("first", first, ColumnRole::link);
         visit("count", count, ColumnRole::state);
@@ -95,6 +98,7 @@ struct ElementBlockTable {
         visit("material", material, ColumnRole::link);
         visit("part", part, ColumnRole::state);
         visit("opens_patch", opens_patch, ColumnRole::state);
+        visit("continues_fan", continues_fan, ColumnRole::derived);
         visit("viscous_time", viscous_time, ColumnRole::state);
         visit("level", level, ColumnRole::state);
         visit("touched", touched, ColumnRole::state);

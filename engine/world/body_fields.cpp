@@ -29,7 +29,7 @@ std::vector<Mat3> implicit_field(const Model& model, std::size_t row, OfElements
     for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
     ElementBlockTable elements;
     ElementNodeTable nodes;
-    const AppendedElements appended = append_elements(list, rest, {}, 0, 0, elements, nodes);
+    const AppendedElements appended = append_elements(list, rest, {}, BlockOrder::compact, 0, 0, elements, nodes);
     std::vector<Mat3> values(static_cast<std::size_t>(appended.blocks.size()) * element_lanes);
     of_elements(ElementInputs::bind({}, elements, nodes, model.materials, model.bodies), appended.blocks, shape,
                 values);

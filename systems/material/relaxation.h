@@ -76,13 +76,18 @@ inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real rela
             2 * material.bulk_viscosity / bulk_time * (material.lame_lambda + 2 * material.shear_modulus)};
 }
 
-/// J/m^3, of the springs stretched by `stretch` while they are stretched by `change` more.
+/// J/m^3, of the springs of the relaxing part stretched by `strain` while they are stretched by `change` more.
+template <class T>
+[[gnu::always_inline]] inline T strain_work_density(const ViscousModuli& moduli, const LaneSymmetric<T>& strain,
+                                                    const LaneSymmetric<T>& change) {
+    return (2 * moduli.mu) * inner_product(strain, change) + moduli.lambda * (strain.trace() * change.trace());
+}
+
+/// J/m^3, of all springs stretched by `stretch` while they are stretched by `change` more.
 template <class T>
 [[gnu::always_inline]] inline T work_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch,
                                              const ViscousStretch<T>& change) {
-    return (2 * moduli.mu) * inner_product(stretch.strain, change.strain) +
-           moduli.lambda * (stretch.strain.trace() * change.strain.trace()) +
-           moduli.bulk * (stretch.volume * change.volume);
+    return strain_work_density(moduli, stretch.strain, change.strain) + moduli.bulk * (stretch.volume * change.volume);
 }
 
 /// J/m^3

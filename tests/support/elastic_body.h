@@ -53,7 +53,8 @@ struct ElasticBody {
         }
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
         list = elements_of({mesh.tetrahedra, mesh.nodes, rotation}, zones);
-        const AppendedElements appended = append_elements(list, mesh.nodes, {}, 0, 0, elements, element_nodes);
+        const AppendedElements appended =
+            append_elements(list, mesh.nodes, {}, BlockOrder::fans, 0, 0, elements, element_nodes);
         blocks = appended.blocks;
         element_at = appended.element;
         start_mass_shares(inputs(), blocks, elements.mass_share);
@@ -71,6 +72,7 @@ struct ElasticBody {
                 .mass_share = elements.mass_share,
                 .material = elements.material,
                 .part = elements.part,
+                .continues_fan = elements.continues_fan,
                 .constants = constants,
                 .relaxation_rate = elements.relaxation_rate,
                 .own_frequency = elements.own_frequency,

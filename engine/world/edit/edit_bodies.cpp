@@ -154,7 +154,8 @@ struct BodyRows {
 /// Appends the elements of a body; `level` of each, or none: all 0.
 AppendedElements append_elements_of(Model& model, const ElementList& list, std::span<const std::uint8_t> level,
                                     const BodyRows& rows) {
-    AppendedElements appended = append_elements(list, rows_of(model.nodes.rest_position, rows.nodes), level,
+    const BlockOrder order = model.settings.multirate ? BlockOrder::compact : BlockOrder::fans;
+    AppendedElements appended = append_elements(list, rows_of(model.nodes.rest_position, rows.nodes), level, order,
                                                 rows.nodes.begin, rows.row, model.elements, model.element_nodes);
     start_mass_shares(model.all_elements(), appended.blocks, rows_of(model.elements.mass_share, appended.blocks));
     return appended;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "components/check.h"
+#include "systems/dynamics/elements/element_fans.h"
 
 namespace skerry {
 
@@ -52,9 +53,11 @@ void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<s
 struct Places {
     std::vector<Index> element;             // block by block; no_index in a lane that is left over
     std::vector<std::uint8_t> opens_patch;  // by block
+    std::vector<NodeOrder> order;           // of the nodes of elements of four, by element of the list
 };
 
-Places places_of(const ElementList& list, std::span<const Vec3> rest_position, std::span<const std::uint8_t> level) {
+Places places_of(const ElementList& list, std::span<const Vec3> rest_position, std::span<const std::uint8_t> level,
+                 BlockOrder in_patch) {
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
@@ -73,10 +76,18 @@ Places places_of(const ElementList& list, std::span<const Vec3> rest_position, s
     };
     const auto key = [&](Index e) { return std::pair(kind(e), list.nodes_of(static_cast<std::size_t>(e))); };
     Places places;
+    places.order.assign(list.size(), {0, 1, 2, 3});
     std::size_t first = 0;
     for (const std::size_t size : patch_size) {
         const Order patch = Order(order).subspan(first, size);
         std::ranges::stable_sort(patch, {}, key);
+        for (std::size_t i = 0; in_patch == BlockOrder::fans && i < size;) {
+            std::size_t end = i + 1;
+            while (end < size && key(patch[end]) == key(patch[i])) ++end;
+            if (list.nodes_of(static_cast<std::size_t>(patch[i])) == 4)
+                sort_into_fans(list, patch.subspan(i, end - i), places.order);
+            i = end;
+        }
         const std::size_t first_block = places.opens_patch.size();
         for (std::size_t i = 0; i < size; ++i) {
             if (i > 0 && kind(patch[i]) != kind(patch[i - 1]))
@@ -154,11 +165,11 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
 }
 
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
-                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+                                 std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes) {
     SKERRY_CHECK(level.empty() || level.size() == list.size());
     const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
-    Places places = places_of(list, rest_position, level);
+    Places places = places_of(list, rest_position, level, order);
     AppendedElements appended{{}, {}, std::move(places.element)};
     for (std::size_t place = 0; place < appended.element.size(); place += element_lanes) {
         const std::span<const Index> lanes = std::span(appended.element).subspan(place, element_lanes);
@@ -184,11 +195,17 @@ AppendedElements append_elements(const ElementList& list, std::span<const Vec3> 
             const std::size_t e = used ? static_cast<std::size_t>(lanes[l]) : leader;
             if (used) blocks.volume[block][l] = list.volume[e];
             const std::size_t own = used ? list.nodes_of(e) : 0;
+            const auto at = [&](std::size_t k) {
+                return list.first_node[e] + (own == 4 ? std::size_t{places.order[e][k]} : k);
+            };
             for (std::size_t k = 0; k < count; ++k) {
-                const std::size_t at = list.first_node[e] + (k < own ? k : 0);
-                nodes.node[row + k][l] = first_node + list.node[at];
-                for (std::size_t i = 0; i < 3 && k < own; ++i)
-                    nodes.gradient[row + k][i][l] = list.gradient[at][static_cast<Eigen::Index>(i)];
+                nodes.node[row + k][l] = first_node + list.node[k < own ? at(k) : list.first_node[e]];
+                if (k >= own) continue;
+                Vec3 gradient = list.gradient[at(k)];
+                if (k == 0 && own == 4)  // to the last bit, as the kernel has it
+                    gradient = -(list.gradient[at(1)] + list.gradient[at(2)] + list.gradient[at(3)]);
+                for (std::size_t i = 0; i < 3; ++i)
+                    nodes.gradient[row + k][i][l] = gradient[static_cast<Eigen::Index>(i)];
             }
         }
     }
@@ -226,9 +243,16 @@ void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragg
     items.offset[first_row] = static_cast<Index>(first_item);
 }
 
+/// Whether nodes 0, 1 and 2 of all lanes are nodes 0, 1 and 3 of the block before.
+bool continues_fan(const NodeLane* before, const NodeLane* node) {
+    for (std::size_t l = 0; l < element_lanes; ++l)
+        if (node[0][l] != before[0][l] || node[1][l] != before[1][l] || node[2][l] != before[3][l]) return false;
+    return true;
+}
+
 }  // namespace
 
-void build_patches(const ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
+void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
                    ElementPatches& patches) {
     const std::size_t first_node = patches.slots_of_node.size();
     std::vector<Index> slot_of_node(node_count - first_node, no_index);
@@ -245,6 +269,8 @@ void build_patches(const ElementBlockTable& blocks, std::size_t node_count, Elem
         for (std::size_t b = begin; b < end; ++b) {
             SKERRY_CHECK(blocks.body[b] == blocks.body[begin] && blocks.level[b] == blocks.level[begin]);
             const auto first = static_cast<std::size_t>(blocks.first[b]);
+            blocks.continues_fan[b] = b > begin && blocks.count[b] == 4 && blocks.count[b - 1] == 4 &&
+                                      continues_fan(nodes.node.data() + blocks.first[b - 1], nodes.node.data() + first);
             for (std::size_t row = first; row < first + static_cast<std::size_t>(blocks.count[b]); ++row)
                 for (std::size_t l = 0; l < element_lanes; ++l) {
                     const Index n = nodes.node[row][l];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,11 @@ inline constexpr Real sliver_volume = 0.05;
 Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                         Index first_node, TetrahedronBlockTable& table);
 
+/// How elements of four nodes stand in a patch. Fans (element_fans.h) are quicker; `compact` keeps them in their order,
+/// so that blocks have few nodes: with multirate all of a block gets an impulse in every step where a contact acts on
+/// one of its nodes.
+enum class BlockOrder : std::uint8_t { fans, compact };
+
 struct AppendedElements {
     Range blocks, nodes;         // rows
     std::vector<Index> element;  // of the list, by place in the blocks; no_index in a lane that is left over
@@ -34,21 +40,21 @@ struct AppendedElements {
 
 /// Appends the elements of a new body, patch after patch: compact groups of up to elements_per_patch in space, found by
 /// halving the longest side again and again. Within a patch blocks have elements of one part and one material, those
-/// with as many nodes together, so that few rows are left over; otherwise elements keep their order.
+/// with as many nodes together, so that few rows are left over; those of four nodes stand as `order` says, the others
+/// keep their order.
 /// `rest_position`: m, of the body's nodes. `level` of each element of the list, or none: all 0; elements are sorted by
 /// level, and a patch has one.
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
-                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+                                 std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);
 
 /// Adds rho V / 4 of each tetrahedron to its nodes; `density` by tetrahedron, kg/m^3.
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass);
 
-/// Patches, their nodes, and the slots of the nodes of elements, for the blocks and nodes behind those that have
-/// theirs: of bodies that were added, or of all. A node has its slots in element order.
-void build_patches(const ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
-                   ElementPatches& patches);
+/// Patches, their nodes, the slots of the nodes of elements and which blocks go on with a fan, for the blocks and nodes
+/// behind those that have theirs: of bodies that were added, or of all. A node has its slots in element order.
+void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes, ElementPatches& patches);
 
 /// Leaves the patches of the first blocks and nodes, which are those of whole bodies.
 void truncate_patches(Index block_count, Index node_count, ElementPatches& patches);

@@ -44,76 +44,92 @@ LaneMat3<T> bounded_viscous_stress(const T& viscosity, const LaneMat3<T>& F, con
     return multiply(F, scale * (product + transposed(product)));
 }
 
-/// A block of elements in this step, of which a part is computed at a time.
-struct Block {
+/// The same order however many lanes are computed at once.
+Real sum_of(const ElementLane& lanes) {
+    const Real* const x = lanes.lane;
+    return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
+}
+
+/// Blocks of a patch, one after the other, that are of one material and due for one time.
+struct Run {
+    std::size_t begin, end;
     const ElementInputs& elements;
-    std::size_t block;
-    BlockNodes nodes;  // among the positions and forces of the patch
-    const PaddedVec3* position;
-    PaddedVec3* force;
     MaterialConstants material;
-    Real duration;  // in steps
-    Real h;         // s, a step
+    Real duration;                   // in steps
+    Real h;                          // s, a step
+    const PaddedVec3* position;      // m, of the patch, by slot
+    PaddedVec3* force;               // N, the same
+    std::span<const Vec3> velocity;  // of all nodes
+    std::span<const ElementRotation> rotation;
+    const ElementMemory& next;
+    const PatchForces& patches;
+
+    /// A block's rows, with its nodes among those of the patch.
+    BlockNodes nodes_of(std::size_t block) const {
+        const auto row = static_cast<std::size_t>(elements.first[block]);
+        return {patches.slot.data() + row, elements.gradient.data() + row, elements.count[block]};
+    }
 
     template <class T>
-    T part_of(std::span<const ElementLane> column, std::size_t part) const {
+    static T part_of(std::span<const ElementLane> column, std::size_t block, std::size_t part) {
         return load_part<T>(column[block], part);
     }
 
     /// The dashpots give way for as long as the block is due, then the springs push. Returns the stress, Pa, and writes
     /// what the dashpots have taken and what they dissipated, J.
     template <class T>
-    [[gnu::always_inline]] LaneMat3<T> relax(const LaneMat3<T>& F, std::size_t part, ElementStrain& forgotten_next,
+    [[gnu::always_inline]] LaneMat3<T> relax(const LaneMat3<T>& F, std::size_t block, std::size_t part,
                                              ElementLane& dissipated) const {
+        ElementStrain& forgotten_next = next.viscous_strain[block];
         const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
         const LaneSymmetric<T> strain = green_strain(F);
         const ViscousStretch<T> before = viscous_stretch(strain, elements.viscous_strain[block], part);
         const Real time = duration * h;
-        // backward Euler: never more than all
-        const ViscousStretch<T> after{
-            T(1.0 / (1.0 + time * part_of<T>(elements.relaxation_rate, part))) * before.strain,
-            before.volume / (1.0 + (time / bulk_time) * part_of<T>(elements.own_frequency, part))};
-        const LaneSymmetric<T> next = strain - after.strain;
-        store_part(next.xx, forgotten_next[0], part);
-        store_part(next.yy, forgotten_next[1], part);
-        store_part(next.zz, forgotten_next[2], part);
-        store_part(next.xy, forgotten_next[3], part);
-        store_part(next.yz, forgotten_next[4], part);
-        store_part(next.zx, forgotten_next[5], part);
+        const T forgets = time * part_of<T>(elements.relaxation_rate, block, part);
+        const T forgets_volume = (time / bulk_time) * part_of<T>(elements.own_frequency, block, part);
+        // backward Euler: never more than all; one division for both
+        const T kept = 1.0 + forgets, kept_volume = 1.0 + forgets_volume, over_both = 1.0 / (kept * kept_volume);
+        const ViscousStretch<T> after{T(over_both * kept_volume) * before.strain, over_both * kept * before.volume};
+        const LaneSymmetric<T> taken = strain - after.strain;
+        store_part(taken.xx, forgotten_next[0], part);
+        store_part(taken.yy, forgotten_next[1], part);
+        store_part(taken.zz, forgotten_next[2], part);
+        store_part(taken.xy, forgotten_next[3], part);
+        store_part(taken.yz, forgotten_next[4], part);
+        store_part(taken.zx, forgotten_next[5], part);
         store_part(T(strain.trace() - after.volume), forgotten_next[6], part);
         // What the springs, as stretched as they push, do to the dashpots. Not the drop of their energy: the kick that
         // follows is by so much weaker, which velocities half a step off the positions do not show yet.
-        store_part(T(part_of<T>(elements.volume, part) *
-                     work_density(moduli, after, {before.strain - after.strain, before.volume - after.volume})),
+        store_part(T(part_of<T>(elements.volume, block, part) *
+                     (forgets * strain_work_density(moduli, after.strain, after.strain) +
+                      forgets_volume * (moduli.bulk * (after.volume * after.volume)))),
                    dissipated, part);
         return multiply(F, stress(moduli, after));
     }
 
     /// Elastic stress, Pa. Frames are extracted from all parts at once: how often their steps are repeated does not
     /// depend on the width of a part.
-    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> elastic_stress(const Parts<LaneMat3<KernelReal>>& F,
-                                                                      std::span<const ElementRotation> rotation,
-                                                                      const ElementMemory& next) const {
+    template <class Law>
+    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> elastic_stress(const Law& law, std::size_t block,
+                                                                      const Parts<LaneMat3<KernelReal>>& F) const {
         using T = KernelReal;
-        return with_law(material.model, [&](auto law) {
-            Parts<LaneMat3<T>> P;
-            if constexpr (law.has_frame) {
-                Parts<LaneQuaternion<T>> q;
-                Parts<T> volume;
-                for (std::size_t part = 0; part < kernel_parts; ++part) {
-                    q[part] = load_part<T>(rotation[block], part);
-                    volume[part] = part_of<T>(elements.volume, part);
-                }
-                extract_rotations(F, volume, q);
-                for (std::size_t part = 0; part < kernel_parts; ++part) {
-                    store_part(q[part], next.rotation[block], part);
-                    P[part] = law.stress(material, F[part], rotation_of(q[part]));
-                }
-            } else {
-                for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = law.stress(material, F[part]);
+        Parts<LaneMat3<T>> P;
+        if constexpr (Law::has_frame) {
+            Parts<LaneQuaternion<T>> q;
+            Parts<T> volume;
+            for (std::size_t part = 0; part < kernel_parts; ++part) {
+                q[part] = load_part<T>(rotation[block], part);
+                volume[part] = part_of<T>(elements.volume, block, part);
             }
-            return P;
-        });
+            extract_rotations(F, volume, q);
+            for (std::size_t part = 0; part < kernel_parts; ++part) {
+                store_part(q[part], next.rotation[block], part);
+                P[part] = law.stress(material, F[part], rotation_of(q[part]));
+            }
+        } else {
+            for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = law.stress(material, F[part]);
+        }
+        return P;
     }
 
     /// Of implicit elements of this |F|^2 and det F: whether they are near enough to rest to have no viscosity.
@@ -125,12 +141,12 @@ struct Block {
 
     /// Whether all elements of the block are implicit ones far from what they are made for, or explicit ones beside
     /// such: most are, in most steps.
-    [[gnu::always_inline]] bool rests_easy(const Parts<LaneMat3<KernelReal>>& F) const {
+    [[gnu::always_inline]] bool rests_easy(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         if (elements.implicit_modulus.empty()) return false;
         bool any_implicit = false, easy = true;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
-                             taken = part_of<KernelReal>(elements.implicit_modulus, part);
+                             taken = part_of<KernelReal>(elements.implicit_modulus, block, part);
             const auto near_rest =
                 is_calm(square, J) & (quick_stiffness(material, square, J) <= near_stiffness * taken);
             easy &= all((taken <= 0.0) | near_rest);
@@ -139,17 +155,18 @@ struct Block {
         return any_implicit && easy;
     }
 
-    bool has_implicit() const {
+    bool has_implicit(std::size_t block) const {
         return !elements.implicit_modulus.empty() &&
                std::ranges::any_of(elements.implicit_modulus[block].lane, [](Real modulus) { return modulus > 0; });
     }
 
     /// Pa s, of implicit elements that are stretched or pressed by much; 0 of the others. Returns whether any is.
-    bool viscosity_of_implicit(const Parts<LaneMat3<KernelReal>>& F, Parts<KernelReal>& viscosity) const {
+    bool viscosity_of_implicit(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
+                               Parts<KernelReal>& viscosity) const {
         ElementLane lanes{};
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal of_modulus =
-                elements.viscous_time[block] * part_of<KernelReal>(elements.implicit_modulus, part);
+                elements.viscous_time[block] * part_of<KernelReal>(elements.implicit_modulus, block, part);
             viscosity[part] =
                 is_calm(inner_product(F[part], F[part]), determinant(F[part])) ? KernelReal{} : of_modulus;
             store_part(viscosity[part], lanes, part);
@@ -158,74 +175,168 @@ struct Block {
     }
 
     /// Whether an implicit element is so strained that its stiffness has to be looked at closely.
-    bool is_stiffening(const Parts<LaneMat3<KernelReal>>& F) const {
+    bool is_stiffening(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any = false;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const KernelReal taken = part_of<KernelReal>(elements.implicit_modulus, part);
+            const KernelReal taken = part_of<KernelReal>(elements.implicit_modulus, block, part);
             any |= !all((taken <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
                                                           determinant(F[part])) <= near_stiffness * taken));
         }
         return any;
     }
 
-    void note(const PatchForces& patches, bool viscous, bool stiffening) const {
+    void note(std::size_t block, bool viscous, bool stiffening) const {
         if (!patches.viscous.empty()) patches.viscous[block] = viscous;
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
 
     /// Adds the stress of the strain rate where there is one, and keeps its impulse.
-    [[gnu::noinline]] void add_viscous_stress(const Parts<LaneMat3<KernelReal>>& F, std::span<const Vec3> velocity,
-                                              const PatchForces& patches, Parts<LaneMat3<KernelReal>>& P) const {
-        const bool implicit = has_implicit();
+    [[gnu::noinline]] void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
+                                              Parts<LaneMat3<KernelReal>>& P) const {
+        const bool implicit = has_implicit(block);
         Parts<KernelReal> viscosity;
-        const bool acts = !implicit || viscosity_of_implicit(F, viscosity);
-        note(patches, acts, implicit && is_stiffening(F));
+        const bool acts = !implicit || viscosity_of_implicit(block, F, viscosity);
+        note(block, acts, implicit && is_stiffening(block, F));
         if (!acts) return;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);
             const LaneMat3<KernelReal> of_rate =
                 implicit ? bounded_viscous_stress(viscosity[part], F[part], rate)
                          : viscous_stress(material, elements.viscous_time[block], F[part], rate);
-            if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, part, patches.viscous_impulse[block]);
+            if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, block, part);
             P[part] = P[part] + of_rate;
         }
     }
 
-    void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t part, ElementViscousImpulse& impulse) const {
-        const KernelReal scale = (duration * h) * part_of<KernelReal>(elements.volume, part);
+    void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t block, std::size_t part) const {
+        ElementViscousImpulse& impulse = patches.viscous_impulse[block];
+        const KernelReal scale = (duration * h) * part_of<KernelReal>(elements.volume, block, part);
         const KernelReal entry[9] = {stress.c0.x, stress.c0.y, stress.c0.z, stress.c1.x, stress.c1.y,
                                      stress.c1.z, stress.c2.x, stress.c2.y, stress.c2.z};
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
     }
 
-    [[gnu::always_inline]] void add_forces(std::span<const Vec3> velocity, std::span<const ElementRotation> rotation,
-                                           const ElementMemory& next, ElementLane& dissipated,
-                                           const PatchForces& patches) const {
-        Parts<LaneMat3<KernelReal>> F;
-        for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
-        Parts<LaneMat3<KernelReal>> P = elastic_stress(F, rotation, next);
+    /// First Piola-Kirchhoff stress, Pa, of all that the elements are made of.
+    template <class Law>
+    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
+                                                                 const Parts<LaneMat3<KernelReal>>& F) const {
+        Parts<LaneMat3<KernelReal>> P = elastic_stress(law, block, F);
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
-            if (rests_easy(F))
-                note(patches, false, false);
+            if (rests_easy(block, F))
+                note(block, false, false);
             else
-                add_viscous_stress(F, velocity, patches, P);
+                add_viscous_stress(block, F, P);
         }
+        ElementLane dissipated{};
+        if (material.relaxes() && !next.viscous_strain.empty())
+            for (std::size_t part = 0; part < kernel_parts; ++part)
+                P[part] = P[part] + relax(F[part], block, part, dissipated);
+        if (!next.relaxed.empty()) next.relaxed[block] = sum_of(dissipated);
+        return P;
+    }
+
+    /// What the stress is multiplied by.
+    [[gnu::always_inline]] Parts<KernelReal> volumes(std::size_t block) const {
         Parts<KernelReal> volume;
-        for (std::size_t part = 0; part < kernel_parts; ++part) {
-            if (material.relaxes() && !next.viscous_strain.empty())
-                P[part] = P[part] + relax(F[part], part, next.viscous_strain[block], dissipated);
-            volume[part] = duration * part_of<KernelReal>(elements.volume, part);
-        }
-        for_each_force(P, nodes, volume, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
-            add_lanes(f, nodes.node[k].lane + lanes_of<KernelReal> * part, force);
+        for (std::size_t part = 0; part < kernel_parts; ++part)
+            volume[part] = duration * part_of<KernelReal>(elements.volume, block, part);
+        return volume;
+    }
+
+    [[gnu::always_inline]] void add(const LaneVec3<KernelReal>& f, const NodeLane& node, std::size_t part) const {
+        add_lanes(f, node.lane + lanes_of<KernelReal> * part, force);
+    }
+};
+
+/// How elements of any number of nodes fetch positions and add forces.
+struct AnyElements {
+    const Run& run;
+
+    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
+        const BlockNodes nodes = run.nodes_of(block);
+        Parts<LaneMat3<KernelReal>> F;
+        for (std::size_t part = 0; part < kernel_parts; ++part)
+            F[part] = deformation_gradient(nodes, part, run.position);
+        return F;
+    }
+
+    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& P) const {
+        const BlockNodes nodes = run.nodes_of(block);
+        for_each_force(P, nodes, run.volumes(block), [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
+            run.add(f, nodes.node[k], part);
         });
     }
 };
 
-/// The same order however many lanes are computed at once.
-Real sum_of(const ElementLane& lanes) {
-    const Real* const x = lanes.lane;
-    return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
+/// How those of four nodes do, in fans (element_fans.h): a node is fetched and has a force added once in a fan.
+struct Fans {
+    const Run& run;
+    // what a block leaves to the one that goes on with its fan
+    Parts<Corner> corner0 = {};
+    Parts<LaneVec3<KernelReal>> edge1 = {}, edge3 = {};  // from corner 0
+    Parts<LaneVec3<KernelReal>> force0 = {}, force1 = {}, force3 = {};
+
+    bool opens(std::size_t block) const { return block == run.begin || !run.elements.continues_fan[block]; }
+    bool closes(std::size_t block) const { return block + 1 == run.end || !run.elements.continues_fan[block + 1]; }
+
+    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) {
+        const BlockNodes nodes = run.nodes_of(block);
+        const bool first = opens(block);
+        Parts<LaneMat3<KernelReal>> F;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const auto corner = [&](std::size_t k) { return load_corner(nodes.node[k], part, run.position); };
+            LaneVec3<KernelReal> edge2 = edge3[part];
+            if (first) {
+                corner0[part] = corner(0);
+                edge1[part] = edge(corner(1), corner0[part]);
+                edge2 = edge(corner(2), corner0[part]);
+            }
+            edge3[part] = edge(corner(3), corner0[part]);
+            F[part] = gradient_of_edges(nodes, part, {edge1[part], edge2, edge3[part]});
+        }
+        return F;
+    }
+
+    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& P) {
+        const BlockNodes nodes = run.nodes_of(block);
+        const Parts<KernelReal> volume = run.volumes(block);
+        const bool first = opens(block);
+        Parts<LaneVec3<KernelReal>> force2;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const LaneMat3<KernelReal> Q = (-volume[part]) * P[part];
+            const LaneVec3<KernelReal> f1 = force_on_node(Q, nodes, 1, part);
+            const LaneVec3<KernelReal> f2 = force_on_node(Q, nodes, 2, part);
+            const LaneVec3<KernelReal> f3 = force_on_node(Q, nodes, 3, part);
+            const LaneVec3<KernelReal> sum = f1 + f2 + f3;
+            force2[part] = first ? f2 : force3[part] + f2;
+            force3[part] = f3;
+            force1[part] = first ? f1 : force1[part] + f1;
+            force0[part] = first ? LaneVec3<KernelReal>{-sum.x, -sum.y, -sum.z} : force0[part] - sum;
+        }
+        // all parts of a node before the next node, so that sums have one order, whatever the width of a part
+        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force2[part], nodes.node[2], part);
+        if (!closes(block)) return;
+        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force1[part], nodes.node[1], part);
+        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force3[part], nodes.node[3], part);
+        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force0[part], nodes.node[0], part);
+    }
+};
+
+/// With wide registers the nodes of a block are fetched before the forces of the block before are added: neither waits
+/// for the other, and the stress between them is a long chain of operations that do. Narrow ones are too few to hold
+/// both.
+template <class Elements>
+[[gnu::always_inline]] inline void compute_run(const Run& run, Elements&& elements) {
+    constexpr bool ahead = kernel_parts == 1;
+    with_law(run.material.model, [&](auto law) {
+        Parts<LaneMat3<KernelReal>> F = elements.fetch(run.begin);
+        for (std::size_t block = run.begin; block < run.end; ++block) {
+            const Parts<LaneMat3<KernelReal>> P = run.stress_of(law, block, F);
+            if (ahead && block + 1 < run.end) F = elements.fetch(block + 1);
+            elements.add(block, P);
+            if (!ahead && block + 1 < run.end) F = elements.fetch(block + 1);
+        }
+    });
 }
 
 /// Positions of the nodes of a patch side by side, and forces zero.
@@ -235,6 +346,16 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
         to[s] = {{x[0], x[1], x[2], 0}};
         force[s] = {};
     }
+}
+
+/// Where blocks are not as block `begin` is. `touched`: blocks of the patch may be due for different times.
+std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end, bool touched) {
+    std::size_t b = begin + 1;
+    while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin] &&
+           (elements.count[b] == 4) == (elements.count[begin] == 4) &&
+           (!touched || elements.schedule.duration(b) == elements.schedule.duration(begin)))
+        ++b;
+    return b;
 }
 
 }  // namespace
@@ -256,16 +377,20 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
             const auto slot = static_cast<std::size_t>(patches.slots[p].begin);
             PaddedVec3 *const x = patches.position.data() + slot, *const force = patches.force.data() + slot;
             fetch(patches.node.subspan(slot, static_cast<std::size_t>(patches.slots[p].size())), position, x, force);
-            for (std::size_t b = begin; b < end; ++b) {
-                BlockNodes nodes = elements.nodes_of(b);
-                nodes.node = patches.slot.data() + static_cast<std::size_t>(elements.first[b]);
+            for (std::size_t b = begin; b < end;) {
                 const Real duration = elements.schedule.duration(b);
-                ElementLane dissipated{};
+                const std::size_t after = end_of_run(elements, b, end, touched);
                 if (duration > 0) {
-                    const Block block{elements, b, nodes, x, force, elements.material_of(b), duration, h};
-                    block.add_forces(velocity, rotation, next, dissipated, patches);
+                    const Run run{b,        after, elements, elements.material_of(b), duration, h, x, force, velocity,
+                                  rotation, next,  patches};
+                    if (elements.count[b] == 4)
+                        compute_run(run, Fans{run});
+                    else
+                        compute_run(run, AnyElements{run});
+                } else if (!next.relaxed.empty()) {
+                    std::ranges::fill(next.relaxed.subspan(b, after - b), Real{0});
                 }
-                if (!next.relaxed.empty()) next.relaxed[b] = sum_of(dissipated);
+                b = after;
             }
         }
     });

@@ -20,6 +20,7 @@ struct ElementInputs {
     std::span<const ElementLane> mass_share;
     std::span<const Index> material;
     std::span<const ElementPart> part;
+    std::span<const std::uint8_t> continues_fan;
     std::span<const MaterialConstants> constants;
     std::span<const Real> viscous_time = {};  // s; empty: nothing is viscous
     // Of what relaxes; empty: nothing does
@@ -61,6 +62,7 @@ struct ElementInputs {
                 .mass_share = binder.read(element.mass_share),
                 .material = binder.read(element.material),
                 .part = binder.read(element.part),
+                .continues_fan = binder.read(element.continues_fan),
                 .constants = binder.read(material.constants),
                 .viscous_time = binder.read(element.viscous_time),
                 .relaxation_rate = binder.read(element.relaxation_rate),

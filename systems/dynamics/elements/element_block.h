@@ -149,17 +149,21 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
     return load_gradient<Real8>(gradient, 0);
 }
 
+/// sum_k (x_k - x_0) (x) g_k of four nodes; the columns of d are the edges from node 0.
+[[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_edges(const BlockNodes& block, std::size_t part,
+                                                                     const LaneMat3<KernelReal>& d) {
+    const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
+    const LaneVec3<KernelReal> g1 = gradient(1), g2 = gradient(2), g3 = gradient(3);
+    return {g1.x * d.c0 + g2.x * d.c1 + g3.x * d.c2, g1.y * d.c0 + g2.y * d.c1 + g3.y * d.c2,
+            g1.z * d.c0 + g2.z * d.c1 + g3.z * d.c2};
+}
+
 /// sum_k (x_k - x_0) (x) g_k
 template <class Position, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
                                                                     const Position* position, Load&& load_nodes) {
+    if (block.count == 4) return gradient_of_edges(block, part, edges_of_part(block.node, part, position, load_nodes));
     const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
-    if (block.count == 4) {
-        const LaneMat3<KernelReal> d = edges_of_part(block.node, part, position, load_nodes);
-        const LaneVec3<KernelReal> g1 = gradient(1), g2 = gradient(2), g3 = gradient(3);
-        return {g1.x * d.c0 + g2.x * d.c1 + g3.x * d.c2, g1.y * d.c0 + g2.y * d.c1 + g3.y * d.c2,
-                g1.z * d.c0 + g2.z * d.c1 + g3.z * d.c2};
-    }
     const Corner anchor = load_nodes(block.node[0], part, position);
     const auto term = [&](Index k) {
         const LaneVec3<KernelReal> d = edge(load_nodes(block.node[k], part, position), anchor), g = gradient(k);
@@ -192,6 +196,13 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
 template <class T>
 using Parts = std::array<T, kernel_parts>;
 
+/// Q g_k
+[[gnu::always_inline]] inline LaneVec3<KernelReal> force_on_node(const LaneMat3<KernelReal>& Q, const BlockNodes& block,
+                                                                 Index k, std::size_t part) {
+    const LaneVec3<KernelReal> g = load_gradient<KernelReal>(block.gradient[k], part);
+    return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
+}
+
 /// f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...): take(k, part, f_k), lanes side by side. All parts of a node come before
 /// the next node, so that sums have one order, whatever the width of a part.
 template <class Take>
@@ -200,10 +211,7 @@ template <class Take>
     Parts<LaneMat3<KernelReal>> Q;
     for (std::size_t part = 0; part < kernel_parts; ++part) Q[part] = (-volume[part]) * P[part];
     Parts<LaneVec3<KernelReal>> sum;
-    const auto on_node = [&](Index k, std::size_t part) {
-        const LaneVec3<KernelReal> g = load_gradient<KernelReal>(block.gradient[k], part);
-        return g.x * Q[part].c0 + g.y * Q[part].c1 + g.z * Q[part].c2;
-    };
+    const auto on_node = [&](Index k, std::size_t part) { return force_on_node(Q[part], block, k, part); };
     for (std::size_t part = 0; part < kernel_parts; ++part) {
         sum[part] = on_node(1, part);
         take(Index{1}, part, sum[part]);
