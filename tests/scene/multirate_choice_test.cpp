@@ -8,7 +8,7 @@ using namespace skerry;
 using namespace skerry::test;
 
 TEST_CASE("with multirate slivers become implicit where that saves more than levels", "[scene]") {
-    // what bounds the steps of all: as without multirate, to the bit
+    // what bounds the steps of all: as without multirate, but for the order of sums (BlockOrder)
     std::vector<std::uint64_t> steps;
     std::vector<Vec3> corner;
     for (const bool multirate : {false, true}) {
@@ -27,7 +27,7 @@ TEST_CASE("with multirate slivers become implicit where that saves more than lev
         corner.push_back(world.positions(body)[0]);
     }
     CHECK(steps[0] == steps[1]);
-    CHECK(corner[0] == corner[1]);
+    CHECK((corner[0] - corner[1]).norm() < 1e-12);
 }
 
 TEST_CASE("a soft body with slivers has clusters for the sake of its own steps under a stiff one", "[scene]") {
