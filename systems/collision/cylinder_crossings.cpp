@@ -10,6 +10,7 @@
 #include "systems/collision/cylinders/shape_facets.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/winding_number.h"
 #include "systems/geometry/rotation.h"
 

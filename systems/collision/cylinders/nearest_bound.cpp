@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/tree/box.h"
 #include "systems/geometry/closest_points.h"
 
 namespace skerry {
