@@ -137,6 +137,10 @@ struct BoundingSphere {
 struct SearchMemory {
     // by row, when a step begins: nothing is known of its distances
     Column<std::uint8_t> body_forgotten, collider_forgotten;
+    // By body, while any is: forgotten in some try of this step. BodyTable::max_speed and frame_speed, which a try that
+    // is given up leaves as they were, know nothing of it until the step is taken.
+    Column<std::uint8_t> body_unmeasured;
+    bool any_unmeasured = false;
     Column<Real> body_travel_bound;  // m: travel, path of the frame and what this step may close, by body
     // m: what this step may close, by body: in its frame, and with the motion of the frame
     Column<Real> body_frame_reach, body_reach;
@@ -181,6 +185,14 @@ struct SearchState {
 
     void forget_body(std::size_t row) {
         if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
+    }
+    /// Speeds are known of all bodies where the step was taken; else nothing is known again of those that it began with
+    /// forgotten.
+    void end_step(bool taken) {
+        if (!memory.any_unmeasured) return;
+        for (std::size_t row = 0; row < memory.body_unmeasured.size(); ++row)
+            if (!taken && memory.body_unmeasured[row]) forget_body(row);
+        memory.any_unmeasured = false;
     }
     void forget_collider(std::size_t row) {
         if (row < collider_valid_until.size()) collider_valid_until[row] = forgotten;

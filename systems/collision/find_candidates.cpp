@@ -32,6 +32,14 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
     return any;
 }
 
+/// Adds those that are forgotten in this try.
+void note_unmeasured(SearchMemory& memory) {
+    const std::size_t count = memory.body_forgotten.size();
+    if (!memory.any_unmeasured) memory.body_unmeasured.assign(count, 0);
+    memory.any_unmeasured = true;
+    for (std::size_t b = 0; b < count; ++b) memory.body_unmeasured[b] |= memory.body_forgotten[b];
+}
+
 void bound_body_travels(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                         SearchMemory& memory) {
     memory.body_travel_bound.resize(inputs.body.slot.size());
@@ -39,7 +47,7 @@ void bound_body_travels(Executor& executor, const CollisionInputs& inputs, const
     memory.body_reach.resize(inputs.body.slot.size());
     parallel_for(executor, inputs.body.slot.size(), bounded_bodies_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
-            const bool measure = memory.body_forgotten[b] != 0;
+            const bool measure = memory.any_unmeasured && memory.body_unmeasured[b] != 0;
             const BodyReach reach = body_reach(inputs, settings, static_cast<Index>(b), measure, h);
             memory.body_travel_bound[b] = inputs.body.travel[b] + inputs.body.frame[b].path + reach.in_world;
             memory.body_frame_reach[b] = reach.in_frame;
@@ -194,6 +202,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     SearchMemory& memory = search.memory;
     const bool all = !settings.use_budgets;
     bool broad = mark_forgotten(inputs.body.slot.size(), all, search.body_valid_until, memory.body_forgotten);
+    if (broad) note_unmeasured(memory);
     broad |= mark_forgotten(inputs.collider.slot.size(), all, search.collider_valid_until, memory.collider_forgotten);
     bound_body_travels(executor, inputs, settings, h, memory);
     bound_collider_travels(inputs, h, memory);

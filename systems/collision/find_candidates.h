@@ -14,7 +14,8 @@ namespace skerry {
 /// explained in contact_reach.h; they rest on BodyTable::travel, which must bound the motion of every node since the
 /// body was added, and on BodyTable::max_speed and frame_speed, of the motion that led to the present positions. Where
 /// that is not so (a new body, one moved by hand) it is forgotten (SearchState): its pairs are then found and searched
-/// afresh with the present velocities, and no others. Deterministic: pairs in key order, candidates in feature order.
+/// afresh with the present velocities, and no others; these count in all tries of the step (SearchState::end_step).
+/// Deterministic: pairs in key order, candidates in feature order.
 bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<Aabb> box, std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs);
 

@@ -253,6 +253,46 @@ TEST_CASE("a changed world goes on with the same bits on all threads, cloned, an
     }
 }
 
+TEST_CASE("what is new or thrown by hand is met in every try of its first step, and after one that was refused",
+          "[scene]") {
+    // A tile without a contact distance comes down on a plane. In the same step a cube beside it is pulled further than
+    // the list of its pair is good for, so that there is another try.
+    enum class Start { added, thrown, refused };
+    const Start start = GENERATE(Start::added, Start::thrown, Start::refused);
+    CAPTURE(start);
+    const auto pull = [](World& world, BodyHandle body, Real force) {
+        world.set_loads(body, std::vector<Vec3>(world.positions(body).size(), Vec3(0, 0, force)));
+    };
+    World world({.gravity = Vec3::Zero()});
+    const auto material = world.add_material({});
+    world.add_collider(Plane{});
+    const auto cube = world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+                                     {.material = material, .position = {1, 0, 0.06}, .dynamics = BodyDynamics::rigid});
+    const auto tile =
+        world.add_body(mesh::box({0.1, 0.1, 0.02}, {1, 1, 1}), {.material = material,
+                                                                .position = {0, 0, 0.015},
+                                                                .velocity = {0, 0, start == Start::thrown ? 0.0 : -1.0},
+                                                                .contact_distance = 0,
+                                                                .dynamics = BodyDynamics::rigid});
+    const Real dt = 1.0 / 120;
+    if (start == Start::thrown) {
+        REQUIRE(world.advance(dt).ok());
+        world.set_velocity(tile, {0, 0, -1});
+    }
+    if (start == Start::refused) {
+        pull(world, cube, 1e308);
+        REQUIRE_FALSE(world.advance(dt).ok());
+    }
+    pull(world, cube, start == Start::refused ? 0 : 1e4);
+    const std::uint64_t searches = world.report().pair_searches;
+    const StepReport report = world.advance(dt);
+    REQUIRE(report.ok());
+    REQUIRE(report.steps == 1);
+    if (start != Start::refused) REQUIRE(world.report().pair_searches >= searches + 2);
+    CHECK(report.contacts >= 4);
+    CHECK(world.center_of_mass(tile).z() > 0.01 - 1e-9);
+}
+
 TEST_CASE("many removed at once leave what the same removed one by one leave", "[scene]") {
     const auto scene = [] {
         Field field(4, 0.101);

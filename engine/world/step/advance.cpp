@@ -281,6 +281,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         });
         if (!heard) break;
     }
+    world.cache.search.end_step(false);  // nothing, but where the call ends with a step that is not taken
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
         if (leapfrog) measure_displacement_again(*world.executor, model, search);

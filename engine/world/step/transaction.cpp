@@ -112,6 +112,7 @@ void commit(WorldState& world) {
     StepScratch& scratch = world.scratch;
     const StepParameters& parameters = scratch.parameters;
     world.cache.crossings.row.clear();
+    world.cache.search.end_step(true);
     if (world.record.forces.on()) world.record.forces.add_step(world.model, world.transaction.asleep_before(), scratch);
     if (!scratch.left_out) {
         keep_frames(world);

@@ -72,7 +72,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 ///                                                                      the start of the call
 ///     clock.cycle, bodies.level between cycles  plan_step              nothing: written again before it is read
 ///     pairs, their search                       find_candidates        nothing: what a search found of the positions
-///                                                                      at the start of the step stays true of them
+///                                                                      at the start of the step stays true of them;
+///     search.memory.body_unmeasured                                    what only velocities told is told again
 ///
 /// All other state is written only by stages that run in a step that is good, and by commit.
 /// tests/scene/transaction_test.cpp compares this list with what the stages declare.

@@ -127,6 +127,7 @@ TEST_CASE("lists that were too short are made for the motion of the step, whatev
           "[unit]") {
     SpikeOverPlate s(0.03);
     s.w.find(h);
+    s.w.search.end_step(true);  // from now on speeds are those that are known
     s.move_spike({0, 0, 2000});
     REQUIRE(s.crossings() > 0);
     std::ranges::fill(s.w.body.max_speed, 0);
