@@ -266,22 +266,26 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
         std::size_t end = begin + 1;
         while (end < blocks.first.size() && !blocks.opens_patch[end]) ++end;
         const auto first_slot = static_cast<Index>(patches.node.size());
+        const auto first_row = static_cast<std::size_t>(blocks.first[begin]);
+        const auto end_row = static_cast<std::size_t>(blocks.first[end - 1] + blocks.count[end - 1]);
         for (std::size_t b = begin; b < end; ++b) {
             SKERRY_CHECK(blocks.body[b] == blocks.body[begin] && blocks.level[b] == blocks.level[begin]);
-            const auto first = static_cast<std::size_t>(blocks.first[b]);
+            const NodeLane* const node = nodes.node.data() + blocks.first[b];
             blocks.continues_fan[b] = b > begin && blocks.count[b] == 4 && blocks.count[b - 1] == 4 &&
-                                      continues_fan(nodes.node.data() + blocks.first[b - 1], nodes.node.data() + first);
-            for (std::size_t row = first; row < first + static_cast<std::size_t>(blocks.count[b]); ++row)
-                for (std::size_t l = 0; l < element_lanes; ++l) {
-                    const Index n = nodes.node[row][l];
-                    Index& slot = slot_of(n);
-                    if (slot == no_index) {
-                        slot = static_cast<Index>(patches.node.size()) - first_slot;
-                        patches.node.push_back(n);
-                    }
-                    nodes.slot[row][l] = slot;
-                }
+                                      continues_fan(nodes.node.data() + blocks.first[b - 1], node);
         }
+        // In the order of the nodes: the kernel fetches their positions from memory.
+        for (std::size_t row = first_row; row < end_row; ++row)
+            for (const Index n : nodes.node[row].lane)
+                if (Index& slot = slot_of(n); slot == no_index) {
+                    slot = 0;
+                    patches.node.push_back(n);
+                }
+        std::sort(patches.node.begin() + first_slot, patches.node.end());
+        for (auto s = static_cast<std::size_t>(first_slot); s < patches.node.size(); ++s)
+            slot_of(patches.node[s]) = static_cast<Index>(s) - first_slot;
+        for (std::size_t row = first_row; row < end_row; ++row)
+            for (std::size_t l = 0; l < element_lanes; ++l) nodes.slot[row][l] = slot_of(nodes.node[row][l]);
         const Range slots{first_slot, static_cast<Index>(patches.node.size())};
         for (Index s = slots.begin; s < slots.end; ++s) slot_of(patches.node[static_cast<std::size_t>(s)]) = no_index;
         patches.level.resize(patches.node.size(), blocks.level[begin]);

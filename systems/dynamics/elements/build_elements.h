@@ -53,7 +53,8 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
                      std::span<const Real> density, std::span<Real> mass);
 
 /// Patches, their nodes, the slots of the nodes of elements and which blocks go on with a fan, for the blocks and nodes
-/// behind those that have theirs: of bodies that were added, or of all. A node has its slots in element order.
+/// behind those that have theirs: of bodies that were added, or of all. Slots of a patch are in the order
+/// of its nodes, and a node has its own in that of the patches.
 void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes, ElementPatches& patches);
 
 /// Leaves the patches of the first blocks and nodes, which are those of whole bodies.
