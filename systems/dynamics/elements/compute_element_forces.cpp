@@ -70,6 +70,16 @@ struct Run {
         return {patches.slot.data() + row, elements.gradient.data() + row, elements.count[block]};
     }
 
+    /// Asks for the gradients of a block that is to come: what is fetched beside them, and in which order, keeps
+    /// processors from seeing that they lie one after the other.
+    [[gnu::always_inline]] void ask_for(std::size_t block) const {
+        const auto row = static_cast<std::size_t>(elements.first[block]);
+        const auto* const from = reinterpret_cast<const char*>(elements.gradient.data() + row + 1);
+        const auto* const to = reinterpret_cast<const char*>(elements.gradient.data() + row) +
+                               static_cast<std::size_t>(elements.count[block]) * sizeof(ElementGradient);
+        for (const char* line = from; line < to; line += 64) __builtin_prefetch(line);
+    }
+
     template <class T>
     static T part_of(std::span<const ElementLane> column, std::size_t block, std::size_t part) {
         return load_part<T>(column[block], part);
@@ -331,6 +341,7 @@ template <class Elements>
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = elements.fetch(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
+            if (block + 3 < run.end) run.ask_for(block + 3);
             const Parts<LaneMat3<KernelReal>> P = run.stress_of(law, block, F);
             if (ahead && block + 1 < run.end) F = elements.fetch(block + 1);
             elements.add(block, P);
