@@ -158,8 +158,7 @@ TEST_CASE("a capsule thrown against another, a sphere or a block meets it on its
         REQUIRE(c.world.advance(0.1).ok());
         const Real heavy = c.world.mass(still), joint = 2 * mass / (mass + heavy);
         CHECK((c.velocity(still) - 2 * joint * Vec3::UnitX()).norm() < 1e-8);
-        CHECK((c.velocity(thrown) - 2 * (joint * heavy / mass - 1) * -Vec3::UnitX()).norm() <
-              (target == block ? 10.0 : 1e-8));
+        CHECK((c.velocity(thrown) - 2 * (joint * heavy / mass - 1) * -Vec3::UnitX()).norm() < 1e-8);
         CHECK(c.spin(thrown).norm() < 1e-8);
         CHECK(c.world.report().max_penetration == 0);
         CHECK(c.world.report().energy_error < 1e-8);
