@@ -35,7 +35,8 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
 /// Adds those that are forgotten in this try.
 void note_unmeasured(SearchMemory& memory) {
     const std::size_t count = memory.body_forgotten.size();
-    if (!memory.any_unmeasured) memory.body_unmeasured.assign(count, 0);
+    if (!memory.any_unmeasured) memory.body_unmeasured.clear();
+    memory.body_unmeasured.resize(count, 0);
     memory.any_unmeasured = true;
     for (std::size_t b = 0; b < count; ++b) memory.body_unmeasured[b] |= memory.body_forgotten[b];
 }

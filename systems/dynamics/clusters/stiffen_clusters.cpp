@@ -35,7 +35,7 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
 /// U (1/weight + G^T U)^-1 U^T with U = A^-1 G. With C C^T = 1/weight + G^T U that is W W^T, W = U C^-T, which is
 /// symmetric to the last bit however it is added up.
 void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<const Real> inverse_mass,
-                    NodeClusters& clusters) {
+                    const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
     for (Index k = 0; k < of.count && cluster == no_index; ++k) cluster = clusters.cluster(of.node[k][l]);
     if (cluster == no_index) return;
@@ -71,7 +71,7 @@ void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<
     }
     for (std::size_t i = 0; i < count; ++i)
         add_combination(moved, -Vec3(moved[0][i], moved[1][i], moved[2][i]),
-                        clusters.inverse.span().subspan(clusters.first_entry[c] + i * count, count));
+                        inverse.subspan(clusters.first_entry[c] + i * count, count));
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
         const Real more = raised_to * now[l] - taken[l];
         const Real weight = beta * more * elements.volume[b][l];
         out.modulus[b][l] += more;
-        add_to_inverse(elements.nodes_of(b), l, weight, bodies.inverse_mass, out.clusters);
+        add_to_inverse(elements.nodes_of(b), l, weight, bodies.inverse_mass, out.clusters, out.clusters.inverse.span());
         const LaneMat3<Real8> rate = deformation_of(elements, b, bodies.velocity);
         energy += weight * inner_product(rate, rate)[l] / 2;
     }
