@@ -148,6 +148,50 @@ TEST_CASE("bodies that are alike have the same implicit elements, as many as one
     CHECK(together.stable_step() == Approx(alone.stable_step()).epsilon(1e-9));
 }
 
+TEST_CASE("where implicit elements of some bodies change, all clusters are those that building them anew makes",
+          "[scene][clusters]") {
+    World world(weightless(true));
+    const auto rubber = world.add_material(lossless_rubber());
+    for (int b = 0; b < 5; ++b)
+        world.add_body(b == 2 ? mesh::ball(0.1, 4) : sliver_box(0.2, 6, 0.02, 0.02, static_cast<std::uint64_t>(b + 1)),
+                       {.material = rubber, .position = {0.5 * b, 0, 0}});
+    world.stable_step();
+    Model& model = WorldAccess::state_of(world).model;
+    const NodeClusters before = model.clusters;
+    const auto clusters_of = [&](Index body) { return std::ranges::count(model.clusters.body, body); };
+    for (const Index b : {0, 1, 3, 4}) REQUIRE(clusters_of(b) > 0);
+    REQUIRE(clusters_of(2) == 0);
+
+    // one has more implicit elements, one has none any more, one its first
+    const auto modulus_of = [&](std::size_t b) {
+        return rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]);
+    };
+    for (ElementLane& of_block : modulus_of(1).first(2)) std::ranges::fill(of_block.lane, Real(2e5));
+    std::ranges::fill(modulus_of(3), ElementLane{});
+    modulus_of(2)[0].lane[0] = 1e5;
+    model.bodies.cluster_step[2] = model.bodies.cluster_step[1];
+    const std::vector<std::uint8_t> changed{0, 1, 1, 1, 0};
+    model.rebuild_clusters(changed);
+    CHECK(clusters_of(2) == 1);
+    CHECK(clusters_of(3) == 0);
+    NodeClusters quick = model.clusters;
+    model.rebuild_clusters();
+    CHECK(std::ranges::equal(quick.nodes.offset, model.clusters.nodes.offset));
+    CHECK(std::ranges::equal(quick.nodes.item, model.clusters.nodes.item));
+    CHECK(std::ranges::equal(quick.body, model.clusters.body));
+    CHECK(std::ranges::equal(quick.first_entry, model.clusters.first_entry));
+    CHECK(std::ranges::equal(quick.inverse, model.clusters.inverse));
+    CHECK(std::ranges::equal(quick.cluster_of, model.clusters.cluster_of));
+    CHECK(std::ranges::equal(quick.place, model.clusters.place));
+    CHECK(quick.inverse.size() != before.inverse.size());
+
+    // what is not said to have changed is not looked at: matrices that have followed their elements stay as they are
+    model.clusters.inverse[0] *= 1.5;
+    const Real followed = model.clusters.inverse[0];
+    model.rebuild_clusters(changed);
+    CHECK(model.clusters.inverse[0] == followed);
+}
+
 TEST_CASE("a spinning body with clusters keeps energy, momentum and angular momentum", "[scene][clusters]") {
     World world(weightless(true));
     const BodyHandle body =

@@ -29,6 +29,11 @@ Index live_row(const Map& map, HandleType handle, const char* call, const char* 
     return row;
 }
 
+ClusterInputs inputs_of_clusters(const Model& model) {
+    return {model.bodies.blocks.span(), model.bodies.cluster_step.span(), model.elements.implicit_modulus.span(),
+            model.nodes.mass.span(), model.nodes.inverse_mass.span()};
+}
+
 }  // namespace
 
 void Model::set_world(std::uint32_t number) {
@@ -184,10 +189,11 @@ void Model::derive_all() {
 }
 
 void Model::rebuild_clusters() {
-    build_clusters(all_elements(),
-                   {bodies.blocks.span(), bodies.cluster_step.span(), elements.implicit_modulus.span(),
-                    nodes.mass.span(), nodes.inverse_mass.span()},
-                   clusters);
+    build_clusters(all_elements(), inputs_of_clusters(*this), clusters);
+}
+
+void Model::rebuild_clusters(std::span<const std::uint8_t> body_changed) {
+    skerry::rebuild_clusters(all_elements(), inputs_of_clusters(*this), body_changed, clusters);
 }
 
 void Model::append_outline(std::size_t body) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -156,8 +158,9 @@ struct Model {
     void extend_derived();
     /// The same of all rows, and of loads, and what a step leaves of velocities where it has nothing to do.
     void derive_all();
-    /// After elements became implicit or explicit.
+    /// After elements became implicit or explicit: of any body, or of those with a mark.
     void rebuild_clusters();
+    void rebuild_clusters(std::span<const std::uint8_t> body_changed);
 
     /// Surface and tree of one body, from its record and its shape at rest; the body must be the last that has rows in
     /// these tables.

@@ -1,7 +1,9 @@
 // How long steps may be.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
@@ -120,18 +122,19 @@ public:
         if (!(bodies.stable_step[b] > 0) || bodies.stable_step[b] * worth_clusters >= goal_ ||
             !clusters_allowed(model_.settings))
             return;
-        const Real before = changed_ ? energy_before_ : added_energy(model_);
+        const Real before = changed_.empty() ? added_energy(model_) : energy_before_;
         stiffness_sum_.resize(model_.nodes.position.size());
         if (!make_implicit(model_, b, reserve * goal_, bodies.stable_step[b], stiffness_sum_)) return;
         energy_before_ = before;
-        changed_ = true;
+        changed_.resize(bodies.slot.size());
+        changed_[b] = 1;
         bodies.stable_step[b] = look_at_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
     }
 
     /// J, what clusters have brought into the balance.
     Real end() {
-        if (!changed_) return 0;
-        model_.rebuild_clusters();
+        if (changed_.empty()) return 0;
+        model_.rebuild_clusters(changed_);
         return added_energy(model_) - energy_before_;
     }
 
@@ -140,7 +143,7 @@ private:
     Column<Real>& stiffness_sum_;
     Real goal_ = std::numeric_limits<Real>::infinity();  // s, what bodies stand when they are not strained
     Real energy_before_ = 0;                             // J
-    bool changed_ = false;
+    std::vector<std::uint8_t> changed_;      // by body, whether its implicit elements have; none: no rows
 };
 
 }  // namespace

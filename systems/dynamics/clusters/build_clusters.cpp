@@ -72,6 +72,68 @@ void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeC
     }
 }
 
+/// Lists the clusters of a body and inverts their matrices.
+void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size_t body, UnionFind& sets,
+           NodeClusters& clusters) {
+    const Range blocks = inputs.body_blocks[body];
+    const auto modulus =
+        inputs.modulus.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size()));
+    std::vector<Index> nodes;
+    chain(elements, blocks, modulus, inputs.inverse_mass, sets, nodes);
+    sort_unique(nodes);
+    const std::size_t first = clusters.size();
+    list_nodes(nodes, static_cast<Index>(body), sets, clusters);
+    std::vector<Eigen::MatrixXd> A;
+    for (std::size_t c = first; c < clusters.size(); ++c) {
+        const auto of_cluster = clusters.nodes[c];
+        const auto count = static_cast<Eigen::Index>(of_cluster.size());
+        A.emplace_back(Eigen::MatrixXd::Zero(count, count));
+        for (Eigen::Index i = 0; i < count; ++i)
+            A.back()(i, i) = inputs.mass[static_cast<std::size_t>(of_cluster[static_cast<std::size_t>(i)])];
+    }
+    const Real beta = inertia_of_stiffness(inputs.body_cluster_step[body]);
+    for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real m) {
+        const BlockNodes of = elements.nodes_of(b);
+        const Real weight = beta * m * elements.volume[b][l];
+        for_each_node(of, l, inputs.inverse_mass, [&](Index n, Index k) {
+            Eigen::MatrixXd& matrix = A[static_cast<std::size_t>(clusters.cluster_of[n]) - first];
+            for_each_node(of, l, inputs.inverse_mass, [&](Index other, Index j) {
+                Real product = 0;
+                for (std::size_t i = 0; i < 3; ++i) product += of.gradient[k][i][l] * of.gradient[j][i][l];
+                matrix(clusters.place[n], clusters.place[other]) += weight * product;
+            });
+        });
+    });
+    for (const Eigen::MatrixXd& matrix : A) {
+        const Eigen::MatrixXd inverse = matrix.llt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
+        const std::size_t begin = clusters.inverse.size();
+        clusters.first_entry.push_back(begin);
+        clusters.inverse.resize(begin + static_cast<std::size_t>(inverse.size()));
+        // symmetric to the last bit: what two contacts do to each other is the same
+        for (Eigen::Index i = 0; i < inverse.rows(); ++i)
+            for (Eigen::Index j = 0; j < inverse.cols(); ++j)
+                clusters.inverse[begin + static_cast<std::size_t>(i * inverse.cols() + j)] =
+                    i < j ? inverse(i, j) : inverse(j, i);
+    }
+}
+
+/// Takes a cluster over as it was.
+void keep(const NodeClusters& before, std::size_t c, NodeClusters& clusters) {
+    const std::span<const Index> nodes = before.nodes[c];
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        clusters.cluster_of[nodes[k]] = static_cast<Index>(clusters.body.size());
+        clusters.place[nodes[k]] = static_cast<Index>(k);
+        clusters.nodes.item.push_back(nodes[k]);
+    }
+    clusters.nodes.offset.push_back(static_cast<Index>(clusters.nodes.item.size()));
+    clusters.body.push_back(before.body[c]);
+    const std::size_t begin = clusters.inverse.size(), entries = nodes.size() * nodes.size();
+    clusters.first_entry.push_back(begin);
+    clusters.inverse.resize(begin + entries);
+    std::ranges::copy(before.inverse.span().subspan(before.first_entry[c], entries),
+                      clusters.inverse.begin() + static_cast<std::ptrdiff_t>(begin));
+}
+
 }  // namespace
 
 ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
@@ -110,6 +172,13 @@ ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::spa
 
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters) {
     clusters.clear();
+    const std::vector<std::uint8_t> every(inputs.body_blocks.size(), 1);
+    rebuild_clusters(elements, inputs, every, clusters);
+}
+
+void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs,
+                      std::span<const std::uint8_t> body_changed, NodeClusters& clusters) {
+    const NodeClusters before = std::exchange(clusters, {});
     if (std::ranges::none_of(inputs.body_cluster_step, [](Real step) { return step > 0; })) return;
     const std::size_t node_count = inputs.mass.size();
     clusters.cluster_of.assign(node_count, no_index);
@@ -117,50 +186,12 @@ void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, 
     clusters.nodes.offset.push_back(0);
     UnionFind sets;
     sets.start(node_count);
-    std::vector<Index> nodes;
-    std::vector<Eigen::MatrixXd> A;
+    std::size_t next = 0;  // of those before
     for (std::size_t body = 0; body < inputs.body_blocks.size(); ++body) {
-        if (!(inputs.body_cluster_step[body] > 0)) continue;
-        const Range blocks = inputs.body_blocks[body];
-        const auto modulus =
-            inputs.modulus.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size()));
-        nodes.clear();
-        chain(elements, blocks, modulus, inputs.inverse_mass, sets, nodes);
-        sort_unique(nodes);
-        const std::size_t first = clusters.size();
-        list_nodes(nodes, static_cast<Index>(body), sets, clusters);
-        A.clear();
-        for (std::size_t c = first; c < clusters.size(); ++c) {
-            const auto of_cluster = clusters.nodes[c];
-            const auto count = static_cast<Eigen::Index>(of_cluster.size());
-            A.emplace_back(Eigen::MatrixXd::Zero(count, count));
-            for (Eigen::Index i = 0; i < count; ++i)
-                A.back()(i, i) = inputs.mass[static_cast<std::size_t>(of_cluster[static_cast<std::size_t>(i)])];
-        }
-        const Real beta = inertia_of_stiffness(inputs.body_cluster_step[body]);
-        for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real m) {
-            const BlockNodes of = elements.nodes_of(b);
-            const Real weight = beta * m * elements.volume[b][l];
-            for_each_node(of, l, inputs.inverse_mass, [&](Index n, Index k) {
-                Eigen::MatrixXd& matrix = A[static_cast<std::size_t>(clusters.cluster_of[n]) - first];
-                for_each_node(of, l, inputs.inverse_mass, [&](Index other, Index j) {
-                    Real product = 0;
-                    for (std::size_t i = 0; i < 3; ++i) product += of.gradient[k][i][l] * of.gradient[j][i][l];
-                    matrix(clusters.place[n], clusters.place[other]) += weight * product;
-                });
-            });
-        });
-        for (const Eigen::MatrixXd& matrix : A) {
-            const Eigen::MatrixXd inverse = matrix.llt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
-            const std::size_t begin = clusters.inverse.size();
-            clusters.first_entry.push_back(begin);
-            clusters.inverse.resize(begin + static_cast<std::size_t>(inverse.size()));
-            // symmetric to the last bit: what two contacts do to each other is the same
-            for (Eigen::Index i = 0; i < inverse.rows(); ++i)
-                for (Eigen::Index j = 0; j < inverse.cols(); ++j)
-                    clusters.inverse[begin + static_cast<std::size_t>(i * inverse.cols() + j)] =
-                        i < j ? inverse(i, j) : inverse(j, i);
-        }
+        const auto is_of_body = [&] { return next < before.size() && before.body[next] == static_cast<Index>(body); };
+        for (; is_of_body(); ++next)
+            if (!body_changed[body]) keep(before, next, clusters);
+        if (body_changed[body] && inputs.body_cluster_step[body] > 0) build(elements, inputs, body, sets, clusters);
     }
 }
 

@@ -1,6 +1,7 @@
 // The matrices by which the nodes of implicit elements move (docs/methods/clusters.md 2).
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "components/element_table.h"
@@ -20,6 +21,11 @@ struct ClusterInputs {
 /// Nodes chained by implicit elements are a cluster; A = M + beta sum modulus V sum_kl g_k.g_l over those elements, of
 /// its moving nodes, and its inverse. Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);
+
+/// The same where only implicit elements of some bodies have changed, those with a mark (by body): the matrices of all
+/// others stay as they are, to the last bit.
+void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs,
+                      std::span<const std::uint8_t> body_changed, NodeClusters& clusters);
 
 /// How many nodes the largest cluster of a body would have, the entries of all its matrices, and the sum of the cubes
 /// of their widths, which is what it takes to invert them.
