@@ -83,6 +83,10 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
     real_row("stable step", a.step, b.step, "s");
     std::printf("  steps are those of %s; %s edges of the surface collapsed, %s flipped\n", task.step_of.c_str(),
                 grouped(repaired.collapsed).c_str(), grouped(repaired.flipped).c_str());
+    if (repaired.parted > 0)
+        std::printf("  %s parted, which joined tetrahedra that share no face there\n",
+                    (grouped(repaired.parted) + (repaired.parted == 1 ? " node" : " nodes")).c_str());
+    if (!repaired.kept.empty()) std::printf("  the tetrahedra are the same: %s\n", repaired.kept.c_str());
     if (repaired.collapsed + repaired.flipped == 0) {
         std::printf("  the surface is the same\n");
         return;
@@ -104,6 +108,8 @@ void print_json(const RepairedMesh& repaired, const RepairTask& task, const Insp
         {"after", figures_json(repaired.after)},
         {"edges_collapsed", repaired.collapsed},
         {"edges_flipped", repaired.flipped},
+        {"nodes_parted", repaired.parted},
+        {"kept", repaired.kept},
         {"tolerance", repaired.tolerance},
         {"distance",
          {{"old_from_new", repaired.distance.from_first}, {"new_from_old", repaired.distance.from_second}}}};

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/mesh/manifold_fault.h"
+#include "engine/mesh/repair/part_fans.h"
 #include "engine/mesh/repair/thin_knots.h"
 #include "engine/program/fill_surface.h"
 #include "engine/program/number_text.h"
 #include "skerry/error.h"
+#include "systems/collision/build_surface.h"
 
 namespace skerry {
 
@@ -79,17 +82,32 @@ class Repair {
 public:
     Repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
            const std::function<void(const std::string&)>& progress)
-        : mesh_(mesh), of_(of), progress_(progress), surface_(mesh::boundary(mesh)) {
-        result_.before = figures_of(mesh, surface_, of);
-        const MeshReport& report = result_.before.mesh;
-        if (!report.closed_manifold)
-            Complaint{what,
-                      "boundary",
-                      {},
-                      "edges that have not two triangles each",
-                      "a closed manifold",
-                      "tetrahedra that touch in an edge alone have to be parted first"}
+        : parted_(mesh::part_fans(mesh)), mesh_(parted_.mesh), of_(of), progress_(progress) {
+        const std::string fault = mesh::manifold_fault(boundary_triangles(mesh_.tetrahedra));
+        if (!fault.empty())
+            Complaint{
+                what,
+                "boundary",
+                {},
+                fault,
+                "a closed manifold: two triangles at each edge",
+                parted_.parted > 0 || fault.find("triangles") != std::string::npos
+                    ? "tetrahedra that touch in an edge alone, and hang together around both of its ends, have to "
+                      "be parted first: take those on one side away, or give the edge nodes of its own there"
+                    : ""}
                 .raise();
+        if (parted_.parts > 1)
+            Complaint{what,
+                      "tetrahedra",
+                      {},
+                      std::to_string(parted_.parts) + " parts that hang together by nodes or edges alone",
+                      "tetrahedra that hang together by faces",
+                      "mend each part as a mesh of its own"}
+                .raise();
+        surface_ = mesh::boundary(mesh_);
+        result_.before = figures_of(mesh, surface_, of);
+        result_.parted = parted_.parted;
+        const MeshReport& report = result_.before.mesh;
         if (report.labels.size() > 1)
             Complaint{what,
                       "tetrahedra",
@@ -159,13 +177,25 @@ private:
         result_.after = best.figures;
         result_.collapsed = best.collapsed;
         result_.flipped = best.flipped;
+        judge(best.surface);
+        if (result_.refusal.empty() || parted_.parted == 0) return;
+        result_.kept = std::move(result_.refusal);
+        result_.refusal.clear();
+        result_.mesh = mesh_;
+        result_.after = figures_of(mesh_, surface_, of_);
+        result_.distance = {};
+        result_.collapsed = result_.flipped = 0;
+    }
+
+    /// Says why what is in the result is not to be written, if it is not.
+    void judge(const SurfaceMesh& surface) {
         if (result_.mesh.tetrahedra.empty() || !(result_.after.step > 0)) {
             result_.refusal = filled_once_ ? "no mesh found that is not much coarser, and keeps the volume"
                                            : "no tetrahedra found inside the surface; does it cut itself?";
             return;
         }
         progress_("measuring how far the surface moved");
-        result_.distance = mesh::surface_distance(surface_, best.surface);
+        result_.distance = mesh::surface_distance(surface_, surface);
         // What was not to move at all is the same to rounding.
         const Real rounding = 1e-9 * (result_.before.mesh.upper - result_.before.mesh.lower).norm();
         if (result_.distance.greatest() > std::max(result_.tolerance, rounding))
@@ -177,7 +207,8 @@ private:
                 " before, " + with_unit(result_.after.step, "s") + " with the best of those tried";
     }
 
-    const Mesh& mesh_;
+    mesh::PartedMesh parted_;
+    const Mesh& mesh_;  // that
     const StepCase& of_;
     const std::function<void(const std::string&)>& progress_;
     SurfaceMesh surface_;

@@ -143,7 +143,7 @@ private:
     Column<Real>& stiffness_sum_;
     Real goal_ = std::numeric_limits<Real>::infinity();  // s, what bodies stand when they are not strained
     Real energy_before_ = 0;                             // J
-    std::vector<std::uint8_t> changed_;      // by body, whether its implicit elements have; none: no rows
+    std::vector<std::uint8_t> changed_;                  // by body, whether its implicit elements have; none: no rows
 };
 
 }  // namespace

@@ -39,7 +39,9 @@ Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<con
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
         const ElementLane& taken = modulus[b - static_cast<std::size_t>(blocks.begin)];
         if (std::none_of(taken.lane, taken.lane + element_lanes, [](Real m) { return m > 0; })) continue;
-        const Real8 stiffness = stiffness_of(elements, b, deformation_of(elements, b, position), q);
+        const LaneMat3<Real8> F = deformation_of(elements, b, position);
+        if (worst > 0 && less_stiff_than(elements, b, F, load(taken), worst, q)) continue;
+        const Real8 stiffness = stiffness_of(elements, b, F, q);
         for (std::size_t l = 0; l < element_lanes; ++l)
             if (taken[l] > 0) worst = std::max(worst, stiffness[l] / taken[l]);
     }

@@ -88,6 +88,7 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
             (quick_stiffness(elements.material_of(b), inner_product(F, F), determinant(F)) <= near_stiffness * taken)))
         return 0;
     LaneQuaternion<Real8> q{one, zero, zero, zero};
+    if (less_stiff_than(elements, b, F, taken, too_near, q)) return 0;
     const Real8 now = stiffness_of(elements, b, F, q);
     Real energy = 0;
     for (std::size_t l = 0; l < element_lanes; ++l) {

@@ -150,9 +150,9 @@ public:
         Real bound = 0;
         for (const ElementGroup& group : groups) bound = std::max(bound, above * group.highest);
         for (const ElementGroup& group : groups) {
-            const std::vector<Real> matrix = matrix_of(group);
+            find_matrix(group);
             Real growth = above;
-            for (; std::isfinite(bound) && !is_below(matrix, group.width, bound); growth *= growth) bound *= growth;
+            for (; std::isfinite(bound) && !is_below(group.width, bound); growth *= growth) bound *= growth;
         }
         return bound;
     }
@@ -394,9 +394,10 @@ private:
     }
 
     /// M^-1/2 sum_e G V W G^T M^-1/2 of a group: of each row the band from the diagonal on.
-    std::vector<Real> matrix_of(const ElementGroup& group) {
+    void find_matrix(const ElementGroup& group) {
         const std::size_t size = group.node.size();
-        std::vector<Real> matrix(size * group.width), scale(size);
+        matrix_.assign(size * group.width, 0);
+        std::vector<Real> scale(size);
         for (std::size_t i = 0; i < size; ++i) scale[i] = group.mass[i] > 0 ? 1 / std::sqrt(group.mass[i]) : 0;
         number(group);
         for_each_element(group.blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
@@ -412,29 +413,33 @@ private:
                     const ElementGradient& g = nodes.gradient[j];
                     const std::size_t column = place(j);
                     if (column < row) continue;
-                    matrix[row * group.width + (column - row)] +=
+                    matrix_[row * group.width + (column - row)] +=
                         scale[column] * (wx * g[0][l] + wy * g[1][l] + wz * g[2][l]);
                 }
             }
         });
         forget_numbers(group);
-        return matrix;
     }
     /// Whether limit - matrix has a Cholesky decomposition, by more than rounding.
-    static bool is_below(const std::vector<Real>& matrix, std::size_t width, Real limit) {
+    bool is_below(std::size_t width, Real limit) {
         const Real rounding = 1e-10 * limit;
-        const std::size_t size = matrix.size() / width;
-        std::vector<Real> rest(matrix.size());
-        for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = (i % width == 0 ? limit : 0) - matrix[i];
+        const std::size_t size = matrix_.size() / width;
+        rest_.resize(matrix_.size());
         for (std::size_t k = 0; k < size; ++k) {
-            const Real* const row = &rest[k * width];
+            Real* const row = &rest_[k * width];
+            const Real* const of_matrix = &matrix_[k * width];
+            row[0] = limit - of_matrix[0];
+            for (std::size_t j = 1; j < width; ++j) row[j] = 0 - of_matrix[j];
+        }
+        for (std::size_t k = 0; k < size; ++k) {
+            const Real* const row = &rest_[k * width];
             if (!(row[0] > rounding)) return false;
             const Real inverse = 1 / row[0];
             const std::size_t end = std::min(width, size - k);
             for (std::size_t i = 1; i < end; ++i) {
                 const Real factor = row[i] * inverse;
                 if (factor == 0) continue;
-                Real* const to = &rest[(k + i) * width];
+                Real* const to = &rest_[(k + i) * width];
                 for (std::size_t j = i; j < end; ++j) to[j - i] -= factor * row[j];
             }
         }
@@ -453,6 +458,7 @@ private:
     Real stiffest_ = 0;                    // Pa
     Real relaxing_step_ = 0;               // s
     std::vector<Index> place_;             // by node, in a group
+    std::vector<Real> matrix_, rest_;      // of find_matrix; of its decomposition
 };
 
 }  // namespace

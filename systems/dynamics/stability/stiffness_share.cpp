@@ -122,13 +122,29 @@ Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block
                     enough, Sharpness::bisected);
 }
 
-Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                   LaneQuaternion<Real8>& q) {
+namespace {
+
+/// With masses of 1 in the place of those that elements share, and this in the place of their volumes.
+Real8 hessian_bound(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& volume,
+                    LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness) {
     const MaterialConstants material = elements.material_of(block);
     const bool viscous = material.relaxes() && !elements.viscous_strain.empty();
     const Real8 one = Real8{} + 1.0, zero{};
-    return frequency_squared_bound(material, F, viscous ? viscous_part(elements, block, F) : ViscousPart{}, one,
-                                   {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, q);
+    return frequency_squared_bound(material, F, viscous ? viscous_part(elements, block, F) : ViscousPart{}, volume,
+                                   {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, q, enough, sharpness);
+}
+
+}  // namespace
+
+Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                   LaneQuaternion<Real8>& q) {
+    return hessian_bound(elements, block, F, Real8{} + 1.0, q, 0, Sharpness::trace);
+}
+
+bool less_stiff_than(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& modulus,
+                     Real times, LaneQuaternion<Real8>& q) {
+    const Real8 over_modulus = modulus > 0.0 ? 1.0 / modulus : Real8{};
+    return all(hessian_bound(elements, block, F, over_modulus, q, times, Sharpness::compared) <= times);
 }
 
 }  // namespace skerry

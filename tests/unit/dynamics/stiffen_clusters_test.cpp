@@ -89,3 +89,32 @@ TEST_CASE("where forces say that elements stiffen is all that a look at every el
     CHECK(raised > 1);
     CHECK(fewest < stiffening.size() / 2);
 }
+
+TEST_CASE("whether elements are less stiff than they are taken to be is what the bound on their stiffness says",
+          "[unit][clusters]") {
+    constexpr Real looseness = 1.16;  // of the bound: 9^(1/16)
+    SliverBox box(ElementKind::edge_node_smoothed);
+    const ElementInputs inputs = box.body.inputs();
+    LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+    std::mt19937_64 random(8);
+    for (Vec3& x : box.body.position) x += 0.004 * test::random_vector(random);
+    int less = 0, more = 0;
+    for (std::size_t b = 0; b < box.body.elements.first.size(); ++b) {
+        const LaneMat3<Real8> F = deformation_of(inputs, b, box.body.position);
+        const Real8 bound = stiffness_of(inputs, b, F, q);
+        CHECK(less_stiff_than(inputs, b, F, bound, 1.001, q));
+        CHECK(less_stiff_than(inputs, b, F, Real8(2.0 * bound), 0.501, q));
+        CHECK(less_stiff_than(inputs, b, F, Real8{}, 0.9, q));  // none is asked for
+        // one lane decides
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            if (!(inputs.volume[b][l] > 0)) continue;
+            Real8 modulus = 2.0 * bound;
+            modulus[l] = bound[l] / (1.001 * looseness);
+            CHECK_FALSE(less_stiff_than(inputs, b, F, modulus, 1, q));
+            ++more;
+        }
+        less += all(load(inputs.volume[b]) > 0.0);
+    }
+    CHECK(less > 0);
+    CHECK(more > 0);
+}

@@ -5,11 +5,14 @@
 #include <iterator>
 #include <map>
 
+#include "engine/mesh/manifold_fault.h"
+#include "engine/mesh/repair/part_fans.h"
 #include "engine/mesh/repair/surface_distance.h"
 #include "engine/mesh/repair/thin_knots.h"
 #include "engine/mesh/repair/triangle_tree.h"
 #include "skerry/error.h"
 #include "skerry/world.h"
+#include "systems/collision/build_surface.h"
 #include "systems/geometry/closest_points.h"
 #include "tests/support/sliver_box.h"
 #include "tests/support/temporary_folder.h"
@@ -193,4 +196,66 @@ TEST_CASE("the tetrahedra that allow the least step are the slivers", "[unit]") 
         }
         CHECK(beside);
     }
+}
+
+namespace {
+
+/// A chain of cubic cells, each of which shares a face with the one before it.
+Mesh chain_of_cells(const std::vector<Vec3>& cells) {
+    Mesh mesh = test::mirrored_box(1, 4);
+    std::erase_if(mesh.tetrahedra, [&](const std::array<Index, 4>& t) {
+        Vec3 center = Vec3::Zero();
+        for (const Index n : t) center += mesh.nodes[static_cast<std::size_t>(n)] / 4;
+        return std::ranges::find(cells, Vec3((4 * (center + Vec3::Constant(0.5))).array().floor())) == cells.end();
+    });
+    return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("nodes that join tetrahedra which share no face there are parted, and nothing else changes", "[unit]") {
+    const auto in_edge = GENERATE(false, true);
+    INFO((in_edge ? "the ends of a chain meet in an edge" : "the ends of a chain meet in a corner"));
+    std::vector<Vec3> cells{{1, 1, 1}, {0, 1, 1}, {0, 2, 1}, {0, 3, 1}, {1, 3, 1}, {2, 3, 1}};
+    if (!in_edge) cells.emplace_back(2, 3, 2);
+    cells.emplace_back(2, 2, in_edge ? 1 : 2);
+    const Mesh mesh = chain_of_cells(cells);
+    REQUIRE_FALSE(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)).empty());
+    const mesh::PartedMesh parted = mesh::part_fans(mesh);
+    CHECK(mesh::manifold_fault(boundary_triangles(parted.mesh.tetrahedra)).empty());
+    CHECK(parted.parted == (in_edge ? 2 : 1));
+    CHECK(parted.mesh.nodes.size() == mesh.nodes.size() + parted.parted);
+    CHECK(parted.parts == 1);
+    REQUIRE(parted.mesh.tetrahedra.size() == mesh.tetrahedra.size());
+    std::size_t moved = 0;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (std::size_t k = 0; k < 4; ++k) {
+            const auto before = static_cast<std::size_t>(mesh.tetrahedra[t][k]),
+                       after = static_cast<std::size_t>(parted.mesh.tetrahedra[t][k]);
+            CHECK(parted.mesh.nodes[after] == mesh.nodes[before]);
+            moved += before != after;
+        }
+    CHECK(moved > 0);
+}
+
+TEST_CASE("a mesh that hangs together by a node alone falls apart in two, and one that does by faces stays", "[unit]") {
+    const Mesh one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+                   {{0, 1, 2, 3}, {0, 5, 4, 6}}};
+    const mesh::PartedMesh two = mesh::part_fans(one);
+    CHECK(two.parted == 1);
+    CHECK(two.parts == 2);
+    const Mesh whole = test::mirrored_box(1, 3);
+    const mesh::PartedMesh same = mesh::part_fans(whole);
+    CHECK(same.parted == 0);
+    CHECK(same.parts == 1);
+    CHECK(same.mesh.tetrahedra == whole.tetrahedra);
+}
+
+TEST_CASE("an edge around which tetrahedra have a gap stays where both of its ends have one fan", "[unit]") {
+    const Mesh mesh =
+        chain_of_cells({{1, 1, 1}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {2, 2, 1}, {1, 1, 2}, {2, 1, 2}, {2, 2, 2}});
+    const mesh::PartedMesh same = mesh::part_fans(mesh);
+    CHECK(same.parted == 0);
+    CHECK(same.mesh.tetrahedra == mesh.tetrahedra);
+    CHECK_THAT(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)), Contains("has 4 triangles"));
 }

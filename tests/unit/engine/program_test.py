@@ -262,8 +262,8 @@ class ProgramTest(ProgramCase):
         self.assertAlmostEqual(of_body["worst"][0]["altitude"], 0.2 * worst["altitude"], places=9)
         self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", self.skerry("inspect", scene).stdout)
 
-    def bad_box(self, name, cells=4, flat=1e-3, needle=False):
-        """A unit box with an inner node close to another one; with `needle` the same on its surface."""
+    def bad_box(self, name, cells=4, flat=1e-3, needle=False, kept=None):
+        """A unit box with an inner node close to another one; with `needle` the same on its surface. `kept`: cells."""
         side = cells + 1
         nodes = [[x / cells - 0.5, y / cells - 0.5, z / cells - 0.5]
                  for z in range(side) for y in range(side) for x in range(side)]
@@ -271,6 +271,8 @@ class ProgramTest(ProgramCase):
         tetrahedra = []
         for cell in range(cells ** 3):
             at = [cell % cells, cell // cells % cells, cell // cells ** 2]
+            if kept and tuple(at) not in kept:
+                continue
             for walk in ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)):
                 corner = [at[i] + at[i] % 2 for i in range(3)]
                 t = [number(corner)]
@@ -285,6 +287,8 @@ class ProgramTest(ProgramCase):
         for moved, towards in ((number([2, 2, 2]), number([3, 2, 2])),
                                *([(number([0, 2, 2]), number([0, 3, 2]))] if needle else [])):
             nodes[moved] = [flat * a + (1 - flat) * b for a, b in zip(nodes[moved], nodes[towards])]
+        used = sorted({n for t in tetrahedra for n in t})
+        nodes, tetrahedra = [nodes[n] for n in used], [[used.index(n) for n in t] for t in tetrahedra]
         lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", len(nodes)]
         lines += [" ".join(map(str, [i + 1, *x])) for i, x in enumerate(nodes)]
         lines += ["$EndNodes", "$Elements", len(tetrahedra)]
@@ -345,6 +349,23 @@ class ProgramTest(ProgramCase):
         kinds = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"]
         self.assertAlmostEqual(found["before"]["stable_dt"], kinds[1]["stable_dt"], places=12)
         self.skerry("inspect", scene, "--repair", better, "--body", "bda", code=2)
+
+    def test_a_node_that_joins_what_shares_no_face_there_is_parted(self):
+        self.need_fill()
+        chain = [(1, 1, 1), (0, 1, 1), (0, 2, 1), (0, 3, 1), (1, 3, 1), (2, 3, 1), (2, 3, 2), (2, 2, 2)]
+        mesh = self.bad_box("pinched.msh", flat=1, kept=chain)
+        out = self.folder / "parted.msh"
+        found = json.loads(self.skerry("inspect", mesh, "--repair", out, "--tolerance", 0, "--json").stdout)
+        self.assertEqual(found["nodes_parted"], 1)
+        again = json.loads(self.skerry("inspect", out, "--json").stdout)
+        self.assertTrue(again["closed_manifold"])
+        self.assertAlmostEqual(again["volume"], found["before"]["volume"], places=12)
+        if found["kept"]:  # nothing better was found to fill it with
+            self.assertEqual(again["nodes"], found["before"]["nodes"] + 1)
+            self.assertEqual(again["tetrahedra"], found["before"]["tetrahedra"])
+        self.assertIn("1 node parted", self.skerry("inspect", mesh, "--repair", out, "--tolerance", 0).stdout)
+        two = self.bad_box("two.msh", flat=1, kept=[(1, 1, 1), (2, 2, 2)])
+        self.assert_refused("inspect", two, "--repair", self.folder / "none.msh", said=["2 parts", "mend each part"])
 
     def test_what_is_not_better_is_not_written(self):
         self.need_fill()
