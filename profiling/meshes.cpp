@@ -91,9 +91,9 @@ void print(const Outcome& outcome, double others) {
     std::printf("| %s | %zu | %zu | %zu -> %zu | %.0f us | %llu | %s | %llu | %d | %.2f %% | %.3f | %.3f | %.2f |\n",
                 outcome.name.c_str(), report.elements, outcome.at_start.implicit_elements,
                 outcome.at_start.cluster_nodes, report.cluster_nodes, 1e6 * outcome.at_start.stable_step,
-                static_cast<unsigned long long>(report.steps), bounds.c_str(), static_cast<unsigned long long>(given_up),
-                static_cast<int>(report.inverted), 100 * report.energy_error_share, median(outcome.search), cpu(outcome),
-                others);
+                static_cast<unsigned long long>(report.steps), bounds.c_str(),
+                static_cast<unsigned long long>(given_up), static_cast<int>(report.inverted),
+                100 * report.energy_error_share, median(outcome.search), cpu(outcome), others);
 }
 
 void compare(const std::string& path, const Fall& fall, int rounds) {
@@ -132,7 +132,9 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     std::printf(
         "| mesh | tetrahedra | implicit elements | nodes in clusters | stable step | steps | of these by | tries "
-        "given up | inverted | energy is off by | until clusters are found, CPU s | all, CPU s | over box, a tetrahedron |\n"
+        "given up | inverted | energy is off by | until "
+        "clusters are found, CPU s | all, CPU s | over box, a "
+        "tetrahedron |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const std::string& file : files) compare(file, fall, rounds);
 }
