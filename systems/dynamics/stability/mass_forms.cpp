@@ -238,6 +238,7 @@ private:
     void add_product(Range blocks) {
         for_each_element(blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
             const ElementForm& w = weight_[b - first_block()];
+            if (w[0][l] == 0) return;  // left to a cluster
             const std::array<Real4, 3> t = gradient_of_vectors(nodes, l);
             const Real4 x = w[0][l] * t[0] + w[3][l] * t[1] + w[5][l] * t[2];
             const Real4 y = w[3][l] * t[0] + w[1][l] * t[1] + w[4][l] * t[2];
@@ -440,7 +441,9 @@ private:
                 const Real factor = row[i] * inverse;
                 if (factor == 0) continue;
                 Real* const to = &rest_[(k + i) * width];
-                for (std::size_t j = i; j < end; ++j) to[j - i] -= factor * row[j];
+                const Real* const from = row + i;
+#pragma omp simd
+                for (std::size_t j = 0; j < end - i; ++j) to[j] -= factor * from[j];
             }
         }
         return true;
