@@ -20,6 +20,7 @@ using TetrahedronNodes = std::array<NodeLane, 4>;    // corner a of lane l: node
 using ElementGradient = std::array<ElementLane, 3>;  // 1/m, component i of lane l: gradient[i][l]
 using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y, z
 using ElementForm = std::array<ElementLane, 6>;      // symmetric: xx, yy, zz, xy, yz, zx
+using FrameMass = std::array<ElementLane, 2>;        // q, 1/(kg m^2), and b, kg m^2 (frame_masses.h)
 // Of a symmetric strain: xx, yy, zz, xy, yz, zx; then a volume strain of its own
 using ElementStrain = std::array<ElementLane, 7>;
 
@@ -59,6 +60,10 @@ struct ElementBlockTable {
     // 1/(kg m^2), Q of the mass G Q^-1 G^T that an element takes from its nodes (mass_forms.h); 0: it goes by
     // mass_share
     Column<ElementForm> mass_form;
+    // what an element takes in a body that turns as a whole, and 1/s^2, the bound of omega^2 by it at rest; 0: the body
+    // has no such masses
+    Column<FrameMass> frame_mass;
+    Column<Real> frame_bound;
     Column<ElementLane> implicit_modulus;   // Pa, stiffness of an element that a cluster carries; 0: an explicit one
     Column<ElementRotation> rotation;       // corotational frame, the start of the next extraction
     Column<ElementRotation> rotation_next;  // this step's frame; swapped with rotation when the step is committed
@@ -92,6 +97,8 @@ struct ElementBlockTable {
         visit("volume", volume, ColumnRole::state);
         visit("mass_share", mass_share, ColumnRole::state);
         visit("mass_form", mass_form, ColumnRole::state);
+        visit("frame_mass", frame_mass, ColumnRole::state);
+        visit("frame_bound", frame_bound, ColumnRole::state);
         visit("implicit_modulus", implicit_modulus, ColumnRole::state);
         visit("rotation", rotation, ColumnRole::state);
         visit("body", body, ColumnRole::link);

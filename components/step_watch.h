@@ -20,6 +20,10 @@ struct StepLook {
     std::array<Real, element_level_count> highest{};   // 1/s^2, by level: bound of omega^2
     std::array<Index, element_level_count> element{};  // by level, where the bound is not zero: whose it is
     Real known = 0;  // 1/s^2, the bound that was known when the present wave of blocks began
+    // Of a body that has masses in its frame: sum of V F, m^3, column by column, and 1/s^2, the bound by them
+    std::array<Real, 9> deformation{};
+    Real in_frame = 0;
+    Index element_in_frame = no_index;
 };
 
 /// The looks go round over all bodies. State, of which the hash needs only the steps: what is done of a look before and

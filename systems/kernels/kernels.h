@@ -19,6 +19,7 @@
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
 #include "systems/dynamics/motion/predict_velocity.h"
+#include "systems/dynamics/stability/frame_masses.h"
 #include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
@@ -55,6 +56,7 @@ struct Kernels {
     decltype(&skerry::element_steps) element_steps;
     decltype(&skerry::find_mass_shares) find_mass_shares;
     decltype(&skerry::find_mass_forms) find_mass_forms;
+    decltype(&skerry::find_frame_masses) find_frame_masses;
     decltype(&skerry::watch_stable_steps) watch_stable_steps;
     decltype(&skerry::solve_regions) solve_regions;
 };

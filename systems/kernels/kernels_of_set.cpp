@@ -32,6 +32,7 @@ const skerry::Kernels SKERRY_KERNELS = {
     .element_steps = &skerry::element_steps,
     .find_mass_shares = &skerry::find_mass_shares,
     .find_mass_forms = &skerry::find_mass_forms,
+    .find_frame_masses = &skerry::find_frame_masses,
     .watch_stable_steps = &skerry::watch_stable_steps,
     .solve_regions = &skerry::solve_regions,
 };

@@ -78,7 +78,9 @@ struct ElasticBody {
                 .own_frequency = elements.own_frequency,
                 .relaxing_share = elements.relaxing_share,
                 .viscous_strain = elements.viscous_strain,
-                .mass_form = elements.mass_form};
+                .mass_form = elements.mass_form,
+                .frame_mass = elements.frame_mass,
+                .frame_bound = elements.frame_bound};
     }
 
     /// `h`: s, since the elements were last looked at: what relaxes does so for this long. Returns what that

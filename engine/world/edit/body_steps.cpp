@@ -9,6 +9,7 @@
 #include "engine/world/kernels.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/find_relaxation.h"
+#include "systems/dynamics/stability/frame_masses.h"
 #include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
@@ -101,11 +102,26 @@ void choose_mass_forms(Model& model, Index row, std::span<const Vec3> position, 
         return kernels().stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
     };
     const std::span<ElementForm> form = rows_of(model.elements.mass_form, blocks);
-    std::ranges::fill(form, ElementForm{});
+    forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
     // in groups, as large bodies are, forms lose some of what they gain
-    if (!(step() > by_shares)) std::ranges::fill(form, ElementForm{});
+    const Real by_forms = step();
+    if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
+    constexpr Real least_gain = 1.1;  // for which a body is looked at in two ways where it is strained
+    const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
+    const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
+    kernels().find_frame_masses(model.all_elements(), blocks, position, model.nodes.mass, products_of_frame, in_frame,
+                                bound);
+    if (step() > least_gain * std::max(by_forms, by_shares)) return;
+    std::ranges::fill(in_frame, FrameMass{});
+    std::ranges::fill(bound, Real(0));
+}
+
+void forget_mass_forms(Model& model, Range blocks) {
+    std::ranges::fill(rows_of(model.elements.mass_form, blocks), ElementForm{});
+    std::ranges::fill(rows_of(model.elements.frame_mass, blocks), FrameMass{});
+    std::ranges::fill(rows_of(model.elements.frame_bound, blocks), Real(0));
 }
 
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
@@ -147,7 +163,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
 
     ElementBlockTable& elements = model.elements;
     start_mass_shares(model.all_elements(), blocks, rows_of(elements.mass_share, blocks));
-    std::ranges::fill(rows_of(elements.mass_form, blocks), ElementForm{});
+    forget_mass_forms(model, blocks);
     std::ranges::fill(rows_of(elements.implicit_modulus, blocks), ElementLane{});
     if (model.bodies.cluster_step[b] > 0) std::ranges::fill(rows_of(elements.viscous_time, blocks), Real(0));
     std::ranges::fill(rows_of(elements.relaxation_rate, blocks), ElementLane{});

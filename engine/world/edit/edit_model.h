@@ -74,9 +74,11 @@ struct RoundMass {
 RoundMass round_mass(const Model& model, const NewBody& body);
 /// Adds the masses of the tetrahedra to those of the nodes, which are free then.
 void set_masses(Model& model, const NewBody& body, Range nodes);
-/// Finds the mass forms (mass_forms.h) of a body of one level without clusters, whose masses are shared, and leaves
-/// them out where shares alone stand a longer step at `position`.
+/// Finds the mass forms and the masses in its frame (mass_forms.h, frame_masses.h) of a body of one level, whose masses
+/// are shared, and leaves those out that do not make its step at `position` longer.
 void choose_mass_forms(Model& model, Index row, std::span<const Vec3> position, std::span<Real> stiffness_sum);
+/// Takes both away.
+void forget_mass_forms(Model& model, Range blocks);
 /// How the elements of a body relax, how they share its masses and which step they stand, at rest at `position` (m, by
 /// node of the world). Its elements are as new.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,

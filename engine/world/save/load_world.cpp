@@ -19,7 +19,8 @@ namespace {
 
 /// Columns in which a number may be infinite: bounds that nothing has, and the lanes that are left over.
 bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 17> paths{"/watch/step",
+    constexpr std::array<std::string_view, 18> paths{"/watch/step",
+                                                     "/watch/look/in_frame",
                                                      "/watch/look/highest",
                                                      "/tetrahedra/altitude",
                                                      "/tetrahedra/uninverted_until",

@@ -208,10 +208,12 @@ template <>
 struct MembersOf<StepLook> {
     static constexpr auto list() {
         using S = StepLook;
-        return std::tuple{Member{"piece", &S::piece}, Member{"broken", &S::broken}, Member{"highest", &S::highest},
-                          Member{"element", &S::element}, Member{"known", &S::known}};
+        return std::tuple{Member{"piece", &S::piece},       Member{"broken", &S::broken},
+                          Member{"highest", &S::highest},   Member{"element", &S::element},
+                          Member{"known", &S::known},       Member{"deformation", &S::deformation},
+                          Member{"in_frame", &S::in_frame}, Member{"element_in_frame", &S::element_in_frame}};
     }
-    static_assert(sizeof(StepLook) == (3 + element_level_count) * sizeof(Real) + element_level_count * sizeof(Index),
+    static_assert(sizeof(StepLook) == (14 + element_level_count) * sizeof(Real) + element_level_count * sizeof(Index),
                   "a member is not saved");
 };
 template <>

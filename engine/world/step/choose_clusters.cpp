@@ -59,6 +59,8 @@ Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, 
 struct Kept {
     std::vector<ElementLane> mass_share, modulus;
     std::vector<ElementForm> mass_form;
+    std::vector<FrameMass> frame_mass;
+    std::vector<Real> frame_bound;
     Kept(Model& model, std::size_t b) {
         const auto keep = [&](auto& column, auto& kept) {
             const auto rows = rows_of(column, model.bodies.blocks[b]);
@@ -67,12 +69,16 @@ struct Kept {
         keep(model.elements.mass_share, mass_share);
         keep(model.elements.implicit_modulus, modulus);
         keep(model.elements.mass_form, mass_form);
+        keep(model.elements.frame_mass, frame_mass);
+        keep(model.elements.frame_bound, frame_bound);
     }
     void put_back(Model& model, std::size_t b) const {
         const Range blocks = model.bodies.blocks[b];
         std::ranges::copy(mass_share, rows_of(model.elements.mass_share, blocks).begin());
         std::ranges::copy(modulus, rows_of(model.elements.implicit_modulus, blocks).begin());
         std::ranges::copy(mass_form, rows_of(model.elements.mass_form, blocks).begin());
+        std::ranges::copy(frame_mass, rows_of(model.elements.frame_mass, blocks).begin());
+        std::ranges::copy(frame_bound, rows_of(model.elements.frame_bound, blocks).begin());
     }
 };
 
@@ -268,8 +274,13 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     for (const PlannedBody& body : plan.body) {
         if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // bodies that are alike have the same plan
             body.elements.put_back(model, body.row);
-            std::ranges::copy(rows_of(model.elements.mass_form, model.bodies.blocks[first]),
-                              rows_of(model.elements.mass_form, model.bodies.blocks[body.row]).begin());
+            const auto as_first = [&](auto& column) {
+                std::ranges::copy(rows_of(column, model.bodies.blocks[first]),
+                                  rows_of(column, model.bodies.blocks[body.row]).begin());
+            };
+            as_first(model.elements.mass_form);
+            as_first(model.elements.frame_mass);
+            as_first(model.elements.frame_bound);
             stands[body.row] = stands[first];
         } else {
             stands[body.row] = take_over(model, body, stiffness_sum);
@@ -384,7 +395,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
         cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
     // by shares, which follow a deformation
-    std::ranges::fill(rows_of(model.elements.mass_form, blocks), ElementForm{});
+    forget_mass_forms(model, blocks);
     const Real most = most_moment_of(model, body);
     const Found found =
         judged(model, body,

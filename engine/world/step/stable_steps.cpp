@@ -68,6 +68,7 @@ Real step_by_shares(const Model& model, std::size_t body, std::span<const Vec3> 
     if (!(model.bodies.cluster_step[body] > 0) || !has_mass_form(by_shares, static_cast<std::size_t>(blocks.begin)))
         return 0;
     by_shares.mass_form = {};
+    by_shares.frame_bound = {};
     stiffness_sum.resize(position.size());
     return kernels().stable_step(by_shares, blocks, position, model.nodes.mass, stiffness_sum).step;
 }
@@ -171,9 +172,10 @@ void keep_shapes(Model& model, std::uint64_t round) {
     const BodyTable& bodies = model.bodies;
     StepWatch& watch = model.watch;
     const auto rows = static_cast<Index>(bodies.slot.size());
+    const ElementInputs elements = model.all_elements();
     const auto pieces_of = [&](Index row) {
         const auto b = static_cast<std::size_t>(row);
-        return pieces_of_body(bodies.blocks[b], bodies.level_count[b]);
+        return pieces_of_body(elements, bodies.blocks[b], bodies.level_count[b]);
     };
     std::uint64_t total = 0, kept = 0;
     watch.before = 0;

@@ -30,6 +30,8 @@ struct ElementInputs {
     ElementSchedule schedule = {};
     std::span<const ElementForm> mass_form = {};         // 1/(kg m^2); empty: elements go by mass_share
     std::span<const ElementLane> implicit_modulus = {};  // Pa; 0: an explicit element; empty: all are
+    std::span<const FrameMass> frame_mass = {};
+    std::span<const Real> frame_bound = {};  // 1/s^2; empty: no body has frame masses
 
     std::size_t blocks() const { return first.size(); }
     BlockNodes nodes_of(std::size_t block) const {
@@ -77,7 +79,9 @@ struct ElementInputs {
                              .body_cap = binder.read(body.level_cap),
                              .touched = binder.read(element.touched),
                              .body_has_touched = binder.read(body.has_touched)},
-                .mass_form = binder.read(element.mass_form)};
+                .mass_form = binder.read(element.mass_form),
+                .frame_mass = binder.read(element.frame_mass),
+                .frame_bound = binder.read(element.frame_bound)};
     }
 };
 

@@ -130,6 +130,26 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
+/// A = D A D with D = (1 + b s s^T)^-1/2 = 1 - c s s^T, s = R L as a vector of nine: what A is in units of a mass that
+/// has b (R:X)^2 beside |Y|^2. (R:X = R L : Y with X = Y L^T.)
+template <class T>
+void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
+    const LaneMat3<T> RL = multiply(R, L);
+    const T s[9] = {RL.c0.x, RL.c0.y, RL.c0.z, RL.c1.x, RL.c1.y, RL.c1.z, RL.c2.x, RL.c2.y, RL.c2.z};
+    const T size = inner_product(RL, RL);
+    const T c = (1.0 - 1.0 / square_root(1.0 + b * size)) / (size > 0.0 ? size : T{} + 1.0);
+    T u[9];  // A s
+    T sAs{};
+    for (int r = 0; r < 9; ++r) {
+        u[r] = T{};
+        for (int k = 0; k < 9; ++k) u[r] += (k <= r ? A.a[r][k] : A.a[k][r]) * s[k];
+        sAs += s[r] * u[r];
+    }
+    const T twice = c * c * sAs;
+    for (int r = 0; r < 9; ++r)
+        for (int k = 0; k <= r; ++k) A.a[r][k] += twice * s[r] * s[k] - c * (s[r] * u[k] + u[r] * s[k]);
+}
+
 /// In each lane of this part, whether the eigenvalues of volume A are below `limit`: whether limit - volume A has a
 /// Cholesky decomposition L D L^T with D > 0, by more than rounding. Where no lane does it ends early.
 template <class T>
@@ -186,6 +206,13 @@ T largest_eigenvalue_bound(Matrix9<T>& A) {
     return scale * square_root(square_root(square_root(norm(*from))));  // norm(A^8) = (tr A^16)^(1/2)
 }
 
+LaneMat3<KernelReal> everywhere(const Mat3& m) {
+    const auto column = [&](Eigen::Index c) {
+        return LaneVec3<KernelReal>{KernelReal{} + m(0, c), KernelReal{} + m(1, c), KernelReal{} + m(2, c)};
+    };
+    return {column(0), column(1), column(2)};
+}
+
 using BlockMatrices = std::array<Matrix9<KernelReal>, kernel_parts>;
 using BlockReals = std::array<KernelReal, kernel_parts>;
 
@@ -231,7 +258,7 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
 
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough,
-                              Sharpness sharpness) {
+                              Sharpness sharpness, const FramePart* frame) {
     const bool relaxes = viscous.moduli.mu > 0 || viscous.moduli.lambda > 0 || viscous.moduli.bulk > 0;
     BlockMatrices A;
     with_law(material.model, [&](auto law) {
@@ -244,6 +271,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
             else
                 law.add_stiffness(material, F_part, H);
             if (relaxes) add_viscous_stiffness(viscous, part, F_part, H);
+            if (frame) count_in(everywhere(frame->rotation), lanes_in(frame->b, part), L, A[part]);
         }
     });
     // all lanes of the block together, so that a part more or less changes no bit

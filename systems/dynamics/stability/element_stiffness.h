@@ -16,10 +16,17 @@ struct ViscousPart {
     Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // of the moduli that count
 };
 
+/// What an element has of the mass by b (R:X)^2 of the gradient X of displacements, beside that of Q (frame_masses.h).
+struct FramePart {
+    Mat3 rotation = Mat3::Identity();
+    Real8 b{};  // kg m^2
+};
+
 /// lambda_max(M^-1/2 K M^-1/2) of each element from above, 1/s^2. K = V G^T H G with
 /// the rest gradients G and H = dP/dF at F, M the corners' shares of mass; `Q` = sum over the corners of g_a g_a^T /
-/// m_a. `q` starts the frame of an element whose law has one and is left at the frame found.
-/// Lanes without volume get 0. Where all eight are below `enough` (1/s^2) they get that, in a tenth of the time.
+/// m_a; with `frame` they have that mass, too. `q` starts the frame of an element whose law has one and is left at the
+/// frame found. Lanes without volume get 0. Where all eight are below `enough` (1/s^2) they get that, in a tenth of the
+/// time.
 enum class Sharpness {
     trace,     // at most 15 % too large
     bisected,  // at most 0.3 %, in twice the time
@@ -27,6 +34,6 @@ enum class Sharpness {
 };
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,
-                              Sharpness sharpness = Sharpness::trace);
+                              Sharpness sharpness = Sharpness::trace, const FramePart* frame = nullptr);
 
 }  // namespace skerry

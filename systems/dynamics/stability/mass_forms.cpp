@@ -7,13 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "components/check.h"
-#include "systems/dynamics/stability/stiffness_share.h"
-#include "systems/material/relaxation.h"
+#include "components/split_mix.h"
+#include "systems/dynamics/stability/mass_search.h"
 
 namespace skerry {
 
@@ -52,24 +51,16 @@ Symmetric root_of(const Symmetric& s) {
     return root;
 }
 
-/// Numbers between -1 and 1, the same on every machine (splitmix64).
-class Noise {
-public:
-    Real4 next() { return Real4{one(), one(), one(), one()}; }
-
-private:
-    Real one() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-        return static_cast<Real>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-    }
-    std::uint64_t state_ = 1;
-};
+Real4 noise_of(SplitMix& random) {
+    const Real x = random.symmetric(), y = random.symmetric(), z = random.symmetric(), w = random.symmetric();
+    return Real4{x, y, z, w};
+}
 
 Real sum_of(const Real4& x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
+
+constexpr Real longer_by_forms = 1.5;  // steps, than what elements bound one by one
 
 /// Elements that share the mass of their nodes among themselves alone.
 struct ElementGroup {
@@ -86,7 +77,12 @@ class FormSearch {
 public:
     FormSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<const Real> mass,
                Real most_products, std::span<ElementForm> form)
-        : elements_(elements), blocks_(blocks), most_products_(most_products), form_(form), weight_(form.size()) {
+        : elements_(elements),
+          blocks_(blocks),
+          most_products_(most_products),
+          form_(form),
+          weight_(form.size()),
+          moduli_(elements, blocks, longer_by_forms) {
         Index last = 0;
         first_node_ = std::numeric_limits<Index>::max();
         for_each_node(blocks, [&](Index node) {
@@ -96,16 +92,6 @@ public:
         const auto count = static_cast<std::size_t>(last + 1 - first_node_);
         mass_ = mass.subspan(static_cast<std::size_t>(first_node_), count);
         position_ = position.subspan(static_cast<std::size_t>(first_node_), count);
-        Real fastest = 0;  // 1/s
-        for (auto b = first_block(); b < static_cast<std::size_t>(blocks.end); ++b) {
-            const MaterialConstants material = elements.material_of(b);
-            stiffest_ = std::max({stiffest_, 2 * material.shear_modulus, material.lame_lambda});
-            if (elements.own_frequency.empty()) continue;
-            const Real8 own = of_explicit(b) * load(elements.own_frequency[b]);
-            for (std::size_t l = 0; l < element_lanes; ++l) fastest = std::max<Real>(fastest, own[l]);
-        }
-        constexpr Real longer = 1.5;  // than a step that elements bound one by one
-        if (fastest > 0) relaxing_step_ = longer * step_times_frequency / fastest;
         vector_.resize(count);
         product_.resize(count);
         place_.resize(count, no_index);
@@ -119,11 +105,11 @@ public:
         for (ElementForm& of_block : form_)
             for (std::size_t i = 0; i < 6; ++i)
                 for (Real& lane : of_block[i].lane) lane = i < 3 ? Real{1} / 3 : 0;
-        Noise noise;
+        SplitMix noise(1);
         for (int round = 0; round < rounds; ++round) {
             weigh();
             for (std::size_t n = 0; n < vector_.size(); ++n)
-                if (mass_[n] > 0) vector_[n] += (round == 0 ? 1 : noise_part) / std::sqrt(mass_[n]) * noise.next();
+                if (mass_[n] > 0) vector_[n] += (round == 0 ? 1 : noise_part) / std::sqrt(mass_[n]) * noise_of(noise);
             for (int p = 0; p < products; ++p) {
                 std::ranges::fill(product_, Real4{});
                 add_product(blocks_);
@@ -152,7 +138,8 @@ public:
         for (const ElementGroup& group : groups) {
             find_matrix(group);
             Real growth = above;
-            for (; std::isfinite(bound) && !is_below(group.width, bound); growth *= growth) bound *= growth;
+            for (; std::isfinite(bound) && !is_band_below(matrix_, group.width, bound, rest_); growth *= growth)
+                bound *= growth;
         }
         return bound;
     }
@@ -161,7 +148,7 @@ public:
     void finish(Real bound) {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const Real8 volume = load(elements_.volume[first_block() + i]);
-            const Real8 weighty = of_explicit(first_block() + i) * volume, none = Real8{} + form_of_implicit;
+            const Real8 weighty = moduli_.of_explicit(first_block() + i) * volume, none = Real8{} + form_of_implicit;
             Symmetric Q = Real8(Real8{} + bound) * inverse_of(load_form(weight_[i]));
             for (Real8* entry : {&Q.xx, &Q.yy, &Q.zz}) *entry = weighty > 0.0 ? *entry : volume > 0.0 ? none : Real8{};
             for (Real8* entry : {&Q.xy, &Q.yz, &Q.zx}) *entry = weighty > 0.0 ? *entry : Real8{};
@@ -190,41 +177,16 @@ private:
     /// V W = V (2 mu 1 + lambda tr(Z) Z^-1)
     void weigh() {
         for (std::size_t i = 0; i < form_.size(); ++i) {
-            const auto [shear, volumetric] = moduli_of(first_block() + i);
+            const auto [shear, volumetric] = moduli_.of(first_block() + i);
             const Symmetric Z = load_form(form_[i]);
             Symmetric W = Real8(volumetric * Z.trace()) * inverse_of(Z);
             W.xx += shear;
             W.yy += shear;
             W.zz += shear;
-            store_form(of_explicit(first_block() + i) * load(elements_.volume[first_block() + i]) * W, weight_[i]);
+            store_form(moduli_.of_explicit(first_block() + i) * load(elements_.volume[first_block() + i]) * W,
+                       weight_[i]);
         }
     }
-    /// 1 of explicit elements, 0 of those that clusters carry, which take no mass.
-    Real8 of_explicit(std::size_t block) const {
-        const Real8 one = Real8{} + 1.0;
-        return elements_.implicit_modulus.empty()
-                   ? one
-                   : Real8(load(elements_.implicit_modulus[block]) > 0.0 ? Real8{} : one);
-    }
-    struct Moduli {
-        Real8 shear, volumetric;  // 2 mu and lambda, Pa
-    };
-    /// With what relaxes as it will count in steps of about relaxing_step_.
-    Moduli moduli_of(std::size_t block) const {
-        constexpr Real least = 1e-9;  // of the stiffest: what has no stiffness takes some mass all the same
-        const MaterialConstants material = elements_.material_of(block);
-        Moduli moduli{Real8{} + std::max(2 * material.shear_modulus, least * stiffest_),
-                      Real8{} + std::max(material.lame_lambda, Real{0})};
-        if (material.relaxes() && !elements_.relaxing_share.empty()) {
-            const ViscousModuli viscous = viscous_moduli(material, elements_.relaxing_share[block]);
-            const Real8 strain = 2.0 / (2.0 + relaxing_step_ * load(elements_.relaxation_rate[block]));
-            const Real8 volume = 2.0 / (2.0 + (relaxing_step_ / bulk_time) * load(elements_.own_frequency[block]));
-            moduli.shear += 2 * viscous.mu * strain;
-            moduli.volumetric += std::max(viscous.lambda, Real{0}) * strain + viscous.bulk * volume;
-        }
-        return moduli;
-    }
-
     /// Gradients of the vectors in one element.
     std::array<Real4, 3> gradient_of_vectors(const BlockNodes& nodes, std::size_t l) const {
         std::array<Real4, 3> t{};
@@ -286,7 +248,7 @@ private:
             seen = 0;
             group.node.push_back(node - first_node_);
         });
-        sort_along(group.node);
+        sort_along(position_, group.node);
         number(group);
         for_each_element(blocks, [&](std::size_t, std::size_t l, const BlockNodes& nodes) {
             Index low = place_[local(nodes.node[0][l])], high = low;
@@ -305,21 +267,6 @@ private:
             return;
         }
         groups.push_back(std::move(group));
-    }
-    /// Along the longest side of their bounding box.
-    void sort_along(std::vector<Index>& nodes) const {
-        Vec3 low = position_[static_cast<std::size_t>(nodes[0])], high = low;
-        for (const Index n : nodes) {
-            low = low.cwiseMin(position_[static_cast<std::size_t>(n)]);
-            high = high.cwiseMax(position_[static_cast<std::size_t>(n)]);
-        }
-        Eigen::Index axis = 0;
-        (high - low).maxCoeff(&axis);
-        std::ranges::sort(nodes, [&](Index a, Index b) {
-            const Real x = position_[static_cast<std::size_t>(a)][axis],
-                       y = position_[static_cast<std::size_t>(b)][axis];
-            return x != y ? x < y : a < b;
-        });
     }
     void number(const ElementGroup& group) {
         for (std::size_t i = 0; i < group.node.size(); ++i)
@@ -421,34 +368,6 @@ private:
         });
         forget_numbers(group);
     }
-    /// Whether limit - matrix has a Cholesky decomposition, by more than rounding.
-    bool is_below(std::size_t width, Real limit) {
-        const Real rounding = 1e-10 * limit;
-        const std::size_t size = matrix_.size() / width;
-        rest_.resize(matrix_.size());
-        for (std::size_t k = 0; k < size; ++k) {
-            Real* const row = &rest_[k * width];
-            const Real* const of_matrix = &matrix_[k * width];
-            row[0] = limit - of_matrix[0];
-            for (std::size_t j = 1; j < width; ++j) row[j] = 0 - of_matrix[j];
-        }
-        for (std::size_t k = 0; k < size; ++k) {
-            const Real* const row = &rest_[k * width];
-            if (!(row[0] > rounding)) return false;
-            const Real inverse = 1 / row[0];
-            const std::size_t end = std::min(width, size - k);
-            for (std::size_t i = 1; i < end; ++i) {
-                const Real factor = row[i] * inverse;
-                if (factor == 0) continue;
-                Real* const to = &rest_[(k + i) * width];
-                const Real* const from = row + i;
-#pragma omp simd
-                for (std::size_t j = 0; j < end - i; ++j) to[j] -= factor * from[j];
-            }
-        }
-        return true;
-    }
-
     const ElementInputs& elements_;
     Range blocks_;
     Real most_products_;
@@ -458,10 +377,9 @@ private:
     std::span<ElementForm> form_;          // Z, then Q
     std::vector<ElementForm> weight_;      // V W, Pa m^3
     std::vector<Real4> vector_, product_;  // by node
-    Real stiffest_ = 0;                    // Pa
-    Real relaxing_step_ = 0;               // s
-    std::vector<Index> place_;             // by node, in a group
-    std::vector<Real> matrix_, rest_;      // of find_matrix; of its decomposition
+    RestModuli moduli_;
+    std::vector<Index> place_;         // by node, in a group
+    std::vector<Real> matrix_, rest_;  // of find_matrix; of its decomposition
 };
 
 }  // namespace

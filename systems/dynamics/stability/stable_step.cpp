@@ -1,5 +1,6 @@
 #include "systems/dynamics/stability/stable_step.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +13,7 @@
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/stability/element_levels.h"
 #include "systems/dynamics/stability/stiffness_share.h"
+#include "systems/material/extract_rotation.h"
 #include "systems/material/linear.h"
 
 namespace skerry {
@@ -34,34 +36,46 @@ Index sums_of(Range blocks) {
     return (blocks.size() + blocks_summed - 1) / blocks_summed;
 }
 
+/// What pieces of a look do: add up what has to be known of all elements, or bound them by the masses of the frame
+/// (frame_masses.h) or by forms and shares. A body with masses of the frame has one level, which is bounded by these
+/// first.
+enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
+
 /// Pieces of a look that do not wait for each other: sums of a level, or bounds of one wave of its blocks. Waves hold
 /// 1, 1, 2, 4, 8... blocks, so that few in each are above all that the waves before have found.
 struct PieceRun {
     int level;
-    bool bounds, opens_wave;
+    PieceWork work;
+    bool opens_wave;
     Range blocks;
     std::uint64_t end;  // the piece after the last
 };
 
 /// Those from the piece `from` on, which is before `until`. Levels come from the coarsest down: an element shares
 /// masses with those of its level and of coarser ones alone (element_levels.h).
-PieceRun run_from(Range blocks, int levels, std::uint64_t from, std::uint64_t until) {
-    const Index sums = sums_of(blocks);
-    const auto of_level = static_cast<std::uint64_t>(sums + blocks.size());
+PieceRun run_from(Range blocks, int levels, bool framed, std::uint64_t from, std::uint64_t until) {
+    const Index sums = sums_of(blocks), passes = framed ? 2 : 1;
+    const auto of_level = static_cast<std::uint64_t>(sums + passes * blocks.size());
     const int level = levels - 1 - static_cast<int>(from / of_level);
     const auto place = static_cast<Index>(from % of_level);
     const auto most = [&](Index pieces) { return static_cast<Index>(std::min<std::uint64_t>(until - from, pieces)); };
     if (place < sums) {
         const Index count = most(sums - place);
         const Index first = blocks.begin + place * blocks_summed;
-        return {level, false, false, {first, std::min(first + count * blocks_summed, blocks.end)}, from + count};
+        return {
+            level, PieceWork::sum, false, {first, std::min(first + count * blocks_summed, blocks.end)}, from + count};
     }
-    const Index bound = place - sums;
+    const bool in_frame = framed && place - sums < blocks.size();
+    const Index bound = (place - sums) % blocks.size();
     const auto wave = static_cast<Index>(std::bit_floor(static_cast<std::uint64_t>(bound)));
     const Index wave_end = std::min(bound == 0 ? 1 : 2 * wave, blocks.size());
     const Index count = most(wave_end - bound);
     const Index first = blocks.begin + bound;
-    return {level, true, bound == wave, {first, first + count}, from + count};
+    return {level,
+            in_frame ? PieceWork::bound_in_frame : PieceWork::bound,
+            bound == wave,
+            {first, first + count},
+            from + count};
 }
 
 /// The work of a look's pieces.
@@ -76,11 +90,29 @@ struct Pieces {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
             if (elements.schedule.level.empty() ? level == 0 : elements.schedule.level[b] == level) visit(b);
     }
-    void sum(const PieceRun& run) const {
+    void sum(const PieceRun& run, StepLook& look) const {
+        if (frame_bound(elements, run.blocks) > 0)
+            for_each_block(run.blocks, run.level, [&](std::size_t b) { add_deformation(b, look.deformation); });
         for_each_block(run.blocks, run.level, [&](std::size_t b) {
             if (has_mass_form(elements, b)) return;
             add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
                           [](std::size_t) { return true; });
+        });
+    }
+    void add_deformation(std::size_t b, std::array<Real, 9>& sum) const {
+        const LaneMat3<Real8> F = deformation_of(elements, b, position);
+        const Real8 entry[9] = {F.c0.x, F.c0.y, F.c0.z, F.c1.x, F.c1.y, F.c1.z, F.c2.x, F.c2.y, F.c2.z};
+        for (std::size_t i = 0; i < 9; ++i)
+            for (std::size_t l = 0; l < element_lanes; ++l) sum[i] += elements.volume[b][l] * entry[i][l];
+    }
+    /// The same as bound(), by the masses of the frame: in the rotation nearest to how the body is deformed all in all.
+    void bound_in_frame(Range blocks, const std::array<Real, 9>& deformation, Real enough, auto&& visit) const {
+        const std::array<Real, 4> turn = nearest_rotation(Mat3(deformation.data()), {1, 0, 0, 0});
+        const Mat3 rotation = Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
+        LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+        for_each_block(blocks, 0, [&](std::size_t b) {
+            visit(b,
+                  frequency_squared_in_frame(elements, b, deformation_of(elements, b, position), rotation, q, enough));
         });
     }
     /// visit(block, bound of omega^2 by lane); bounds below `enough` (1/s^2) need not be known.
@@ -96,36 +128,57 @@ struct Pieces {
     }
 };
 
-/// Adds the greatest bound of a block to what is known of its level.
-void note_bound(std::size_t block, const Real8& bound, std::size_t level, StepLook& look) {
+/// The greatest of what was bounded, and whose it is.
+struct Greatest {
+    Real& bound;  // 1/s^2
+    Index& element;
+};
+Greatest greatest_of(StepLook& look, const PieceRun& run) {
+    if (run.work == PieceWork::bound_in_frame) return {look.in_frame, look.element_in_frame};
+    const auto level = static_cast<std::size_t>(run.level);
+    return {look.highest[level], look.element[level]};
+}
+
+/// Adds the greatest bound of a block to what is known.
+void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepLook& look) {
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Index here = static_cast<Index>(block * element_lanes + l);
         // a shape that is not finite has no stable step
         if (!(bound[l] <= std::numeric_limits<Real>::max()) && look.broken == no_index) look.broken = here;
-        if (bound[l] > look.highest[level]) {
-            look.highest[level] = bound[l];
-            look.element[level] = here;
+        if (bound[l] > greatest.bound) {
+            greatest.bound = bound[l];
+            greatest.element = here;
         }
     }
 }
 
-/// Goes on with a look; the blocks of a wave are cut by in_chunks(count, body(begin, end, look of this chunk)).
+/// Of the bound at rest: below it a body is not looked at by forms and shares, which hardly know it better.
+constexpr Real well_in_frame = 1.25;
+
+/// Goes on with a look; the blocks of a wave are cut by in_chunks(run, body(begin, end, look of this chunk)).
 template <class InChunks>
 void look_on(const Pieces& pieces, Range blocks, int levels, std::uint64_t until, StepLook& look,
              InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
+    const Real at_rest = frame_bound(pieces.elements, blocks);
     while (look.piece < until) {
-        const PieceRun run = run_from(blocks, levels, look.piece, until);
-        const auto level = static_cast<std::size_t>(run.level);
-        if (run.opens_wave) look.known = look.highest[level];
-        if (run.bounds) {
-            in_chunks(run.blocks.size(), level, [&](Index begin, Index end, StepLook& found) {
-                pieces.bound({run.blocks.begin + begin, run.blocks.begin + end}, run.level, look.known,
-                             [&](std::size_t b, const Real8& bound) { note_bound(b, bound, level, found); });
+        const PieceRun run = run_from(blocks, levels, at_rest > 0, look.piece, until);
+        if (run.opens_wave) look.known = greatest_of(look, run).bound;
+        if (run.work == PieceWork::sum) {
+            pieces.sum(run, look);
+        } else if (run.work == PieceWork::bound_in_frame || !(look.in_frame > 0) ||
+                   look.in_frame > well_in_frame * at_rest) {
+            in_chunks(run, [&](Index begin, Index end, StepLook& found) {
+                const Range some{run.blocks.begin + begin, run.blocks.begin + end};
+                const auto note = [&](std::size_t b, const Real8& bound) {
+                    note_bound(b, bound, greatest_of(found, run), found);
+                };
+                if (run.work == PieceWork::bound_in_frame)
+                    pieces.bound_in_frame(some, look.deformation, look.known, note);
+                else
+                    pieces.bound(some, run.level, look.known, note);
             });
-        } else {
-            pieces.sum(run);
         }
         look.piece = run.end;
     }
@@ -143,15 +196,17 @@ Real step_of(Real bound, int level) {
 
 }  // namespace
 
-std::uint64_t pieces_of_look(Range blocks, int levels) {
-    return static_cast<std::uint64_t>(levels) * static_cast<std::uint64_t>(sums_of(blocks) + blocks.size());
+std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks, int levels) {
+    const Index passes = frame_bound(elements, blocks) > 0 ? 2 : 1;
+    return static_cast<std::uint64_t>(levels) * static_cast<std::uint64_t>(sums_of(blocks) + passes * blocks.size());
 }
 
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, int levels,
                    std::span<const Vec3> position, std::span<const Real> mass, std::span<Real> stiffness_sum,
                    std::uint64_t until, StepLook& look) {
     constexpr Index least = 8, most_chunks = 64;  // blocks, some 20 us; what fits on the stack
-    const auto in_chunks = [&](Index count, std::size_t level, auto&& body) {
+    const auto in_chunks = [&](const PieceRun& run, auto&& body) {
+        const Index count = run.blocks.size();
         const Index size = std::max(least, (count + most_chunks - 1) / most_chunks);
         if (count <= size) {
             body(0, count, look);
@@ -164,11 +219,12 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
                          body(static_cast<Index>(begin), static_cast<Index>(end), own);
                      });
         for (Index c = 0; c * size < count; ++c) {
-            const StepLook& own = part[static_cast<std::size_t>(c)];
+            StepLook& own = part[static_cast<std::size_t>(c)];
             if (look.broken == no_index) look.broken = own.broken;
-            if (!(own.highest[level] > look.highest[level])) continue;
-            look.highest[level] = own.highest[level];
-            look.element[level] = own.element[level];
+            const Greatest most = greatest_of(look, run), here = greatest_of(own, run);
+            if (!(here.bound > most.bound)) continue;
+            most.bound = here.bound;
+            most.element = here.element;
         }
     };
     look_on({elements, position, mass, stiffness_sum}, blocks, levels, until, look, in_chunks);
@@ -182,6 +238,10 @@ StableStep result_of(const StepLook& look) {
         if (!(look.highest[at] > 0)) continue;
         if (const Real step = step_of(look.highest[at], level); step < found.step) found = {step, look.element[at]};
     }
+    if (!(look.in_frame > 0)) return found;
+    // both are bounds, if the body was looked at in both ways
+    const Real step = step_of(look.in_frame, 0);
+    if (!(look.highest[0] > 0) || step > found.step) found = {step, look.element_in_frame};
     return found;
 }
 
@@ -190,8 +250,8 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
     clear_stiffness(elements, blocks, stiffness_sum);
     const int levels = levels_of(elements, blocks);
     StepLook look;
-    look_on({elements, position, mass, stiffness_sum}, blocks, levels, pieces_of_look(blocks, levels), look,
-            [&](Index count, std::size_t, auto&& body) { body(0, count, look); });
+    look_on({elements, position, mass, stiffness_sum}, blocks, levels, pieces_of_look(elements, blocks, levels), look,
+            [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), look); });
     return result_of(look);
 }
 
@@ -202,13 +262,15 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     const int levels = levels_of(elements, blocks);
     ElementInputs by_shares = elements;
     by_shares.mass_form = {};
+    by_shares.frame_bound = {};
     const Pieces pieces{by_shares, position, mass, stiffness_sum};
-    const std::uint64_t count = pieces_of_look(blocks, levels);
+    const std::uint64_t count = pieces_of_look(by_shares, blocks, levels);
+    StepLook look;
     for (std::uint64_t piece = 0; piece < count;) {
-        const PieceRun run = run_from(blocks, levels, piece, count);
+        const PieceRun run = run_from(blocks, levels, false, piece, count);
         piece = run.end;
-        if (!run.bounds) {
-            pieces.sum(run);
+        if (run.work == PieceWork::sum) {
+            pieces.sum(run, look);
             continue;
         }
         pieces.bound(run.blocks, run.level, 0, [&](std::size_t b, const Real8& bound) {

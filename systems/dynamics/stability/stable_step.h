@@ -17,9 +17,9 @@ struct StableStep {
     Index element = no_index;  // of ElementBlockTable (lane e % 8 of block e / 8): the element that bounds it
 };
 
-/// Stable step of one body in its present shape: the mass of each node is shared among its elements by mass_forms.h,
-/// where they have such, or in proportion to their stiffness and their mass_share, and omega_max^2 <= max_e
-/// lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material Hessian of the present deformation bounded as
+/// Stable step of one body in its present shape: the mass of each node is shared among its elements by frame_masses.h
+/// or mass_forms.h, where they have such, or in proportion to their stiffness and their mass_share, and omega_max^2 <=
+/// max_e lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material Hessian of the present deformation bounded as
 /// docs/methods/stable_step.md 4 gives it. A rigorous bound (never above the exact limit), sequential, deterministic.
 /// Where elements have levels it is the step of level 0 for which every level has what element_levels.h asks.
 /// `stiffness_sum` is scratch, one entry a node.
@@ -28,7 +28,7 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
 
 /// The same in parts: a look has so many pieces, which take about as long as each other. `levels`: one more than the
 /// highest level of the elements.
-std::uint64_t pieces_of_look(Range blocks, int levels);
+std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks, int levels);
 /// Goes on with a look until `until` of its pieces are done. `stiffness_sum` is zero at the nodes of the body before
 /// the first; all inputs stay the same until the last. Where a look is cut does not change what it finds.
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, int levels,

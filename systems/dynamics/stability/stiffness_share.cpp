@@ -42,13 +42,13 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
 
 /// Bound of omega^2 of each element of a block with the masses that Q stands for.
 Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const LaneMat3<Real8>& Q,
-               LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness) {
+               LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness, const FramePart* frame = nullptr) {
     const MaterialConstants material = elements.material_of(block);
     const Real8 volume = load(elements.volume[block]);
     // nothing, or no number where F is none: not every bound looks at F
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.viscous_strain.empty())
-        return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness) + nothing;
+        return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     // A spring that relaxes by a step's end counts less, and the less the longer the step.
     const auto count_in = [&](const Real8& step) {
@@ -59,14 +59,15 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
     // them would be below, as all allow about the same at rest.
     if (enough > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(enough));
-        const Real8 compared = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, Sharpness::compared);
+        const Real8 compared =
+            frequency_squared_bound(material, F, viscous, volume, Q, q, enough, Sharpness::compared, frame);
         if (all(compared <= enough)) return compared + nothing;
         viscous.strain_share = viscous.volume_share = Real8{} + 1.0;
     }
     // the step by the springs in full is a safe guess of it
-    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness);
+    const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame);
     count_in(step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0));
-    return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness) + nothing;
+    return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame) + nothing;
 }
 
 }  // namespace
@@ -120,6 +121,15 @@ Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block
     const Real8 xy = load(form[3]), yz = load(form[4]), zx = load(form[5]);
     return bound_of(elements, block, F, {{load(form[0]), xy, zx}, {xy, load(form[1]), yz}, {zx, yz, load(form[2])}}, q,
                     enough, Sharpness::bisected);
+}
+
+Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                                 const Mat3& rotation, LaneQuaternion<Real8>& q, Real enough) {
+    const FrameMass& mass = elements.frame_mass[block];
+    const Real8 of_strain = load(mass[0]), zero{};
+    const FramePart frame{rotation, load(mass[1])};
+    return bound_of(elements, block, F, {{of_strain, zero, zero}, {zero, of_strain, zero}, {zero, zero, of_strain}}, q,
+                    enough, Sharpness::bisected, &frame);
 }
 
 namespace {

@@ -18,8 +18,9 @@ int levels_of_body(const std::array<Index, element_level_count>& level_count) {
 
 }  // namespace
 
-std::uint64_t pieces_of_body(Range blocks, const std::array<Index, element_level_count>& level_count) {
-    return pieces_of_look(blocks, levels_of_body(level_count));
+std::uint64_t pieces_of_body(const ElementInputs& elements, Range blocks,
+                             const std::array<Index, element_level_count>& level_count) {
+    return pieces_of_look(elements, blocks, levels_of_body(level_count));
 }
 
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch) {
@@ -27,7 +28,7 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
     parts.reserve(inputs.body_blocks.size());  // however many are due in a later step
     for (bool whole = true; whole && watch.body < watch.kept; watch.body += whole) {
         const auto b = static_cast<std::size_t>(watch.body);
-        const std::uint64_t pieces = pieces_of_body(inputs.body_blocks[b], inputs.level_count[b]);
+        const std::uint64_t pieces = pieces_of_body(inputs.elements, inputs.body_blocks[b], inputs.level_count[b]);
         if (watch.step[b] != StepWatch::not_looked_at) {
             const std::uint64_t due = watch.target > watch.before ? std::min(pieces, watch.target - watch.before) : 0;
             whole = due == pieces;

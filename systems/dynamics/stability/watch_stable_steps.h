@@ -29,7 +29,8 @@ struct WatchInputs {
 };
 
 /// Pieces of the look at one body; none where it has no elements.
-std::uint64_t pieces_of_body(Range blocks, const std::array<Index, element_level_count>& level_count);
+std::uint64_t pieces_of_body(const ElementInputs& elements, Range blocks,
+                             const std::array<Index, element_level_count>& level_count);
 
 /// A body that is looked at in a step.
 struct WatchPart {

@@ -1,0 +1,251 @@
+// H = 2 mu 1 + lambda 1 1^T is above the law at rest, where turns count for nothing, and the highest modes of a mesh
+// turn little: its highest frequency is within some per cent that of the body. Masses in proportion to it, 1/c of the
+// stiffness, come to those of the nodes if c is above the highest eigenvalue of the whole.
+#include "systems/dynamics/stability/frame_masses.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "components/check.h"
+#include "components/split_mix.h"
+#include "systems/dynamics/stability/mass_forms.h"
+#include "systems/dynamics/stability/mass_search.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real longer_in_frame = 2;  // steps, than what elements bound one by one
+
+// Plain sums: the bits do not depend on how a library vectorises them.
+Real product_of(const Vec3& a, const Vec3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// The stiffness of a body at rest as it is counted here, M^-1/2 K M^-1/2, in coordinates 3 n + i of its nodes n.
+class RestStiffness {
+public:
+    RestStiffness(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                  std::span<const Real> mass)
+        : elements_(elements), blocks_(blocks), moduli_(elements, blocks, longer_in_frame) {
+        Index last = 0;
+        first_node_ = std::numeric_limits<Index>::max();
+        for_each_node([&](Index node) {
+            first_node_ = std::min(first_node_, node);
+            last = std::max(last, node);
+        });
+        const auto count = static_cast<std::size_t>(last + 1 - first_node_);
+        number(position.subspan(static_cast<std::size_t>(first_node_), count));
+        root_.resize(count);
+        for (std::size_t n = 0; n < count; ++n) {
+            const Real of_node = mass[static_cast<std::size_t>(first_node_) + n];
+            root_[n] = of_node > 0 ? 1 / std::sqrt(of_node) : 0;
+        }
+    }
+
+    /// Products that a decomposition takes.
+    Real products() const {
+        const auto size = static_cast<Real>(3 * nodes_), width = static_cast<Real>(3 * width_);
+        return size * width * width / 2;
+    }
+
+    /// The highest eigenvalue from below, by the method of Lanczos (1950), 1/s^2.
+    Real highest() const {
+        constexpr int most_products = 40;
+        SplitMix noise(1);
+        std::vector<Vec3> before(root_.size(), Vec3::Zero()), vector(root_.size()), product(root_.size());
+        Real size = 0;
+        for (std::size_t n = 0; n < vector.size(); ++n) {
+            for (int i = 0; i < 3; ++i) vector[n][i] = root_[n] > 0 ? noise.symmetric() : 0;
+            size += product_of(vector[n], vector[n]);
+        }
+        if (!(size > 0)) return 0;
+        for (Vec3& x : vector) x /= std::sqrt(size);
+        std::vector<Real> diagonal, beside;
+        for (int step = 0; step < most_products; ++step) {
+            multiply(vector, product);
+            Real along = 0;
+            for (std::size_t n = 0; n < vector.size(); ++n) along += product_of(vector[n], product[n]);
+            diagonal.push_back(along);
+            Real rest = 0;
+            for (std::size_t n = 0; n < vector.size(); ++n) {
+                product[n] -= along * vector[n] + (beside.empty() ? 0 : beside.back()) * before[n];
+                rest += product_of(product[n], product[n]);
+            }
+            rest = std::sqrt(rest);
+            if (!(rest > 1e-9 * diagonal[0])) break;
+            beside.push_back(rest);
+            std::swap(before, vector);
+            for (std::size_t n = 0; n < vector.size(); ++n) vector[n] = product[n] / rest;
+        }
+        return highest_of(diagonal, beside);
+    }
+
+    /// Of each row the band from the diagonal on.
+    std::vector<Real> matrix() const {
+        const std::size_t width = 3 * width_;
+        std::vector<Real> matrix(3 * nodes_ * width);
+        for_each_element([&](const Element& e) {
+            for (Index k = 0; k < e.count; ++k) {
+                const std::size_t row = 3 * place_[e.node(k)];
+                const Vec3 g = root_[e.node(k)] * e.gradient(k);
+                for (Index j = 0; j < e.count; ++j) {
+                    const std::size_t column = 3 * place_[e.node(j)];
+                    if (column < row) continue;
+                    const Vec3 other = root_[e.node(j)] * e.gradient(j);
+                    const Real same = e.shear * product_of(g, other);
+                    for (std::size_t i = 0; i < 3; ++i)
+                        for (std::size_t l = column == row ? i : 0; l < 3; ++l)
+                            matrix[(row + i) * width + (column + l - (row + i))] +=
+                                e.volumetric * g[static_cast<Eigen::Index>(i)] * other[static_cast<Eigen::Index>(l)] +
+                                (i == l ? same : 0);
+                }
+            }
+        });
+        return matrix;
+    }
+    std::size_t width() const { return 3 * width_; }
+
+    /// q and b of all elements, for this bound.
+    void share(Real bound, std::span<FrameMass> mass) const {
+        for (std::size_t i = 0; i < mass.size(); ++i) {
+            const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
+            const auto [shear, volumetric] = moduli_.of(block);
+            const Real8 volume = load(elements_.volume[block]), weighty = moduli_.of_explicit(block) * volume;
+            const Real8 one = Real8{} + 1.0, none = Real8{} + form_of_implicit;
+            const Real8 stiffness = weighty > 0.0 ? Real8(volume * shear) : one;
+            store(Real8(weighty > 0.0 ? Real8(bound / stiffness) : volume > 0.0 ? none : Real8{}), mass[i][0]);
+            store(Real8(weighty > 0.0 ? Real8(volume * volumetric / bound) : Real8{}), mass[i][1]);
+        }
+    }
+
+private:
+    struct Element {
+        const BlockNodes& nodes;
+        std::size_t lane;
+        Index count, first_node;
+        Real shear, volumetric;  // Pa m^3, of the volume
+        std::size_t node(Index k) const { return static_cast<std::size_t>(nodes.node[k][lane] - first_node); }
+        Vec3 gradient(Index k) const {
+            const ElementGradient& g = nodes.gradient[k];
+            return {g[0][lane], g[1][lane], g[2][lane]};
+        }
+    };
+
+    void for_each_node(auto&& visit) const {
+        for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
+            const BlockNodes nodes = elements_.nodes_of(b);
+            for (Index k = 0; k < nodes.count; ++k)
+                for (const Index node : nodes.node[k].lane) visit(node);
+        }
+    }
+    /// Of those that take mass.
+    void for_each_element(auto&& visit) const {
+        for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
+            const BlockNodes nodes = elements_.nodes_of(b);
+            const auto [shear, volumetric] = moduli_.of(b);
+            const Real8 volume = moduli_.of_explicit(b) * load(elements_.volume[b]);
+            const Real8 of_shear = volume * shear, of_volume = volume * volumetric;
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                if (volume[l] > 0) visit(Element{nodes, l, nodes.count, first_node_, of_shear[l], of_volume[l]});
+        }
+    }
+
+    /// Places of the nodes along the body, and how far apart those of one element are.
+    void number(std::span<const Vec3> position) {
+        std::vector<char> seen(position.size(), 0);
+        std::vector<Index> nodes;
+        for_each_node([&](Index node) {
+            char& known = seen[static_cast<std::size_t>(node - first_node_)];
+            if (!known) nodes.push_back(node - first_node_);
+            known = 1;
+        });
+        sort_along(position, nodes);
+        nodes_ = nodes.size();
+        place_.resize(position.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) place_[static_cast<std::size_t>(nodes[i])] = i;
+        for_each_element([&](const Element& e) {
+            std::size_t low = place_[e.node(0)], high = low;
+            for (Index k = 1; k < e.count; ++k) {
+                low = std::min(low, place_[e.node(k)]);
+                high = std::max(high, place_[e.node(k)]);
+            }
+            width_ = std::max(width_, high - low + 1);
+        });
+    }
+
+    /// product = M^-1/2 K M^-1/2 vector
+    void multiply(const std::vector<Vec3>& vector, std::vector<Vec3>& product) const {
+        std::ranges::fill(product, Vec3::Zero());
+        for_each_element([&](const Element& e) {
+            std::array<Vec3, 3> slope{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // of vector, by its components
+            for (Index k = 0; k < e.count; ++k) {
+                const Vec3 g = root_[e.node(k)] * e.gradient(k);
+                for (std::size_t i = 0; i < 3; ++i) slope[i] += vector[e.node(k)][static_cast<Eigen::Index>(i)] * g;
+            }
+            const Real pressure = e.volumetric * (slope[0][0] + slope[1][1] + slope[2][2]);
+            for (Index k = 0; k < e.count; ++k) {
+                const Vec3 g = root_[e.node(k)] * e.gradient(k);
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const auto at = static_cast<Eigen::Index>(i);
+                    product[e.node(k)][at] += e.shear * product_of(slope[i], g) + pressure * g[at];
+                }
+            }
+        });
+    }
+
+    /// The highest eigenvalue of a symmetric matrix with these numbers on its diagonal and beside it: of how many
+    /// negative pivots the rest to it has none (Sturm).
+    static Real highest_of(const std::vector<Real>& diagonal, const std::vector<Real>& beside) {
+        const auto is_above = [&](Real x) {
+            Real pivot = x - diagonal[0];
+            for (std::size_t i = 1; i < diagonal.size() && pivot > 0; ++i)
+                pivot = x - diagonal[i] - beside[i - 1] * beside[i - 1] / pivot;
+            return pivot > 0;
+        };
+        Real low = *std::ranges::max_element(diagonal), high = low;
+        for (const Real b : beside) high = std::max(high, low + 2 * b);
+        constexpr int halvings = 40;
+        for (int i = 0; i < halvings; ++i) {
+            const Real middle = (low + high) / 2;
+            (is_above(middle) ? high : low) = middle;
+        }
+        return low;
+    }
+
+    const ElementInputs& elements_;
+    Range blocks_;
+    RestModuli moduli_;
+    Index first_node_ = 0;
+    std::vector<Real> root_;  // 1/sqrt(kg), by node from the first: of the inverse mass
+    std::vector<std::size_t> place_;
+    std::size_t nodes_ = 0, width_ = 0;
+};
+
+}  // namespace
+
+void find_frame_masses(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                       std::span<const Real> mass, Real most_products, std::span<FrameMass> frame_mass,
+                       std::span<Real> bound) {
+    SKERRY_CHECK(frame_mass.size() == static_cast<std::size_t>(blocks.size()) && bound.size() == frame_mass.size());
+    std::ranges::fill(frame_mass, FrameMass{});
+    std::ranges::fill(bound, Real{0});
+    if (blocks.size() == 0) return;
+    const RestStiffness stiffness(elements, blocks, position, mass);
+    if (!(stiffness.products() <= most_products)) return;
+    constexpr Real above = 1.005;  // what the vectors have not found yet
+    const std::vector<Real> matrix = stiffness.matrix();
+    std::vector<Real> rest;
+    Real limit = above * stiffness.highest();
+    for (Real growth = above;
+         std::isfinite(limit) && limit > 0 && !is_band_below(matrix, stiffness.width(), limit, rest); growth *= growth)
+        limit *= growth;
+    if (!(limit > 0) || !std::isfinite(limit)) return;
+    stiffness.share(limit, frame_mass);
+    std::ranges::fill(bound, limit);
+}
+
+}  // namespace skerry
