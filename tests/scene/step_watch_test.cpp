@@ -49,8 +49,9 @@ struct Swinging {
     World world;
     MaterialHandle rubber;
     std::vector<BodyHandle> balls;
+    ElementKind element;
 
-    explicit Swinging(Settings settings) : world(settings) {
+    explicit Swinging(Settings settings, ElementKind kind = ElementKind::smoothed) : world(settings), element(kind) {
         // without losses: what relaxes goes on while a shape that was kept is looked at
         rubber = world.add_material(
             {.young_modulus = 1e5, .loss_factor = 0, .bulk_viscosity = 0, .model = MaterialModel::stable_neo_hookean});
@@ -58,7 +59,8 @@ struct Swinging {
     }
     void add(int cells) {
         const Real at = static_cast<Real>(balls.size());
-        balls.push_back(world.add_body(mesh::ball(0.1, cells), {.material = rubber, .position = {at, 0, 0}}));
+        balls.push_back(
+            world.add_body(mesh::ball(0.1, cells), {.material = rubber, .position = {at, 0, 0}, .element = element}));
         std::vector<Vec3> stretched(world.positions(balls.back()).begin(), world.positions(balls.back()).end());
         for (Vec3& x : stretched) x.x() = at + (x.x() - at) * 1.2, x.y() *= 0.85;
         world.set_positions(balls.back(), stretched);
@@ -82,6 +84,35 @@ TEST_CASE("a step relies on what bodies stood at most two rounds ago", "[scene]"
     const Real first = WorldAccess::state_of(scene.world).model.bodies.stable_step[0];
     history.take_steps(600);
     CHECK(WorldAccess::state_of(scene.world).model.bodies.stable_step[0] != first);
+}
+
+// Linear elements have masses in the frame of their body (docs/methods/stable_step.md 2.4).
+TEST_CASE("a look in the frame of a body finds the same in parts, and the body stands as much turned as not",
+          "[scene]") {
+    Swinging scene(without_clusters(), ElementKind::linear);
+    const Model& model = WorldAccess::state_of(scene.world).model;
+    REQUIRE(model.elements.frame_bound[0] > 0);
+    History history(scene.world);
+    history.look();
+    const Real first = model.bodies.stable_step[0];
+    history.take_steps(400);
+    CHECK(model.bodies.stable_step[0] != first);
+
+    const auto stands = [&](const Vec3& rotation, const Vec3& velocity, ElementKind element, int steps) {
+        World world(without_clusters());
+        const auto rubber = world.add_material({.young_modulus = 1e5, .model = MaterialModel::stable_neo_hookean});
+        world.add_body(mesh::ball(0.1, 4),
+                       {.material = rubber, .rotation = rotation, .angular_velocity = velocity, .element = element});
+        const ElementBlockTable& elements = WorldAccess::state_of(world).model.elements;
+        CHECK((elements.frame_bound[0] > 0) == (element == ElementKind::linear));
+        for (int i = 0; i < steps; ++i) REQUIRE(world.advance(0.9 * world.stable_step()).ok());
+        return world.stable_step();
+    };
+    const Real at_rest = stands({}, {}, ElementKind::linear, 0);
+    CHECK(stands({0.3, -2, 1}, {}, ElementKind::linear, 0) == Approx(at_rest).epsilon(0.005));
+    // three rounds, in which it turns by radians
+    CHECK(stands({}, {5, 3, 0}, ElementKind::linear, 400) == Approx(at_rest).epsilon(0.02));
+    stands({}, {}, ElementKind::smoothed, 0);
 }
 
 TEST_CASE("bodies that come, go and change while they are looked at leave the looks at others right", "[scene]") {
@@ -111,7 +142,7 @@ TEST_CASE("no step takes more than its share of the looks", "[scene]") {
     Model& model = WorldAccess::state_of(world).model;
     std::uint64_t all = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        all += pieces_of_body(model.bodies.blocks[b], model.bodies.level_count[b]);
+        all += pieces_of_body(model.all_elements(), model.bodies.blocks[b], model.bodies.level_count[b]);
     REQUIRE(all > 128);
     const auto done = [&] { return model.watch.before + model.watch.look.piece; };
     std::uint64_t before = done(), greatest = 0;

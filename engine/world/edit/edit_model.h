@@ -74,8 +74,8 @@ struct RoundMass {
 RoundMass round_mass(const Model& model, const NewBody& body);
 /// Adds the masses of the tetrahedra to those of the nodes, which are free then.
 void set_masses(Model& model, const NewBody& body, Range nodes);
-/// Finds the mass forms and the masses in its frame (mass_forms.h, frame_masses.h) of a body of one level, whose masses
-/// are shared, and leaves those out that do not make its step at `position` longer.
+/// Finds the mass forms of a body of one level, whose masses are shared, and of linear elements the masses in its frame
+/// (mass_forms.h, frame_masses.h), and leaves those out that do not make its step at `position` longer.
 void choose_mass_forms(Model& model, Index row, std::span<const Vec3> position, std::span<Real> stiffness_sum);
 /// Takes both away.
 void forget_mass_forms(Model& model, Range blocks);

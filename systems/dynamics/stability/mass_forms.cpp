@@ -13,6 +13,7 @@
 #include "components/check.h"
 #include "components/split_mix.h"
 #include "systems/dynamics/stability/mass_search.h"
+#include "systems/material/relaxation.h"
 
 namespace skerry {
 

@@ -92,7 +92,7 @@ TEST_CASE("in its frame elements take no more mass than there is, and nearly all
         }
 }
 
-TEST_CASE("the step in the frame of a body is below the limit and within a tenth of it at rest", "[unit]") {
+TEST_CASE("the step in the frame of a body is below the limit and within an eighth of it at rest", "[unit]") {
     for (const ElementKind kind : test::element_kinds)
         for (const MaterialModel model : test::material_models)
             for (const Real jitter : {0.0, 0.3})
@@ -105,7 +105,7 @@ TEST_CASE("the step in the frame of a body is below the limit and within a tenth
                     INFO(name_of(kind) << ", " << name_of(model) << ", jitter " << jitter << ", nu " << nu << ": "
                                        << step / limit);
                     CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: the differences
-                    CHECK(step >= 0.88 * 0.9 * limit);
+                    CHECK(step >= 0.87 * 0.9 * limit);
                     if (model == MaterialModel::linear) continue;
                     const Mat3 turn = turned(2.5, {1, -2, 0.5});
                     for (Vec3& x : body.position) x = turn * x + Vec3(1, 2, 3);
@@ -192,7 +192,7 @@ TEST_CASE("what relaxes counts in the step in a frame", "[unit]") {
         const Real limit = test::exact_limit(body), step = test::stable_step_of(body);
         INFO(name_of(kind) << ": " << step / limit);
         CHECK(step <= 0.9 * limit * (1 + 1e-6));
-        CHECK(step >= 0.88 * 0.9 * limit);
+        CHECK(step >= 0.87 * 0.9 * limit);
     }
 }
 
