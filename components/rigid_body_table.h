@@ -17,8 +17,9 @@ namespace skerry {
 /// the frame of the mesh, `rotation` into the world: a node is at center + rotation axes^T (rest_position -
 /// rest_center).
 struct RigidBodyTable {
-    Column<Index> body;             // row of BodyTable
-    Column<Real> mass;              // kg
+    Column<Index> body;  // row of BodyTable
+    Column<Real> mass;   // kg
+    // What deforms by much has those of its shape:
     Column<Vec3> moments;           // kg m^2, of inertia about the principal axes
     Column<Mat3> axes;              // of the principal frame, in the frame of the mesh
     Column<Vec3> rest_center;       // m, in the frame of the mesh
@@ -41,7 +42,11 @@ struct RigidBodyTable {
     // by turn_rigid_bodies:
     Column<Vec3> center_next;
     Column<Mat3> rotation_next;
-    // by strain_implicit_bodies: N m s, what keeps the frame of a held body on its way against what deforms in it
+    // by strain_implicit_bodies: how a body turns in the shape that it has come to, and its principal frame in the
+    // world before it is turned. Of rigid bodies, and of those that are deformed by little, they stay
+    Column<Vec3> moments_next;
+    Column<Mat3> axes_next, rotation_shaped;
+    // N m s, what keeps the frame of a held body on its way against what deforms in it
     Column<Vec3> hold_moment;
     Column<std::uint8_t> large_next;
 
@@ -71,6 +76,9 @@ struct RigidBodyTable {
         visit("push_spin", push_spin, ColumnRole::scratch);
         visit("center_next", center_next, ColumnRole::scratch);
         visit("rotation_next", rotation_next, ColumnRole::scratch);
+        visit("moments_next", moments_next, ColumnRole::scratch);
+        visit("axes_next", axes_next, ColumnRole::scratch);
+        visit("rotation_shaped", rotation_shaped, ColumnRole::scratch);
         visit("hold_moment", hold_moment, ColumnRole::scratch);
         visit("large_next", large_next, ColumnRole::scratch);
     }

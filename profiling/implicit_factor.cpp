@@ -21,7 +21,11 @@ StiffBody stiff_cube(const Mesh& mesh) {
     const MaterialConstants material = material_constants(MaterialModel::corotational, 1e8, 0.3, 1000);
     std::vector<Real> mass(mesh.nodes.size(), 0);
     add_lumped_mass(mesh.tetrahedra, mesh.nodes, std::vector<Real>(mesh.tetrahedra.size(), material.density), mass);
-    return StiffBody(elements_of({mesh.tetrahedra, mesh.nodes}, ElementKind::linear), {&material, 1}, mass, mesh.nodes);
+    std::vector<Real> tetrahedron_mass;
+    for (const auto& corners : mesh.tetrahedra)
+        tetrahedron_mass.push_back(material.density * six_volumes(corners, mesh.nodes) / 6);
+    return StiffBody(elements_of({mesh.tetrahedra, mesh.nodes}, ElementKind::linear), {&material, 1}, mass, mesh.nodes,
+                     mesh.tetrahedra, tetrahedron_mass);
 }
 
 void print_row(int cells) {

@@ -18,6 +18,8 @@ namespace skerry::test {
 struct ElasticBody {
     std::vector<Vec3> position, velocity, load, force;
     std::vector<Real> mass, inverse_mass;
+    TetMesh mesh;
+    std::vector<Real> tetrahedron_mass;  // kg
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
@@ -27,14 +29,15 @@ struct ElasticBody {
     ElementList list;
     std::vector<Index> element_at;  // of the list, by place; no_index in a lane that is left over
 
-    ElasticBody(const TetMesh& mesh, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
+    ElasticBody(const TetMesh& of, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear)
-        : ElasticBody(mesh, {material}, std::vector<Index>(mesh.tetrahedra.size(), 0), rotation, kind) {}
+        : ElasticBody(of, {material}, std::vector<Index>(of.tetrahedra.size(), 0), rotation, kind) {}
 
     /// Of several materials: that of each tetrahedron.
-    ElasticBody(const TetMesh& mesh, const std::vector<MaterialConstants>& materials,
+    ElasticBody(const TetMesh& of, const std::vector<MaterialConstants>& materials,
                 const std::vector<Index>& material_of, const Mat3& rotation = Mat3::Identity(),
-                ElementKind kind = ElementKind::linear) {
+                ElementKind kind = ElementKind::linear)
+        : mesh(of) {
         const std::size_t n = mesh.nodes.size();
         for (const Vec3& x : mesh.nodes) position.push_back(rotation * x);
         velocity.assign(n, Vec3::Zero());
@@ -50,6 +53,7 @@ struct ElasticBody {
         for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
             zones[static_cast<std::size_t>(material_of[t])].tetrahedra.push_back(static_cast<Index>(t));
             density.push_back(materials[static_cast<std::size_t>(material_of[t])].density);
+            tetrahedron_mass.push_back(density.back() * six_volumes(mesh.tetrahedra[t], mesh.nodes) / 6);
         }
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
         list = elements_of({mesh.tetrahedra, mesh.nodes, rotation}, zones);

@@ -177,7 +177,10 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     if (model.has_frame(b)) weigh_rigid_body(model, b, body);
     if (model.dynamics_of(b) == BodyDynamics::implicit_elastic) {
         model.stiffen(b);
-        if (model.is_held(b)) follow_attachments(model, b);
+        if (model.is_held(b))
+            follow_attachments(model, b);
+        else
+            follow_weight(model, b);
     }
     model.bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;

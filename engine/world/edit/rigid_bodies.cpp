@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "systems/dynamics/implicit/free_large_step.h"
 #include "systems/dynamics/rigid/rigid_motion.h"
 
 namespace skerry {
@@ -56,10 +57,9 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
         second += mass[t] / 20 * (squares + sum * sum.transpose());
     }
     const Mat3 inertia = second.trace() * Mat3::Identity() - second;
-    const Eigen::SelfAdjointEigenSolver<Mat3> principal(inertia);
-    found.moments = principal.eigenvalues();
-    found.axes = principal.eigenvectors();
-    if (found.axes.determinant() < 0) found.axes.col(2) *= -1;
+    const PrincipalInertia principal(inertia);
+    found.moments = principal.moments;
+    found.axes = principal.axes;
     return found;
 }
 
@@ -98,11 +98,19 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// After what deforms in its frame was written by hand.
+/// After what deforms in its frame was written by hand. What is free and deforms by much turns as its shape does.
 void note_strain(Model& model, std::size_t body) {
+    RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
-    model.rigid_bodies.large[r] =
-        model.stiff_bodies[r].becomes_large(rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]));
+    const std::span<const Vec3> displacement = rows_of(model.implicit_nodes.displacement, model.bodies.implicit[body]);
+    const bool held = model.is_held(body), was_large = table.large[r] != 0;
+    const Vec3 momentum =
+        held ? Vec3(Vec3::Zero()) : Vec3(frame_of_mesh(table, r).transpose() * table.angular_momentum[r]);
+    const bool large = model.stiff_bodies[r].becomes_large(displacement, momentum);
+    table.large[r] = large;
+    if (!held && (large || was_large))
+        follow_shape(displacement, large, frame_of_mesh(table, r), model.stiff_bodies[r], table.moments[r],
+                     table.axes[r], table.rotation[r]);
 }
 
 void give_nodes_velocity(Model& model, std::size_t body) {
@@ -147,6 +155,14 @@ void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new) {
     const Mat3 from_mesh = frame_of_mesh(table, r);
     write_masses(mass_properties(model, as_new), r, table);
     table.rotation[r] = from_mesh * table.axes[r];
+    set_motion(table, r, velocity, turn);
+}
+
+void follow_weight(Model& model, std::size_t body) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    const Vec3 velocity = table.momentum[r] / table.mass[r], turn = spin(table, r);
+    note_strain(model, body);
     set_motion(table, r, velocity, turn);
 }
 
@@ -356,6 +372,32 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
     give_nodes_velocity(model, body);
 }
 
+namespace {
+
+/// As follow_node_velocities, where strain is large: with the angular momentum that they give the solid, nodes keep
+/// their velocities to rounding.
+void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocity) {
+    RigidBodyTable& table = model.rigid_bodies;
+    const std::size_t r = rigid_row(model, body);
+    StiffBody& stiff = model.stiff_bodies[r];
+    const Deformation deformation(model, body);
+    const Mat3 from_mesh = frame_of_mesh(table, r);
+    const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+    stiff.stand_in({deformation.displacement, stiff.nodes()});
+    std::vector<Vec3> by_place(stiff.size());
+    const auto place = [&](std::size_t n) { return static_cast<std::size_t>(stiff.place(n)); };
+    for (std::size_t n = 0; n < by_place.size(); ++n)
+        by_place[place(n)] = from_mesh.transpose() * (model.nodes.velocity[first + n] - velocity);
+    table.angular_momentum[r] = from_mesh * stiff.shape().angular_momentum(by_place);
+    const Vec3 turn = from_mesh.transpose() * spin(table, r);
+    for (std::size_t k = 0; k < by_place.size(); ++k) by_place[k] -= turn.cross(stiff.shape().position[k]);
+    stiff.take_momenta(by_place);
+    for (std::size_t n = 0; n < by_place.size(); ++n) deformation.velocity[n] = by_place[place(n)];
+    give_nodes_velocity(model, body);
+}
+
+}  // namespace
+
 void follow_node_velocities(Model& model, std::size_t body) {
     if (model.is_held(body)) {
         write_held_shape(model, body);
@@ -368,6 +410,13 @@ void follow_node_velocities(Model& model, std::size_t body) {
     set_motion(table, r, velocity, turn);
     const Deformation deformation(model, body);
     if (deformation.any()) {
+        note_strain(model, body);
+        if (table.large[r]) {
+            follow_large_velocities(model, body, velocity);
+            return;
+        }
+        set_motion(table, r, velocity, turn);  // as it turns at rest
+
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
         const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
         for (std::size_t n = 0; n < deformation.velocity.size(); ++n)

@@ -36,6 +36,9 @@ void find_holders(Model& model);
 /// or its own, and what deforms in it is what leaves nodes where they are, with the velocities that they have.
 void follow_attachments(Model& model, std::size_t body);
 
+/// After a free implicit body was weighed again: it turns as its shape does, as fast as it did.
+void follow_weight(Model& model, std::size_t body);
+
 /// Of the nodes of a body as points, about a centre.
 struct NodeMotion {
     Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // kg m/s, kg m^2/s

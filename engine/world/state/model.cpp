@@ -143,8 +143,17 @@ ElementList Model::elements_of_implicit(std::size_t body) const {
 void Model::stiffen(std::size_t body) {
     const Range of_body = bodies.nodes[body];
     StiffBody& stiff = stiff_bodies[static_cast<std::size_t>(bodies.rigid[body].begin)];
-    stiff = StiffBody(elements_of_implicit(body), materials.constants, rows_of(nodes.mass, of_body),
-                      rows_of(nodes.rest_position, of_body));
+    const BodyRecord& record = body_records[body];
+    const std::span<const Vec3> rest = rows_of(nodes.rest_position, of_body);
+    std::vector<Real> mass;
+    for (std::size_t t = 0; t < record.tetrahedra.size(); ++t) {
+        const Index material =
+            record.tetrahedron_material.empty() ? bodies.material[body] : record.tetrahedron_material[t];
+        mass.push_back(materials.constants[static_cast<std::size_t>(material)].density *
+                       six_volumes(record.tetrahedra[t], rest) / 6);
+    }
+    stiff = StiffBody(elements_of_implicit(body), materials.constants, rows_of(nodes.mass, of_body), rest,
+                      record.tetrahedra, mass);
     stiff.hold(rows_of(nodes.inverse_mass, of_body));
 }
 

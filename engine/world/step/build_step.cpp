@@ -84,8 +84,8 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h),
             outputs<RigidKicks>(m.rigid_bodies, n));
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
-            inputs<ImplicitLoads>(n, p.gravity, m.loaded), value(p.h), value(p.theta), make(m.stiff_bodies),
-            outputs<ImplicitKicks>(m.implicit_nodes, n));
+            inputs<ImplicitLoads>(n, p.gravity, m.loaded), inputs<ImplicitSpins>(m.rigid_bodies), value(p.h),
+            value(p.theta), make(m.stiff_bodies), outputs<ImplicitKicks>(m.implicit_nodes, n));
 }
 
 auto collision_inputs(const Model& m) {
@@ -158,8 +158,9 @@ void list_strains(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
-                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded), make(m.stiff_bodies),
-                        value(p.h), value(p.theta), outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
+                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded),
+                        inputs<ImplicitSpins>(m.rigid_bodies), make(m.stiff_bodies), value(p.h), value(p.theta),
+                        outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
                         make(w.scratch.strain_parts));
 }
 

@@ -45,8 +45,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
     drift_implicit_bodies(ImplicitBodies::bind({}, r, model.bodies, model.materials, i, n, a, model.any_asleep),
-                          seconds, i.displacement_next, i.velocity_next);
-    r.large_next = r.large;
+                          ImplicitSpins::bind({}, r), model.stiff_bodies, seconds, ImplicitStrains::bind({}, i, r, n));
     turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.loaded),
                       RigidHolds::bind({}, r, a), RigidImpulses::bind({}, r), ElasticMotion::bind({}, i, r), n.position,
                       seconds, {r.center_next, r.rotation_next, n.velocity});

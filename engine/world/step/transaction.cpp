@@ -327,6 +327,8 @@ void StepTransaction::begin_call(const Model& model, const Clock& clock) {
     velocity_ = model.nodes.velocity;
     center_ = model.rigid_bodies.center;
     rotation_ = model.rigid_bodies.rotation;
+    moments_ = model.rigid_bodies.moments;
+    axes_ = model.rigid_bodies.axes;
     displacement_ = model.implicit_nodes.displacement;
     if (model.clusters.empty()) return;
     modulus_ = model.elements.implicit_modulus;
@@ -339,6 +341,8 @@ void StepTransaction::roll_back_call(Model& model, Clock& clock) const {
     model.nodes.velocity = velocity_;
     model.rigid_bodies.center = center_;
     model.rigid_bodies.rotation = rotation_;
+    model.rigid_bodies.moments = moments_;
+    model.rigid_bodies.axes = axes_;
     model.implicit_nodes.displacement = displacement_;
     clock.time = time_;
     clock.offset = 0;

@@ -64,7 +64,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 ///     bodies.max_speed, bodies.frame_speed      check_state            a copy, of the start of the try
 ///     nodes.velocity_next of bodies at rest     solve_regions          zero, which it is as long as they rest
 ///     nodes.position, nodes.velocity, time,
-///     rigid_bodies.center and rotation          drift_to (leapfrog)    a copy, of the start of the call
+///     rigid_bodies.center, rotation, moments
+///     and axes                                  drift_to (leapfrog)    a copy, of the start of the call
 ///     elements.implicit_modulus,
 ///     clusters.inverse                          stiffen_clusters       nothing: they follow the shapes at the start of
 ///                                                                      the try, as they do at the end of a call; with
@@ -97,7 +98,8 @@ private:
     Real time_ = 0;                         // s
     Column<Vec3> position_, velocity_;      // m, m/s, of all nodes
     Column<Vec3> center_;                   // m, of rigid bodies
-    Column<Mat3> rotation_;                 // of rigid bodies
+    Column<Vec3> moments_;                  // kg m^2, of rigid bodies
+    Column<Mat3> rotation_, axes_;          // of rigid bodies
     Column<Vec3> displacement_;             // m, of implicit bodies
     Column<ElementLane> modulus_;           // Pa, elements.implicit_modulus
     Column<Real> inverse_;                  // 1/kg, clusters.inverse

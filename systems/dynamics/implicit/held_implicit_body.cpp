@@ -57,7 +57,7 @@ bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec
         at_end[k] =
             nodes.frame.carried(nodes.arm(n), displacement[n]) + h * (nodes.held(n) ? nodes.led(n) : velocity[k]);
     }
-    return stiff.becomes_large_in_places(at_end);
+    return stiff.becomes_large_in_places(at_end, Vec3::Zero());
 }
 
 /// Velocities of the step by Newton's method, by place, in the frame of its end. `outer_force`: N, of a node, there.
@@ -186,7 +186,7 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
     if (bodies.asleep(r)) return 0;
     // what deforms pulls at held nodes; that its forces turn by their arms as they are deformed turns the frame back
     const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0,
-               is_large = is_large_after(was_large, displacement_next, of, stiff);
+               is_large = is_large_after(was_large, displacement_next, Vec3::Zero(), of, stiff);
     const bool large = newton || was_large || is_large;
     out.large_next[r] = is_large;
     if (newton) {

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
+#include "systems/dynamics/implicit/free_large_step.h"
 #include "systems/dynamics/implicit/held_implicit_body.h"
 #include "systems/dynamics/implicit/of_body.h"
-#include "systems/dynamics/implicit/solve_large_step.h"
 
 namespace skerry {
 
@@ -29,36 +29,27 @@ void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, s
     for (std::size_t n = 0; n < of.count; ++n) {
         const std::size_t k = of.place(n);
         impulse[k] = of.stiff.mass(k) * velocity[n];
-        if (!force.empty()) impulse[k] -= within * force[k];
+        impulse[k] -= within * force[k];
         if (!loads.load.empty()) impulse[k] += within * (turn.transpose() * loads.load[of.first_node + n]);
     }
 }
 
 /// By the end of a step with these velocities (by place), where it is not now.
-bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, Real h, const OfBody& of,
-                   StiffBody& stiff) {
+bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, const Vec3& angular_momentum,
+                   Real h, const OfBody& of, StiffBody& stiff) {
     if (!stiff.elements().any_bends()) return false;
     std::vector<Vec3>& at_end = stiff.large_step.within;
     at_end.resize(of.count);
     for (std::size_t n = 0; n < of.count; ++n) at_end[of.place(n)] = displacement[n] + h * velocity[of.place(n)];
-    return stiff.becomes_large_in_places(at_end);
+    return stiff.becomes_large_in_places(at_end, angular_momentum);
 }
 
-/// Velocities of the step by Newton's method, by place.
-bool kick_large(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within, StiffBody& stiff,
-                std::span<Vec3> out) {
-    const OfBody of(bodies, stiff, r);
-    LargeStep& step = stiff.large_step;
-    step.resize(of.count);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
-    for (std::size_t n = 0; n < of.count; ++n) {
-        step.carried[of.place(n)] = displacement[n];
-        step.velocity[of.place(n)] = velocity[n];
-    }
-    add_up_impulses(bodies, loads, r, within, {}, of, step.impulse);
-    if (!solve_large_step(inertia_of(bodies, r, within), within, stiff)) return false;
-    std::ranges::copy(step.velocity, out.begin());
-    return true;
+/// Bodies turn in the shape that they have.
+void keep_spins(const ImplicitBodies& bodies, const ImplicitSpins& spins, const ImplicitStrains& out) {
+    std::ranges::copy(bodies.large, out.large_next.begin());
+    std::ranges::copy(spins.moments, out.moments_next.begin());
+    std::ranges::copy(bodies.axes, out.axes_next.begin());
+    std::ranges::copy(bodies.rotation, out.rotation_shaped.begin());
 }
 
 }  // namespace
@@ -67,13 +58,14 @@ Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within) {
     return 1 + within * bodies.damping(r);
 }
 
-bool is_large_after(bool was_large, std::span<const Vec3> displacement, const OfBody& of, StiffBody& stiff) {
-    if (was_large || stiff.is_tangent()) return !stiff.becomes_small(displacement);
+bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,
+                    StiffBody& stiff) {
+    if (was_large || stiff.is_tangent()) return !stiff.becomes_small(displacement, angular_momentum);
     if (!stiff.elements().any_bends()) return false;
     std::vector<Vec3>& at_end = stiff.large_step.within;
     at_end.resize(of.count);
     for (std::size_t n = 0; n < of.count; ++n) at_end[of.place(n)] = displacement[n];
-    return stiff.becomes_large_in_places(at_end);
+    return stiff.becomes_large_in_places(at_end, angular_momentum);
 }
 
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff) {
@@ -86,8 +78,9 @@ bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta
     return stiff.prepare(inertia_of(bodies, r, within), within * within);
 }
 
-bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
-                          Real theta, StiffBodies& stiff, const ImplicitKicks& out) {
+bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
+                          const ImplicitSpins& spins, Real h, Real theta, StiffBodies& stiff,
+                          const ImplicitKicks& out) {
     if (!bodies.any()) return false;
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const OfBody of(bodies, stiff[r], r);
@@ -111,9 +104,10 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
             add_up_impulses(bodies, loads, r, theta * h, force, of, impulse);
             sound = make_factor(bodies, r, h, theta, stiff[r]);
             if (sound) of.stiff.respond(impulse);
-            large = sound && becomes_large(displacement, impulse, h, of, stiff[r]);
+            large = sound &&
+                    becomes_large(displacement, impulse, bodies.turn(r).transpose() * spins.kicked(r), h, of, stiff[r]);
         }
-        if (large) sound = kick_large(bodies, loads, r, theta * h, stiff[r], impulse);
+        if (large) sound = kick_large_free_body(bodies, loads, spins, r, h, theta, stiff[r], impulse);
         if (!sound)  // the step is refused
             std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
         const Mat3 turn = bodies.turn(r);
@@ -170,11 +164,11 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
 }
 
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                                      StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
-                                      Column<Real>& damped) {
+                                      const ImplicitSpins& spins, StiffBodies& stiff, Real h, Real theta,
+                                      const ImplicitStrains& out, Column<Real>& damped) {
     if (!bodies.any()) return {};
     damped.assign(bodies.body.size(), 0);
-    std::ranges::copy(bodies.large, out.large_next.begin());
+    keep_spins(bodies, spins, out);
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         if (bodies.holds.hold(r)) {
             damped[r] = strain_held_body(bodies, r, h, theta, stiff[r], out);
@@ -194,15 +188,14 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
         }
         for (std::size_t n = 0; n < of.count; ++n) displacement_next[n] = displacement[n] + h * next[n];
         if (bodies.asleep(r)) return;
-        const bool was_large = bodies.large[r] != 0,
-                   is_large = is_large_after(was_large, displacement_next, of, stiff[r]),
-                   large = was_large || stiff[r].is_tangent() || is_large;
-        out.large_next[r] = is_large;
+        if (bodies.large[r] != 0 || stiff[r].is_tangent() ||
+            is_large_after(false, displacement_next, back * spins.after(r), of, stiff[r])) {
+            damped[r] = end_large_free_step(bodies, loads, spins, r, h, theta, stiff[r], out);
+            return;
+        }
         for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = next[n];
-        if (!large) of.stiff.elastic_forces(impulse, rate);
-        Real taken = large ? of.stiff.elastic_energy(displacement, was_large) -
-                                 of.stiff.elastic_energy(displacement_next, is_large)
-                           : Real(0);
+        of.stiff.elastic_forces(impulse, rate);
+        Real taken = 0;
         for (std::size_t n = 0; n < of.count; ++n) {
             const std::size_t k = of.place(n);
             const Vec3 &before = velocity[n], &during = next[n];
@@ -214,7 +207,7 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
                 taken += h * load.dot(during - (after - before) / 2);
             }
             taken -= of.stiff.mass(k) / 2 * (after - before).dot(after + before);
-            if (!large) taken -= h * during.dot(force[k] + h / 2 * rate[k]);
+            taken -= h * during.dot(force[k] + h / 2 * rate[k]);
             next[n] = after;
         }
         damped[r] = taken;
@@ -228,8 +221,11 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
     return found;
 }
 
-void drift_implicit_bodies(const ImplicitBodies& bodies, Real seconds, std::span<Vec3> displacement_next,
-                           std::span<Vec3> velocity_next) {
+void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, const StiffBodies& stiff,
+                           Real seconds, const ImplicitStrains& out) {
+    if (!bodies.any()) return;
+    keep_spins(bodies, spins, out);
+    const std::span<Vec3> displacement_next = out.displacement_next, velocity_next = out.velocity_next;
     for (std::size_t r = 0; r < bodies.body.size(); ++r) {
         const Range rows = bodies.rows(r);
         if (rows.size() > 0 && bodies.holds.hold(r)) {
@@ -240,6 +236,9 @@ void drift_implicit_bodies(const ImplicitBodies& bodies, Real seconds, std::span
             displacement_next[row] = bodies.displacement[row] + seconds * bodies.velocity[row];
             velocity_next[row] = bodies.velocity[row];
         }
+        if (bodies.large[r] != 0 && !bodies.asleep(r))
+            follow_shape(OfBody(bodies, stiff[r], r).rows(displacement_next), true, bodies.turn(r), stiff[r],
+                         out.moments_next[r], out.axes_next[r], out.rotation_shaped[r]);
     }
 }
 

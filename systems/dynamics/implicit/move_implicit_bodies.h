@@ -86,6 +86,23 @@ struct ImplicitLoads {
     }
 };
 
+/// How the frames of bodies that nothing holds turn: RigidBodyTable.
+struct ImplicitSpins {
+    std::span<const Vec3> moments, angular_momentum, moment_kick, contact_moment, push_spin;
+
+    static ImplicitSpins bind(const Binder& binder, const RigidBodyTable& rigid) {
+        return {.moments = binder.read(rigid.moments),
+                .angular_momentum = binder.read(rigid.angular_momentum),
+                .moment_kick = binder.read(rigid.moment_kick),
+                .contact_moment = binder.read(rigid.contact_moment),
+                .push_spin = binder.read(rigid.push_spin)};
+    }
+
+    /// kg m^2/s, in the world, without contacts and with them.
+    Vec3 kicked(std::size_t r) const { return angular_momentum[r] + moment_kick[r]; }
+    Vec3 after(std::size_t r) const { return angular_momentum[r] + (moment_kick[r] + contact_moment[r]); }
+};
+
 struct ImplicitKicks {
     std::span<Vec3> elastic_force, impulse, velocity_next, contact_impulse;  // ImplicitNodeTable
     std::span<Vec3> node_velocity_next;                                      // m/s, by node
@@ -104,8 +121,8 @@ struct ImplicitKicks {
 /// frame. Factors of this step's length are made where they are not there. Of a body that is held velocities are those
 /// in the world, and turned into the frame of its start; its held nodes have theirs already. Parallel over bodies.
 /// Returns false where there is none (skipped).
-bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads, Real h,
-                          Real theta, StiffBodies& stiff, const ImplicitKicks& out);
+bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
+                          const ImplicitSpins& spins, Real h, Real theta, StiffBodies& stiff, const ImplicitKicks& out);
 
 /// Lists the nodes that contacts touch, and what impulses on them do to each other. Returns false where no contact
 /// touches an implicit body (skipped).
@@ -116,9 +133,11 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
 struct ImplicitStrains {
     std::span<const Vec3> elastic_force, contact_impulse;                   // ImplicitNodeTable
     std::span<Vec3> impulse, force_rate, velocity_next, displacement_next;  // ImplicitNodeTable
-    std::span<Vec3> hold_moment;                                            // RigidBodyTable
-    std::span<std::uint8_t> large_next;                                     // RigidBodyTable
-    std::span<Vec3> force;                                                  // N, by node: of held ones
+    // RigidBodyTable:
+    std::span<Vec3> hold_moment, moments_next;
+    std::span<Mat3> axes_next, rotation_shaped;
+    std::span<std::uint8_t> large_next;
+    std::span<Vec3> force;  // N, by node: of held ones
 
     static ImplicitStrains bind(const Binder& binder, ImplicitNodeTable& implicit, RigidBodyTable& rigid,
                                 NodeTable& node) {
@@ -129,6 +148,9 @@ struct ImplicitStrains {
                 .velocity_next = binder.write(implicit.velocity_next),
                 .displacement_next = binder.write(implicit.displacement_next),
                 .hold_moment = binder.write(rigid.hold_moment),
+                .moments_next = binder.write(rigid.moments_next),
+                .axes_next = binder.write(rigid.axes_next),
+                .rotation_shaped = binder.write(rigid.rotation_shaped),
                 .large_next = binder.write(rigid.large_next),
                 .force = binder.write(node.force)};
     }
@@ -143,11 +165,11 @@ struct StrainFindings {
 /// The velocities and displacements at the end of the step, and what elasticity does to held nodes and frames, added to
 /// `force` and written to `hold_moment`. `damped` is memory, by row of RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                                      StiffBodies& stiff, Real h, Real theta, const ImplicitStrains& out,
-                                      Column<Real>& damped);
+                                      const ImplicitSpins& spins, StiffBodies& stiff, Real h, Real theta,
+                                      const ImplicitStrains& out, Column<Real>& damped);
 
-/// What deforms goes on for `seconds` with the velocity that it has.
-void drift_implicit_bodies(const ImplicitBodies& bodies, Real seconds, std::span<Vec3> displacement_next,
-                           std::span<Vec3> velocity_next);
+/// What deforms goes on for `seconds` with the velocity that it has. Writes what ElasticMotion reads.
+void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, const StiffBodies& stiff,
+                           Real seconds, const ImplicitStrains& out);
 
 }  // namespace skerry

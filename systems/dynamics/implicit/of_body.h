@@ -29,7 +29,9 @@ Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
 /// Makes that of a step of small strain the matrix of stiff.respond(). Returns false where there is none.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
-/// Whether strain is large after a step; `displacement`: m, at its end, by node.
-bool is_large_after(bool was_large, std::span<const Vec3> displacement, const OfBody& of, StiffBody& stiff);
+/// Whether strain is large after a step; `displacement`: m, at its end, by node. `angular_momentum`: kg m^2/s, of a
+/// free body, in the frame of its mesh.
+bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,
+                    StiffBody& stiff);
 
 }  // namespace skerry

@@ -1,5 +1,7 @@
 #include "systems/dynamics/implicit/solve_large_step.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +13,11 @@ namespace {
 class Objective {
 public:
     Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)
-        : inertia_(inertia), within_(within), stiff_(stiff), step_(step) {}
+        : inertia_(inertia),
+          within_(within),
+          stiff_(stiff),
+          step_(step),
+          spins_(!stiff.is_held() && !step.angular_momentum.isZero(0)) {}
 
     /// J, `along` directions further. Leaves places of the middle of that step.
     Real at(Real along) {
@@ -21,13 +27,18 @@ public:
             step_.within[k] = step_.carried[k] + within_ * velocity;
             if (!stiff_.holds(k)) sum += velocity.dot(inertia_ / 2 * stiff_.mass(k) * velocity - step_.impulse[k]);
         }
-        return sum + stiff_.elements().energy(step_.within);
+        return sum + stiff_.elements().energy(step_.within) + of_spin();
     }
 
     /// By what is in `within`: force, gradient, and the next direction by the factor there is. Returns the decrement
     /// squared, J.
     Real turn() {
         stiff_.elements().forces(step_.within, step_.force);
+        if (spins_) {
+            const Vec3 spin = step_.shape.inertia().ldlt().solve(step_.angular_momentum);
+            for (std::size_t k = 0; k < step_.velocity.size(); ++k)
+                step_.force[k] += spin.cross(spin.cross(step_.shape.arm[k]));
+        }
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
             step_.gradient[k] =
                 inertia_ * stiff_.mass(k) * step_.velocity[k] + within_ * step_.force[k] - step_.impulse[k];
@@ -49,13 +60,21 @@ public:
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
             if (!stiff_.holds(k)) sum += stiff_.mass(k) * step_.velocity[k].squaredNorm() / 2;
-        return sum + stiff_.elements().energy(step_.within);
+        return sum + stiff_.elements().energy(step_.within) + of_spin();
     }
 
 private:
+    /// J, of how the shape within the step turns with its angular momentum: what drives nodes out.
+    Real of_spin() const {
+        if (!spins_) return 0;
+        stiff_.find_shape(step_.within, step_.shape);
+        return step_.angular_momentum.dot(step_.shape.inertia().ldlt().solve(step_.angular_momentum)) / 2;
+    }
+
     Real inertia_, within_;
     const StiffBody& stiff_;
     LargeStep& step_;
+    bool spins_;
 };
 
 bool find_velocity(Real inertia, Real within, StiffBody& stiff) {

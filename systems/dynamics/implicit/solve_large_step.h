@@ -8,7 +8,8 @@ namespace skerry {
 
 /// Finds the velocity of stiff.large_step, from what it is, with
 ///     inertia M velocity + within dU/du(carried + within velocity) = impulse
-/// of all nodes that are not held, and, where none is, of what is no rigid motion. `within`: s, theta h. The last
+/// of all nodes that are not held, and, where none is, of what has no momenta in stiff.shape(), with the energy of its
+/// spin, L I^-1 L / 2, in U. `within`: s, theta h. The last
 /// tangent stays the matrix of stiff.respond(). Returns false where it is not found, or something is not finite.
 bool solve_large_step(Real inertia, Real within, StiffBody& stiff);
 

@@ -3,7 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "systems/geometry/rotation.h"
 
 namespace skerry {
 
@@ -81,7 +84,8 @@ Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec
 }
 
 StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConstants> constants,
-                     std::span<const Real> mass, std::span<const Vec3> rest_position) {
+                     std::span<const Real> mass, std::span<const Vec3> rest_position,
+                     std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> tetrahedron_mass) {
     const std::vector<std::vector<Index>> neighbours = neighbours_of(elements, mass.size());
     place_ = elimination_places(neighbours);
     node_ = inverse_of(place_);
@@ -116,6 +120,19 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
         inertia += mass[n] * (arm_[k].squaredNorm() * Mat3::Identity() - arm_[k] * arm_[k].transpose());
     }
     inverse_inertia_ = inertia.inverse();
+    solid_ = SolidMasses(tetrahedra, tetrahedron_mass, place_);
+    BodyShape rest{arm_, {}};
+    solid_.find_arms(rest);
+    inverse_solid_inertia_ = rest.inertia().inverse();
+    // a bar of the length l that spins has rho (omega l)^2 / 24 a volume, and in its middle three times that over E
+    Real volume = 0, least = std::numeric_limits<Real>::infinity();
+    for (const std::array<Index, 4>& corners : tetrahedra) volume += six_volumes(corners, rest_position) / 6;
+    for (const Index m : elements.material) {
+        const Real lambda = constants[static_cast<std::size_t>(m)].lame_lambda,
+                   shear = constants[static_cast<std::size_t>(m)].shear_modulus;
+        least = std::min(least, shear * (3 * lambda + 2 * shear) / (lambda + shear));
+    }
+    stretching_spin_ = small_strain / 3 * volume * least;
     matrix_ = stiffness_;
     factor_ = BlockCholesky(stiffness_);
     elements_ = BodyElements(elements, constants, place_);
@@ -146,35 +163,46 @@ void StiffBody::forget_columns() {
     touched_.clear();
 }
 
-bool StiffBody::is_beyond(const Displacements& displacement) const {
-    if (!elements_.any_bends() || elements_.largest_strain(displacement) <= small_strain) return false;
+bool StiffBody::is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part) const {
     const BodyElements::Misfit misfit = elements_.misfit(displacement);
-    return !(misfit.off <= energy_share * misfit.linear);
+    if (!(misfit.off <= part * energy_share * misfit.linear)) return true;
+    if (!(energy_of_spin(angular_momentum) > part * energy_share * misfit.linear)) return false;
+    BodyShape shape;
+    find_shape(displacement, shape);
+    const Vec3 spin = inverse_solid_inertia_ * angular_momentum;
+    return (shape.inertia().ldlt().solve(angular_momentum) - spin).norm() > part * small_strain * spin.norm();
 }
 
-bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement) {
+bool StiffBody::is_beyond(const Displacements& displacement, const Vec3& angular_momentum) const {
     if (!elements_.any_bends()) return false;
+    return energy_of_spin(angular_momentum) > stretching_spin_ ||
+           (!(elements_.largest_strain(displacement) <= small_strain) && is_off(displacement, angular_momentum, 1));
+}
+
+bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
+    if (!elements_.any_bends()) return false;
+    if (energy_of_spin(angular_momentum) > stretching_spin_) return true;
     if (!looked_at_.empty()) {
         Real way = 0;  // m^2
         for (std::size_t k = 0; k < displacement.size(); ++k)
             way = std::max(way, (displacement[k] - looked_at_[k]).squaredNorm());
-        if (way == 0) return large_there_;
+        if (way == 0 && angular_momentum == looked_with_) return large_there_;
         constexpr Real surely = 1 - 1e-9;  // rounding
         if (strain_there_ + elements_.strain_by_displacement() * std::sqrt(way) < surely * small_strain) return false;
     }
     looked_at_.assign(displacement.begin(), displacement.end());
+    looked_with_ = angular_momentum;
     strain_there_ = elements_.largest_strain(displacement);
-    large_there_ = is_beyond(displacement);
+    large_there_ = is_beyond(displacement, angular_momentum);
     if (!std::isfinite(strain_there_)) looked_at_.clear();
     return large_there_;
 }
 
-bool StiffBody::becomes_small(std::span<const Vec3> displacement) const {
-    constexpr Real calmer = 0.25, still = 0.1;  // of the share; of the strain, where energies are mostly rounding
+bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) const {
+    constexpr Real calmer = 0.25, still = 0.1;  // of the shares; of the strain, where energies are mostly rounding
+    if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
     const Displacements at(displacement, node_);
-    if (elements_.largest_strain(at) <= still * small_strain) return true;
-    const BodyElements::Misfit misfit = elements_.misfit(at);
-    return misfit.off <= calmer * energy_share * misfit.linear;
+    return elements_.largest_strain(at) <= still * small_strain || !is_off(at, angular_momentum, calmer);
 }
 
 Real StiffBody::elastic_energy(std::span<const Vec3> displacement, bool large) const {
@@ -201,6 +229,49 @@ void StiffBody::take_rigid_motion(std::span<Vec3> velocity) const {
     }
     const Vec3 mean = momentum / total_mass_, spin = inverse_inertia_ * moment;
     for (std::size_t k = 0; k < size(); ++k) velocity[static_cast<std::size_t>(node_[k])] -= mean + spin.cross(arm_[k]);
+}
+
+void StiffBody::find_shape(const Displacements& displacement, BodyShape& shape) const {
+    shape.position.resize(size());
+    for (std::size_t k = 0; k < size(); ++k) shape.position[k] = arm_[k] + displacement[static_cast<Index>(k)];
+    solid_.find_arms(shape);
+}
+
+void StiffBody::stand_in(const Displacements& displacement) {
+    find_shape(displacement, shape_);
+    Mat3 inertia = Mat3::Zero();
+    for (std::size_t k = 0; k < size(); ++k) {
+        const Vec3& arm = shape_.arm[k];
+        inertia += (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()) / mass_[k];
+    }
+    inverse_arm_inertia_ = inertia.inverse();
+}
+
+Mat3 StiffBody::turn_to_own_frame(std::span<Vec3> displacement) const {
+    // sum m X x y = 0, by Newton's method: a step turns by little against the frame
+    constexpr int most = 20;
+    constexpr Real rounding = 1e-15;
+    Mat3 turn = Mat3::Identity();
+    for (int k = 0; k < most; ++k) {
+        Vec3 moment = Vec3::Zero();
+        Mat3 second = Mat3::Zero();
+        for (std::size_t p = 0; p < size(); ++p) {
+            const Vec3 place = arm_[p] + displacement[static_cast<std::size_t>(node_[p])];
+            moment += mass_[p] * arm_[p].cross(place);
+            second += mass_[p] * place * arm_[p].transpose();
+        }
+        const Mat3 slope = second.trace() * Mat3::Identity() - (second + second.transpose()) / 2;
+        const Vec3 angle = slope.ldlt().solve(moment);
+        if (!(angle.norm() > rounding)) break;
+        const Mat3 back = rotation_matrix(-angle);
+        for (std::size_t p = 0; p < size(); ++p) {
+            Vec3& of_node = displacement[static_cast<std::size_t>(node_[p])];
+            of_node = back * (arm_[p] + of_node) - arm_[p];
+        }
+        turn = turn * back.transpose();
+        if (!(angle.norm() > 1e-8)) break;
+    }
+    return turn;
 }
 
 bool StiffBody::prepare(Real inertia, Real stiffness) {
@@ -236,13 +307,13 @@ void StiffBody::find_rigid_answers() {
     turns_.resize(size());
     for (std::size_t k = 0; k < size(); ++k) {
         shifts_[k] = mass_[k] * Mat3::Identity();
-        turns_[k] = -mass_[k] * crossing(arm_[k]);
+        turns_[k] = -crossing(shape_.arm[k]);
     }
     factor_.solve(std::span(shifts_));
     factor_.solve(std::span(turns_));
     Eigen::Matrix<Real, 6, 6> momenta = Eigen::Matrix<Real, 6, 6>::Zero();
     for (std::size_t k = 0; k < size(); ++k) {
-        const Mat3 moment = mass_[k] * crossing(arm_[k]);
+        const Mat3 moment = crossing(shape_.arm[k]);
         momenta.topLeftCorner<3, 3>() += mass_[k] * shifts_[k];
         momenta.topRightCorner<3, 3>() += mass_[k] * turns_[k];
         momenta.bottomLeftCorner<3, 3>() += moment * shifts_[k];
@@ -256,12 +327,23 @@ void StiffBody::take_rigid_answer(std::span<X> velocity) const {
     X momentum = X::Zero(), moment = X::Zero();
     for (std::size_t k = 0; k < velocity.size(); ++k) {
         momentum += mass_[k] * velocity[k];
-        moment += mass_[k] * (crossing(arm_[k]) * velocity[k]);
+        moment += crossing(shape_.arm[k]) * velocity[k];
     }
     const X shift = rigid_inverse_.topLeftCorner<3, 3>() * momentum + rigid_inverse_.topRightCorner<3, 3>() * moment,
             turn =
                 rigid_inverse_.bottomLeftCorner<3, 3>() * momentum + rigid_inverse_.bottomRightCorner<3, 3>() * moment;
     for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] -= shifts_[k] * shift + turns_[k] * turn;
+}
+
+template <class X>
+void StiffBody::take_momenta_of(std::span<X> velocity) const {
+    X momentum = X::Zero(), moment = X::Zero();
+    for (std::size_t k = 0; k < velocity.size(); ++k) {
+        momentum += mass_[k] * velocity[k];
+        moment += crossing(shape_.arm[k]) * velocity[k];
+    }
+    const X mean = momentum / total_mass_, spin = inverse_arm_inertia_ * moment;
+    for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] -= mean - crossing(shape_.arm[k]) * spin / mass_[k];
 }
 
 template <class X>
@@ -286,10 +368,11 @@ void StiffBody::respond_to(std::span<X> impulse) const {
     if (tangent_) {
         factor_.solve(impulse);
         take_rigid_answer(impulse);
-    } else {
-        take_rigid_part(impulse);
-        factor_.solve(impulse);
+        take_momenta_of(impulse);  // rounding alone
+        return;
     }
+    take_rigid_part(impulse);
+    factor_.solve(impulse);
     // rounding alone, but of stiff bodies, whose rigid response is far above the elastic one
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] *= mass_[k];
     take_rigid_part(impulse);

@@ -2,6 +2,7 @@
 // impulses do to them in a step (docs/methods/implicit_bodies.md 2, 3).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "components/types.h"
 #include "systems/dynamics/implicit/block_cholesky.h"
 #include "systems/dynamics/implicit/body_elements.h"
+#include "systems/dynamics/implicit/solid_masses.h"
 #include "systems/dynamics/kinds/element_list.h"
 
 namespace skerry {
@@ -37,13 +39,19 @@ struct LargeStep {
     std::vector<Vec3> impulse;   // N s, of momentum, loads and weight
     std::vector<Vec3> velocity;  // m/s, of the step's displacement, without contacts
     std::vector<Vec3> force;     // N, dU/du, within the step
+    std::vector<Vec3> before;    // m/s, at its start, as elasticity finds them
     std::vector<Vec3> gradient, direction, within;
+    Vec3 angular_momentum =
+        Vec3::Zero();  // kg m^2/s, of the frame in which a free body deforms, in that of the mesh; zero of a held one
+    BodyShape shape;   // within the step, where there is such a momentum
     NewtonCounts counts;
     bool failed = false;  // no velocity was found
 
     void resize(std::size_t count) {
-        for (std::vector<Vec3>* column : {&carried, &impulse, &velocity, &force, &gradient, &direction, &within})
+        for (std::vector<Vec3>* column :
+             {&carried, &impulse, &velocity, &force, &before, &gradient, &direction, &within})
             column->resize(count);
+        angular_momentum.setZero();
     }
 };
 
@@ -53,7 +61,8 @@ public:
     StiffBody() = default;
     /// `constants`: by row of MaterialTable. `mass` (kg) and `rest_position` (m): by node of the body.
     StiffBody(const ElementList& elements, std::span<const MaterialConstants> constants, std::span<const Real> mass,
-              std::span<const Vec3> rest_position);
+              std::span<const Vec3> rest_position, std::span<const std::array<Index, 4>> tetrahedra,
+              std::span<const Real> tetrahedron_mass);
 
     /// From now on nodes whose `inverse_mass` (by node of the body) is zero are held: impulses on them do nothing, and
     /// others move against them. Where none is the body is free. A factor that is there is kept where nothing changes.
@@ -63,25 +72,43 @@ public:
     bool empty() const { return place_.empty(); }
     std::size_t size() const { return place_.size(); }
     Index place(std::size_t node) const { return place_[node]; }
+    /// By place.
+    std::span<const Index> nodes() const { return node_; }
     Real mass(std::size_t place) const { return mass_[place]; }
 
     /// out = K u, N.
     void elastic_forces(std::span<const Vec3> displacement, std::span<Vec3> out) const {
         stiffness_.multiply(displacement, out);
     }
-    /// Whether linear elasticity is no longer good enough: somewhere |F - 1| is above small_strain, and the energies of
-    /// elements are off those of their laws by more than energy_share in all. `displacement`: by node of the body.
-    bool becomes_large(std::span<const Vec3> displacement) const { return is_beyond({displacement, node_}); }
+    /// Whether linear elasticity, or turning as at rest, is no longer good enough: somewhere |F - 1| is above
+    /// small_strain, and the energies of elements are off those of their laws by more than energy_share in all, or the
+    /// body spins, with more than that share of energy, by small_strain faster than its shape does; or its spin would
+    /// stretch a bar by small_strain. `displacement`: by node of the body. `angular_momentum`: kg m^2/s, in the frame
+    /// of the mesh; none of what is held.
+    bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) const {
+        return is_beyond({displacement, node_}, angular_momentum);
+    }
     /// The same of displacements by place. Looks at elements only where nodes have moved so far since it last did that
     /// it could be.
-    bool becomes_large_in_places(std::span<const Vec3> displacement);
-    /// Whether linear elasticity is good enough again: by a quarter of that share, or small strain.
-    bool becomes_small(std::span<const Vec3> displacement) const;
+    bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
+    /// Whether both are good enough again: by a quarter of these shares, or small strain.
+    bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) const;
     static constexpr Real small_strain = 0.02, energy_share = 0.01;
     /// J, u K u / 2, or where strain is `large` by the laws of the elements; `displacement`: by node of the body.
     Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
     /// Takes the motion as a whole out of velocities (m/s), by node of the body.
     void take_rigid_motion(std::span<Vec3> velocity) const;
+    /// Where nodes are with these displacements, and their arms.
+    void find_shape(const Displacements& displacement, BodyShape& shape) const;
+    /// From now on what moves the body as a whole is, in answers by tangents, that in this shape.
+    void stand_in(const Displacements& displacement);
+    /// Takes momentum and angular momentum in that shape out of velocities (m/s), by place.
+    void take_momenta(std::span<Vec3> velocity) const { take_momenta_of(velocity); }
+    const BodyShape& shape() const { return shape_; }
+    /// The frame in which these displacements (by node) have no rigid part (1), in that of the mesh: turns them into
+    /// it.
+    Mat3 turn_to_own_frame(std::span<Vec3> displacement) const;
+
     /// Makes A = inertia M + stiffness K the matrix of respond(). A factor that is there is kept. Returns false where
     /// A is not positive definite. Of nodes that are held it has the diagonal alone.
     bool prepare(Real inertia, Real stiffness);
@@ -122,11 +149,19 @@ private:
     void find_responses();
     void forget_factor();
     void forget_columns();
-    bool is_beyond(const Displacements& displacement) const;
+    /// But for the look at strain; `part`: of the shares.
+    bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part) const;
+    /// J, as at rest.
+    Real energy_of_spin(const Vec3& angular_momentum) const {
+        return angular_momentum.dot(inverse_solid_inertia_ * angular_momentum) / 2;
+    }
+    bool is_beyond(const Displacements& displacement, const Vec3& angular_momentum) const;
     /// What keeps answers by a tangent free of rigid motion, which it does not leave alone.
     void find_rigid_answers();
     template <class X>
     void take_rigid_answer(std::span<X> velocity) const;
+    template <class X>
+    void take_momenta_of(std::span<X> velocity) const;
 
     std::vector<Index> place_;        // by node
     std::vector<Index> node_;         // by place
@@ -134,7 +169,12 @@ private:
     std::vector<Vec3> arm_;           // m, from the centre of mass, by place
     std::vector<std::uint8_t> held_;  // by place; empty: none is
     Real total_mass_ = 0;
-    Mat3 inverse_inertia_ = Mat3::Zero();  // 1/(kg m^2)
+    Mat3 inverse_inertia_ = Mat3::Zero();        // 1/(kg m^2), of the nodes
+    Mat3 inverse_solid_inertia_ = Mat3::Zero();  // 1/(kg m^2), at rest
+    Real stretching_spin_ = 0;                   // J, of a spin that would stretch a bar by small_strain
+    SolidMasses solid_;
+    BodyShape shape_;                          // of stand_in()
+    Mat3 inverse_arm_inertia_ = Mat3::Zero();  // 1/(kg m^2), of arm_k arm_k / m_k
     BlockRows stiffness_, matrix_;
     Real inertia_factor_ = 0, stiffness_factor_ = 0;  // of A
     BlockCholesky factor_;
@@ -143,7 +183,8 @@ private:
     std::vector<Mat3> shifts_, turns_;         // by place: A^-1 of the inertia of unit velocities and spins
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;  // of the momenta of those
     // of becomes_large_in_places(); empty: it has not looked
-    std::vector<Vec3> looked_at_;  // m, by place
+    std::vector<Vec3> looked_at_;      // m, by place
+    Vec3 looked_with_ = Vec3::Zero();  // kg m^2/s
     Real strain_there_ = 0;
     bool large_there_ = false;
     // by node: which slot of `columns_` has its column, or no_index

@@ -4,7 +4,6 @@
 
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/rigid/rigid_motion.h"
-#include "systems/geometry/rotation.h"
 
 namespace skerry {
 
@@ -22,8 +21,8 @@ struct RigidPlace {
     Vec3 center, rest_center;
     Mat3 from_mesh;
 
-    RigidPlace(const RigidBodies& bodies, std::size_t r, const Vec3& at, const Mat3& rotation)
-        : center(at), rest_center(bodies.rest_center[r]), from_mesh(rotation * bodies.axes[r].transpose()) {}
+    RigidPlace(const RigidBodies& bodies, std::size_t r, const Vec3& at, const Mat3& rotation, const Mat3& axes)
+        : center(at), rest_center(bodies.rest_center[r]), from_mesh(rotation * axes.transpose()) {}
     Vec3 of(const Vec3& rest_position) const { return center + from_mesh * (rest_position - rest_center); }
 };
 
@@ -50,6 +49,9 @@ struct ShapeNext {
           first_row(of.implicit(r).size() > 0 ? of.implicit(r).begin : no_index),
           first_node(static_cast<std::size_t>(of.nodes(r).begin)) {}
 
+    const Vec3& moments(std::size_t r) const { return deforms() ? elastic.moments[r] : bodies.moments[r]; }
+    const Mat3& axes(std::size_t r) const { return deforms() ? elastic.axes[r] : bodies.axes[r]; }
+    const Mat3& rotation(std::size_t r) const { return deforms() ? elastic.rotation[r] : bodies.rotation[r]; }
     bool deforms() const { return first_row != no_index; }
     std::size_t row(std::size_t n) const { return static_cast<std::size_t>(first_row) + (n - first_node); }
     Vec3 at(std::size_t n) const {
@@ -114,6 +116,7 @@ bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         out.center_next[r] = bodies.center[r];
         out.rotation_next[r] = bodies.rotation[r];
         if (bodies.asleep(r) && !is_moved(impulses, r)) return;
+        const ShapeNext shape(bodies, elastic, r);
         if (holds.hold(r)) {
             const HeldPose end(holds, r, h, bodies.rest_center[r], bodies.axes[r]);
             out.center_next[r] = end.center;
@@ -121,12 +124,10 @@ bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         } else {
             out.center_next[r] +=
                 h * (momentum_after(bodies, impulses, r) / bodies.mass[r] + impulses.push_velocity[r]);
-            const Mat3 turned =
-                turned_freely(bodies.rotation[r], bodies.moments[r], angular_momentum_after(bodies, impulses, r), h);
-            out.rotation_next[r] = without_strain(rotation_matrix(h * impulses.push_spin[r]) * turned);
+            out.rotation_next[r] = turn_of_step(shape.rotation(r), shape.moments(r),
+                                                angular_momentum_after(bodies, impulses, r), impulses.push_spin[r], h);
         }
-        const RigidPlace place(bodies, r, out.center_next[r], out.rotation_next[r]);
-        const ShapeNext shape(bodies, elastic, r);
+        const RigidPlace place(bodies, r, out.center_next[r], out.rotation_next[r], shape.axes(r));
         for_each_node(bodies.step_nodes(r),
                       [&](std::size_t n) { out.velocity_next[n] = (place.of(shape.at(n)) - position[n]) / h; });
     });
@@ -141,16 +142,20 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
         if (bodies.asleep(r)) return;
         const Vec3 momentum = momentum_after(bodies, impulses, r);
         const Vec3 angular_momentum = angular_momentum_after(bodies, impulses, r);
-        const RigidPlace place(bodies, r, center_next[r], rotation_next[r]);
+        const ShapeNext shape(bodies, elastic, r);
+        const RigidPlace place(bodies, r, center_next[r], rotation_next[r], shape.axes(r));
         const RigidField field{center_next[r], momentum / bodies.mass[r],
-                               spin_of(rotation_next[r], bodies.moments[r], angular_momentum)};
+                               spin_of(rotation_next[r], shape.moments(r), angular_momentum)};
         out.center[r] = center_next[r];
         out.rotation[r] = rotation_next[r];
         const bool led = bodies.is_led_frame(r);
         out.momentum[r] = led ? Vec3(Vec3::Zero()) : momentum;
         out.angular_momentum[r] = led ? Vec3(Vec3::Zero()) : angular_momentum;
-        const ShapeNext shape(bodies, elastic, r);
-        if (shape.deforms()) out.large[r] = elastic.large[r];
+        if (shape.deforms()) {
+            out.large[r] = elastic.large[r];
+            out.moments[r] = elastic.moments[r];
+            out.axes[r] = elastic.axes[r];
+        }
         for_each_node(draws_late ? bodies.step_nodes(r) : bodies.nodes(r), [&](std::size_t n) {
             out.position[n] = place.of(shape.at(n));
             if (!shape.deforms()) {
@@ -175,7 +180,7 @@ void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resti
     for_each_body(executor, bodies, [&](std::size_t r) {
         const Range drawn{bodies.step_nodes(r).end, bodies.nodes(r).end};
         if (drawn.size() == 0 || (bodies.asleep(r) && !resting)) return;
-        const RigidPlace place(bodies, r, bodies.center[r], bodies.rotation[r]);
+        const RigidPlace place(bodies, r, bodies.center[r], bodies.rotation[r], bodies.axes[r]);
         const RigidField field{bodies.center[r], bodies.momentum[r] / bodies.mass[r],
                                spin_of(bodies.rotation[r], bodies.moments[r], bodies.angular_momentum[r])};
         for_each_node(drawn, [&](std::size_t n) {

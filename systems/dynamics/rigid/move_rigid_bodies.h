@@ -73,12 +73,18 @@ struct RigidBodies {
 /// How implicit bodies are deformed at the end of the step, in the frames of their meshes: by row of ImplicitNodeTable.
 struct ElasticMotion {
     std::span<const Vec3> displacement, velocity;  // m, m/s
-    std::span<const std::uint8_t> large;           // RigidBodyTable
+    // RigidBodyTable, asked of what deforms alone:
+    std::span<const std::uint8_t> large;
+    std::span<const Vec3> moments;
+    std::span<const Mat3> axes, rotation;  // before it is turned
 
     static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),
                 .velocity = binder.read(implicit.velocity_next),
-                .large = binder.read(rigid.large_next)};
+                .large = binder.read(rigid.large_next),
+                .moments = binder.read(rigid.moments_next),
+                .axes = binder.read(rigid.axes_next),
+                .rotation = binder.read(rigid.rotation_shaped)};
     }
 };
 
@@ -151,8 +157,8 @@ bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
                        Real h, const RigidTurns& out);
 
 struct RigidMoves {
-    std::span<Vec3> center, momentum, angular_momentum;
-    std::span<Mat3> rotation;
+    std::span<Vec3> center, momentum, angular_momentum, moments;
+    std::span<Mat3> rotation, axes;
     std::span<Vec3> position, velocity;                   // by node
     std::span<Vec3> displacement, displacement_velocity;  // ImplicitNodeTable
     std::span<std::uint8_t> large;
@@ -161,7 +167,9 @@ struct RigidMoves {
         return {.center = binder.write(rigid.center),
                 .momentum = binder.write(rigid.momentum),
                 .angular_momentum = binder.write(rigid.angular_momentum),
+                .moments = binder.write(rigid.moments),
                 .rotation = binder.write(rigid.rotation),
+                .axes = binder.write(rigid.axes),
                 .position = binder.write(node.position),
                 .velocity = binder.write(node.velocity),
                 .displacement = binder.write(implicit.displacement),

@@ -1,6 +1,22 @@
 #include "systems/dynamics/rigid/rigid_motion.h"
 
+#include <Eigen/Eigenvalues>
+
+#include "systems/geometry/rotation.h"
+
 namespace skerry {
+
+PrincipalInertia::PrincipalInertia(const Mat3& inertia) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(inertia);
+    moments = principal.eigenvalues();
+    axes = principal.eigenvectors();
+    if (axes.determinant() < 0) axes.col(2) *= -1;
+}
+
+Mat3 turn_of_step(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, const Vec3& push_spin,
+                  Real h) {
+    return without_strain(rotation_matrix(h * push_spin) * turned_freely(rotation, moments, angular_momentum, h));
+}
 
 Mat3 without_strain(const Mat3& rotation) {
     // one step of Newton's: what is wrong by rounding is wrong by its square then

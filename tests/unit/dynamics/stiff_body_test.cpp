@@ -20,7 +20,8 @@ MaterialConstants stiff_rubber() {
 }
 
 StiffBody stiff_body_of(const ElasticBody& body) {
-    return StiffBody(body.list, body.constants.span(), body.mass, body.position);
+    return StiffBody(body.list, body.constants.span(), body.mass, body.position, body.mesh.tetrahedra,
+                     body.tetrahedron_mass);
 }
 
 std::vector<Vec3> random_vectors(std::size_t count, Real size, unsigned seed) {

@@ -1,0 +1,98 @@
+#include "systems/dynamics/implicit/free_large_step.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "systems/dynamics/implicit/solve_large_step.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
+                          std::size_t r, Real h, Real theta, StiffBody& stiff, std::span<Vec3> out) {
+    const OfBody of(bodies, stiff, r);
+    LargeStep& step = stiff.large_step;
+    step.resize(of.count);
+    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity);
+    for (std::size_t n = 0; n < of.count; ++n) step.carried[of.place(n)] = displacement[n];
+    stiff.stand_in(step.carried);
+    const Real within = theta * h;
+    const Mat3 to_mesh = bodies.turn(r).transpose();
+    step.angular_momentum = to_mesh * spins.kicked(r);
+    // Coriolis forces turn velocities back at twice the rate of the frame: as a turn they give no energy
+    const Mat3 against = rotation_matrix(-2 * h * stiff.shape().inertia().ldlt().solve(step.angular_momentum));
+    for (std::size_t n = 0; n < of.count; ++n) step.before[of.place(n)] = against * velocity[n];
+    stiff.take_momenta(step.before);
+    step.velocity = step.before;
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        step.impulse[k] = stiff.mass(k) * step.before[k];
+        if (!loads.load.empty()) step.impulse[k] += within * (to_mesh * loads.load[of.first_node + n]);
+    }
+    if (!solve_large_step(inertia_of(bodies, r, within), within, stiff)) return false;
+    std::ranges::copy(step.velocity, out.begin());
+    return true;
+}
+
+Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
+                         std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out) {
+    const OfBody of(bodies, stiff, r);
+    const std::span<Vec3> next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
+    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
+                                contact = of.rows(out.contact_impulse);
+    const Mat3 from_mesh = bodies.turn(r), to_mesh = from_mesh.transpose();
+    LargeStep& step = stiff.large_step;
+    const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0;
+    Real taken = 0;
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
+        next[n] = before + (during - before) / theta;
+        // what contacts and loads are said to have done, less what energy has grown by
+        taken += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
+        if (!loads.load.empty())
+            taken += h * (to_mesh * loads.load[of.first_node + n]).dot(during - (next[n] - velocity[n]) / 2);
+        taken += stiff.mass(k) / 2 * velocity[n].squaredNorm();
+    }
+    const Mat3 turned = stiff.turn_to_own_frame(displacement_next);
+    const Vec3 momentum = spins.after(r);
+    const bool is_large =
+        is_large_after(was_large, displacement_next, turned.transpose() * (to_mesh * momentum), of, stiff);
+    out.large_next[r] = is_large;
+    follow_shape(displacement_next, is_large, from_mesh * turned, stiff, out.moments_next[r], out.axes_next[r],
+                 out.rotation_shaped[r]);
+    // velocities without momenta in the shape that they leave behind
+    for (Vec3& of_node : next) of_node = turned.transpose() * of_node;
+    if (is_large) {
+        step.before.resize(of.count);
+        for (std::size_t n = 0; n < of.count; ++n) step.before[of.place(n)] = next[n];
+        stiff.stand_in({displacement_next, stiff.nodes()});
+        stiff.take_momenta(step.before);
+        for (std::size_t n = 0; n < of.count; ++n) next[n] = step.before[of.place(n)];
+    } else {
+        stiff.take_rigid_motion(next);
+    }
+    for (std::size_t n = 0; n < of.count; ++n) taken -= stiff.mass(of.place(n)) / 2 * next[n].squaredNorm();
+    // the spin, by the moments of its new shape, and by what turning it is off by (docs/methods/rigid_bodies.md 2)
+    const Mat3 turned_for_step =
+        turn_of_step(out.rotation_shaped[r], out.moments_next[r], momentum, spins.push_spin[r], h);
+    const Vec3 spin_before = spin_of(bodies.rotation[r], spins.moments[r], momentum),
+               spin_after = spin_of(turned_for_step, out.moments_next[r], momentum);
+    taken += momentum.dot(spin_before - spin_after) / 2;
+    return taken + stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
+}
+
+void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, const StiffBody& stiff,
+                  Vec3& moments, Mat3& axes, Mat3& rotation) {
+    const std::vector<Vec3> rest(large ? 0 : stiff.size(), Vec3::Zero());
+    BodyShape shape;
+    stiff.find_shape(large ? Displacements(displacement, stiff.nodes()) : Displacements(rest), shape);
+    const PrincipalInertia principal(shape.inertia());
+    moments = principal.moments;
+    axes = principal.axes;
+    rotation = from_mesh * axes;
+}
+
+}  // namespace skerry

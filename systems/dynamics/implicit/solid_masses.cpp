@@ -1,0 +1,41 @@
+#include "systems/dynamics/implicit/solid_masses.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace skerry {
+
+Mat3 BodyShape::inertia() const {
+    Mat3 second = Mat3::Zero();
+    for (std::size_t k = 0; k < position.size(); ++k) second += position[k] * arm[k].transpose();
+    second = (second + second.transpose().eval()) / 2;
+    return second.trace() * Mat3::Identity() - second;
+}
+
+Vec3 BodyShape::angular_momentum(std::span<const Vec3> velocity) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < arm.size(); ++k) sum += arm[k].cross(velocity[k]);
+    return sum;
+}
+
+SolidMasses::SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> mass,
+                         std::span<const Index> place) {
+    for (const std::array<Index, 4>& nodes : tetrahedra) {
+        std::array<Index, 4>& corners = corners_.emplace_back();
+        std::ranges::transform(nodes, corners.begin(), [&](Index n) { return place[static_cast<std::size_t>(n)]; });
+    }
+    for (const Real of_tetrahedron : mass) share_.push_back(of_tetrahedron / 20);
+}
+
+void SolidMasses::find_arms(BodyShape& shape) const {
+    // integral of rho N_k x: a twentieth of the mass, times the sum of the corners and the corner itself
+    shape.arm.assign(shape.position.size(), Vec3::Zero());
+    for (std::size_t t = 0; t < share_.size(); ++t) {
+        Vec3 sum = Vec3::Zero();
+        for (const Index k : corners_[t]) sum += shape.position[static_cast<std::size_t>(k)];
+        for (const Index k : corners_[t])
+            shape.arm[static_cast<std::size_t>(k)] += share_[t] * (sum + shape.position[static_cast<std::size_t>(k)]);
+    }
+}
+
+}  // namespace skerry
