@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "systems/collision/awake_candidates.h"
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/colliders/time_of_touch.h"
@@ -30,10 +31,8 @@ public:
           found_(found) {}
 
     std::uint64_t run(Range range, Real travel_bound) {
-        std::uint64_t tested = 0;
-        for (Index c = range.begin; c < range.end; ++c)
-            if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel_);
-        return tested;
+        return count_tested(asleep_until_, range, travel_bound,
+                            [&](Index c) { return test(candidates_[c], asleep_until_[c] - travel_); });
     }
 
 private:

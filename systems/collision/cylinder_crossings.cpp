@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "systems/collision/awake_candidates.h"
 #include "systems/collision/colliders/time_of_touch.h"
 #include "systems/collision/cylinders/nearest_bound.h"
 #include "systems/collision/cylinders/shape_facets.h"
@@ -30,7 +32,7 @@ constexpr Real thin_fraction = 0.5;
 class CylinderCrossings {
 public:
     CylinderCrossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, Index p,
-                      Column<ContactRow>& found)
+                      std::span<const ContactRow> known, Column<ContactRow>& found)
         : inputs_(inputs),
           motion_(motion),
           of_(inputs, pairs, p),
@@ -39,13 +41,11 @@ public:
           surface_(pair_surface(inputs, of_.kind, pairs.first[p], pairs.second[p])),
           candidates_(pairs.candidates[p].span()),
           asleep_until_(pairs.asleep_until[p].span()),
+          known_(known),
           found_(found) {}
 
     std::uint64_t run(Range range, Real travel_bound) {
-        std::uint64_t tested = 0;
-        for (Index c = range.begin; c < range.end; ++c)
-            if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c]);
-        return tested;
+        return count_tested(asleep_until_, range, travel_bound, [&](Index c) { return test(candidates_[c]); });
     }
 
 private:
@@ -150,9 +150,40 @@ private:
                        arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
                        at_start = other_motion.position + other_motion.rotation * (other_end.rotation.transpose() *
                                                                                    (on_other - other_end.position));
-            put(candidate, crossing_of_shape + touch.number, stencil, arm, normal,
-                normal.dot(cylinder_.motion.position + arm - at_start), velocity(at_start));
+            const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
+            if (along < 0) {
+                const Vec3 last =
+                    other_end.rotation.transpose() * (on_other + touch.distance * normal - other_end.position);
+                if (add_entry(candidate, crossing_of_shape + touch.number, other, part, other_motion, stencil, arm,
+                              last, velocity))
+                    continue;
+            }
+            put(candidate, crossing_of_shape + touch.number, stencil, arm, normal, along, velocity(at_start),
+                touch.distance);
         }
+        return true;
+    }
+
+    /// Where a place of the cylinder that was beyond the tangent plane of where it would end, a surface that is round
+    /// the other way or behind a rim, comes into the other. `last`: m, in the frame of the other. Returns whether it
+    /// does.
+    bool add_entry(const Candidate& candidate, Index number, const ColliderGeometry& other, Index part,
+                   const RigidMotion& other_motion, const Stencil& stencil, const Vec3& arm, const Vec3& last,
+                   auto&& velocity) {
+        const Vec3 from = other_motion.rotation.transpose() * (cylinder_.motion.position + arm - other_motion.position);
+        const auto on_way = [&](Real part_of_way) {
+            return local_distance(other, from + part_of_way * (last - from), part);
+        };
+        Real outside = 0, inside = 1;
+        if (!(on_way(outside).distance > 0 && on_way(inside).distance < 0)) return false;
+        constexpr int halvings = 30;
+        for (int k = 0; k < halvings; ++k) {
+            const Real middle = (outside + inside) / 2;
+            (on_way(middle).distance > 0 ? outside : inside) = middle;
+        }
+        const Vec3 normal = on_way(outside).normal, met = from + outside * (last - from);
+        put(candidate, number, stencil, arm, other_motion.rotation * normal, normal.dot(from - met),
+            velocity(other_motion.position + other_motion.rotation * met), on_way(1).distance);
         return true;
     }
 
@@ -239,15 +270,25 @@ private:
         put(candidate, number, stencil, arm, normal, along, surface_velocity);
     }
     /// `arm`: m, from the middle to what is touched, at the start of the step as the other places here; `along`: the
-    /// distance there at the start of the step.
+    /// distance there at the start of the step; `left`: at its end. What a contact of the try before has not held off
+    /// is lost by the turn, and asked of it beside what it asked then.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
-             Real along, const Vec3& surface_velocity) {
+             Real along, const Vec3& surface_velocity, Real left = 0) {
+        const auto row_at = [&](Real distance) {
+            const Vec3 point = cylinder_.motion.position + arm - distance * normal;
+            return contact_row(
+                inputs_, of_,
+                {candidate.feature, number, stencil, point, normal, distance, scale_.shell, surface_velocity},
+                surface_);
+        };
         // features that turn by more than a right angle have not overlapped
-        const Real distance = std::max(along, Real(0));
-        const Vec3 point = cylinder_.motion.position + arm - distance * normal;
-        found_.push_back(contact_row(
-            inputs_, of_, {candidate.feature, number, stencil, point, normal, distance, scale_.shell, surface_velocity},
-            surface_));
+        ContactRow row = row_at(std::max(along, Real(0)));
+        if (left < 0) {
+            const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
+            if (before != known_.end() && before->key == row.key)
+                row = row_at(std::max(std::min(row.distance, before->distance) + left, Real(0)));
+        }
+        found_.push_back(row);
     }
 
     /// What a contact stops at the shell has not crossed, however far it came.
@@ -310,6 +351,7 @@ private:
     const SurfaceProperties surface_;
     std::span<const Candidate> candidates_;
     std::span<const Real> asleep_until_;
+    std::span<const ContactRow> known_;  // of earlier tries, in the order of their keys
     Column<ContactRow>& found_;
     CylinderTouches touches_;
 };
@@ -317,8 +359,9 @@ private:
 }  // namespace
 
 std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
-                                      Index p, Range range, Real travel_bound, Column<ContactRow>& found) {
-    return CylinderCrossings(inputs, motion, pairs, p, found).run(range, travel_bound);
+                                      Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
+                                      Column<ContactRow>& found) {
+    return CylinderCrossings(inputs, motion, pairs, p, known, found).run(range, travel_bound);
 }
 
 }  // namespace skerry

@@ -6,8 +6,10 @@
 
 namespace skerry {
 
-/// Looks at the candidates of a pair with a cylinder that can have met by `travel_bound`. Returns how many were tested.
+/// Looks at the candidates of a pair with a cylinder that can have met by `travel_bound`. `known`: what earlier
+/// tries of the step have found, in the order of keys. Returns how many were tested.
 std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
-                                      Index p, Range range, Real travel_bound, Column<ContactRow>& found);
+                                      Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
+                                      Column<ContactRow>& found);
 
 }  // namespace skerry

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
+#include "systems/collision/awake_candidates.h"
 #include "systems/collision/collider_crossings.h"
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/cylinder_crossings.h"
@@ -50,11 +51,9 @@ public:
           scale_(pair_scale(inputs, kind_, first_, second_)) {}
 
     /// Looks at the candidates that can have met by `travel_bound`. Returns how many were tested.
-    std::uint64_t run(Index begin, Index end, Real travel_bound) {
-        std::uint64_t tested = 0;
-        for (Index c = begin; c < end; ++c)
-            if (!(travel_bound < asleep_until_[c])) tested += test(candidates_[c], asleep_until_[c] - travel_);
-        return tested;
+    std::uint64_t run(Range range, Real travel_bound) {
+        return count_tested(asleep_until_, range, travel_bound,
+                            [&](Index c) { return test(candidates_[c], asleep_until_[c] - travel_); });
     }
 
     /// The same of what find_contacts has looked at, as long as the pair closes no more than that took into account;
@@ -224,7 +223,8 @@ std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, In
 }
 
 std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
-                            const PairTable& pairs, std::size_t b, Column<ContactRow>& found) {
+                            const PairTable& pairs, std::size_t b, std::span<const ContactRow> known,
+                            Column<ContactRow>& found) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     std::uint64_t tested = 0;
     std::size_t next = 0;
@@ -240,14 +240,14 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
         const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && in_front;
         if (slow || !is_watched(inputs, pairs, p)) continue;
         if (has_cylinder(inputs, pairs, p))
-            tested += find_cylinder_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
+            tested += find_cylinder_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, known, found);
         else if (pairs.kind[p] == PairKind::collider)
             tested += find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
         else if (in_front && settings.use_budgets)
             tested += PairCrossings(inputs, motion, pairs, p, found)
                           .run(take_near(pairs.near[b].span(), p, next), reach.motion, reach.travel_bound);
         else
-            tested += PairCrossings(inputs, motion, pairs, p, found).run(from, to, reach.travel_bound);
+            tested += PairCrossings(inputs, motion, pairs, p, found).run({from, to}, reach.travel_bound);
     }
     return tested;
 }
@@ -325,7 +325,7 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     for (auto& found : crossings.found) found.clear();
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
-            tested += look_at_block(inputs, settings, motion, pairs, b, crossings.found[b]);
+            tested += look_at_block(inputs, settings, motion, pairs, b, crossings.row, crossings.found[b]);
     });
     crossings.tested += tested;
     std::size_t hits = 0;

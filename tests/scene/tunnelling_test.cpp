@@ -18,9 +18,8 @@ void check_all_stopped(const Count& count, std::uint64_t touching, std::uint64_t
     CHECK(count.stopped > stopped);
 }
 
-/// A cylinder that turns by a tenth of a radian in a step and more is not always held off a wall of a bucket that is a
-/// millimetre thick, which is round the other way: it is pressed into it by a tenth of that
-/// (docs/methods/rigid_bodies.md 6.3).
+/// A cylinder that turns by a tenth of a radian in a step and more is not always held off the rim of a bucket whose
+/// wall is a millimetre thick: it is pressed into it by a tenth of that (docs/methods/rigid_bodies.md 6.3).
 void check_few_pressed(const Count& count, std::uint64_t pressed, std::uint64_t touching) {
     INFO("seed " << seed << "\n" << count.wrong);
     CHECK(static_cast<std::uint64_t>(std::ranges::count(count.wrong, '\n')) == count.pressed);
@@ -108,7 +107,7 @@ TEST_CASE("of 150 cylinders at thin and sharp analytic colliders none is seen in
 }
 
 TEST_CASE("of 1,500 cylinders at thin and sharp analytic colliders none is seen in them", "[scene][slow]") {
-    check_few_pressed(shoot(1500, true, Flying::shot, Targets::shapes, Bullets::cylinders), 3, 1400);
+    check_few_pressed(shoot(1500, true, Flying::shot, Targets::shapes, Bullets::cylinders), 1, 1400);
 }
 
 TEST_CASE("of 1,000 mesh colliders that fly at cylinders no surface comes into them", "[scene][slow]") {
