@@ -8,11 +8,11 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "profiling/measure.h"
+#include "profiling/stiff_pile.h"
 #include "skerry/world.h"
 
 using namespace skerry;
@@ -77,25 +77,15 @@ void add_ball_on_block(World& world, const Case& one) {
     world.add_body(mesh::ball(0.1, 4), {.material = steel, .position = {0, 0, 0.701}, .dynamics = one.dynamics});
 }
 
-/// Turned by up to 8 degrees each, into a box.
 void add_pile(World& world, const Case& one) {
     const auto material = world.add_material(stiff(one, 0.5));
     world.add_collider(Plane{});
     for (const Vec3& inward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
         world.add_collider(Plane{.normal = inward, .point = -0.22 * inward});
-    const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
-    std::mt19937 random(1);
-    std::uniform_real_distribution<Real> number(-1, 1);
-    for (int z = 0; z < 3; ++z)
-        for (int y = -1; y <= 1; ++y)
-            for (int x = -1; x <= 1; ++x) {
-                const Real a = number(random), b = number(random), c = number(random);
-                const Real angle = 8 * std::numbers::pi / 180 * number(random);
-                world.add_body(cube, {.material = material,
-                                      .position = {0.13 * x, 0.13 * y, 0.08 + 0.13 * z},
-                                      .rotation = angle * Vec3(a, b, c).normalized(),
-                                      .dynamics = one.dynamics});
-            }
+    for (const PiledCube& cube : piled_cubes())
+        world.add_body(
+            mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}),
+            {.material = material, .position = cube.position, .rotation = cube.rotation, .dynamics = one.dynamics});
 }
 
 /// Thirty soft and explicit boxes that are let go just above one slab, in one region with it, or above a tile each, in

@@ -3,9 +3,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <stdexcept>
 #include <string>
+
+#include "profiling/stiff_pile.h"
 
 namespace skerry::profiling {
 namespace {
@@ -65,22 +66,12 @@ void add_ball_on_block(PrecisionScene& scene) {
     last_for(scene, 0.5);
 }
 
-/// Turned by up to 8 degrees each.
 void add_pile(PrecisionScene& scene) {
     scene.planes.push_back({});
     for (const Vec3& inward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
         scene.planes.push_back({.normal = inward, .point = -0.22 * inward});
-    const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
-    std::mt19937 random(1);
-    std::uniform_real_distribution<Real> number(-1, 1);
-    for (int z = 0; z < 3; ++z)
-        for (int y = -1; y <= 1; ++y)
-            for (int x = -1; x <= 1; ++x) {
-                const Real a = number(random), b = number(random), c = number(random);
-                const Real angle = 8 * std::numbers::pi / 180 * number(random);
-                scene.bodies.push_back(
-                    body_of(cube, {0.13 * x, 0.13 * y, 0.08 + 0.13 * z}, angle * Vec3(a, b, c).normalized()));
-            }
+    for (const PiledCube& cube : piled_cubes())
+        scene.bodies.push_back(body_of(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), cube.position, cube.rotation));
     last_for(scene, 1);
 }
 

@@ -5,8 +5,6 @@
 The bodies have the same tetrahedra, the law is linear corotated elasticity, steps are implicit and solved together with
 the contacts. Planes are boxes, since its half space does not touch deformable bodies."""
 import argparse
-import json
-import os
 import pathlib
 import time
 
@@ -15,6 +13,8 @@ from pydrake import geometry, math
 from pydrake.multibody import fem, plant, tree
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
+
+import peer
 
 
 def write_mesh(body, file):
@@ -150,25 +150,12 @@ def run(scene, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("scene")
-    parser.add_argument("result")
-    parser.add_argument("--step", type=float, required=True)
+    peer.add_arguments(parser)
     parser.add_argument("--approximation", default="lagged", help="of friction: lagged, similar, sap")
     parser.add_argument("--dissipation", type=float, help="of contacts, s/m; by default Drake's own")
     parser.add_argument("--stiction", type=float, default=1e-4, help="speed below which friction is smoothed, m/s")
     parser.add_argument("--resolution", type=float, default=0.02, help="edge of the faces of rigid spheres, m")
-    parser.add_argument("--repeat", type=int, default=1)
-    parser.add_argument("--cap", type=float, default=60)
-    options = parser.parse_args()
-    with open(options.scene) as file:
-        scene = json.load(file)
-    options.result = os.path.abspath(options.result)
-    runs = [run(scene, options)]
-    while len(runs) < options.repeat and runs[0]["finished"]:
-        runs.append(run(scene, options))
-    runs[0]["seconds"] = sorted(r["seconds"] for r in runs)[len(runs) // 2]
-    with open(options.result, "w") as file:
-        json.dump(runs[0], file)
+    peer.run_repeatedly(run, parser.parse_args())
 
 
 if __name__ == "__main__":

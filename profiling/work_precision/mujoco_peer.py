@@ -6,13 +6,13 @@ The bodies are flexes of the same tetrahedra with the masses of the scene; MuJoC
 and Kirchhoff, which is ours for small strains, or neo-Hooke's where asked. Its contacts are springs by design: their
 time constant is set to twice the step, the least that MuJoCo recommends, unless its own are asked for."""
 import argparse
-import json
 import math
-import os
 import time
 
 import mujoco
 import numpy as np
+
+import peer
 
 
 def text(values):
@@ -164,9 +164,7 @@ def run(scene, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("scene")
-    parser.add_argument("result")
-    parser.add_argument("--step", type=float, required=True)
+    peer.add_arguments(parser)
     parser.add_argument("--integrator", default="Euler")
     parser.add_argument("--impratio", type=float, default=1)
     parser.add_argument("--cone", default="elliptic")
@@ -176,20 +174,8 @@ def main():
     parser.add_argument("--law", choices=["own", "neo_hookean"], default="own")
     parser.add_argument("--tolerance", type=float, default=1e-10)
     parser.add_argument("--iterations", type=int, default=100)
-    parser.add_argument("--repeat", type=int, default=1)
-    parser.add_argument("--cap", type=float, default=60)
     parser.add_argument("--chunk", type=int, default=16, help="steps between two looks at the clock and at gravity")
-    options = parser.parse_args()
-    with open(options.scene) as file:
-        scene = json.load(file)
-    options.result = os.path.abspath(options.result)
-    os.chdir(os.path.dirname(options.result))  # MuJoCo writes a log where it runs
-    runs = [run(scene, options)]
-    while len(runs) < options.repeat and runs[0]["finished"]:
-        runs.append(run(scene, options))
-    runs[0]["seconds"] = sorted(r["seconds"] for r in runs)[len(runs) // 2]
-    with open(options.result, "w") as file:
-        json.dump(runs[0], file)
+    peer.run_repeatedly(run, parser.parse_args())
 
 
 if __name__ == "__main__":
