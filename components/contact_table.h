@@ -102,12 +102,14 @@ struct WarmStartTable {
     Column<ContactKey> key;
     Column<Vec3> impulse;  // N s
     Column<Vec3> normal;
-    Column<Real> step;  // s, one row: the step the impulses belong to; empty before the first
+    Column<Vec3> point;  // m; no rows where no body is rigid or implicit
+    Column<Real> step;   // s, one row: the step the impulses belong to; empty before the first
 
     void for_each_column(auto&& visit) {
         visit("key", key, ColumnRole::state);
         visit("impulse", impulse, ColumnRole::state);
         visit("normal", normal, ColumnRole::state);
+        visit("point", point, ColumnRole::state);
         visit("step", step, ColumnRole::state);
     }
 };

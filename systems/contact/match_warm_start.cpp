@@ -39,6 +39,34 @@ private:
     std::size_t row_;
 };
 
+/// Contacts of one pair, [begin, end).
+struct Rows {
+    std::size_t begin, end;
+};
+
+/// The first row from `row` on that begins a pair.
+std::size_t start_of_pair(std::span<const ContactKey> key, std::size_t row) {
+    while (row > 0 && row < key.size() && key[row].pair == key[row - 1].pair) ++row;
+    return row;
+}
+
+Rows rows_of_pair(std::span<const ContactKey> key, std::uint64_t pair) {
+    const auto rows = std::ranges::equal_range(key, pair, {}, &ContactKey::pair);
+    return {static_cast<std::size_t>(rows.begin() - key.begin()), static_cast<std::size_t>(rows.end() - key.begin())};
+}
+
+/// How far, m, what is gone may be from the contact that takes its impulse over; 0 if bodies move node by node.
+Real reach_of_pair(const ContactsNow& now, std::size_t row) {
+    const auto has_frame = [&](Index body) {
+        return body != no_index && now.body_rigid[static_cast<std::size_t>(body)].size() > 0;
+    };
+    const Index first = now.first_body[row];
+    constexpr Real distances = 2;
+    return has_frame(first) || has_frame(now.second_body[row])
+               ? distances * now.body_contact_distance[static_cast<std::size_t>(first)]
+               : 0;
+}
+
 }  // namespace
 
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
@@ -68,16 +96,55 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     return true;
 }
 
-void store_warm_start(std::span<const ContactKey> key, std::span<const Vec3> normal, std::span<const Vec3> impulse,
-                      Real h, WarmStartTable& last) {
-    SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size());
-    last.key.resize(key.size());
-    last.normal.resize(key.size());
-    last.impulse.resize(key.size());
-    std::copy(key.begin(), key.end(), last.key.begin());
-    std::copy(normal.begin(), normal.end(), last.normal.begin());
-    std::copy(impulse.begin(), impulse.end(), last.impulse.begin());
-    last.step.assign(key.empty() ? 0 : 1, h);
+bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real h,
+                      std::span<Vec3> impulse) {
+    if (last.point.empty() || now.key.empty()) return false;
+    SKERRY_CHECK(last.point.size() == last.key.size() && impulse.size() == now.key.size());
+    constexpr Real least_cosine = 0.9;  // of both normals
+    const Real scale = h / last.step[0];
+    const auto hand_on = [&](std::size_t gone, Rows rows, Real reach) {
+        std::size_t nearest = rows.end;
+        Real least = reach * reach;
+        for (std::size_t i = rows.begin; i < rows.end; ++i) {
+            const Real away = (now.point[i] - last.point[gone]).squaredNorm();
+            if (!(away < least) || !(now.normal[i].dot(last.normal[gone]) > least_cosine)) continue;
+            least = away;
+            nearest = i;
+        }
+        if (nearest != rows.end)
+            impulse[nearest] += scale * turn(last.impulse[gone], last.normal[gone], now.normal[nearest]);
+    };
+    // blocks of whole pairs: impulses stay within theirs
+    parallel_for(executor, last.key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
+        end = start_of_pair(last.key, end);
+        for (std::size_t row = start_of_pair(last.key, begin); row < end;) {
+            const std::uint64_t pair = last.key[row].pair;
+            const Rows rows = rows_of_pair(now.key, pair);
+            const Real reach = rows.begin < rows.end ? reach_of_pair(now, rows.begin) : 0;
+            std::size_t place = rows.begin;
+            for (; row < end && last.key[row].pair == pair; ++row) {
+                while (place < rows.end && now.key[place] < last.key[row]) ++place;
+                const bool stays = place < rows.end && now.key[place] == last.key[row];
+                if (!stays && reach > 0 && last.impulse[row] != Vec3::Zero()) hand_on(row, rows, reach);
+            }
+        }
+    });
+    return true;
+}
+
+void store_warm_start(const ContactsDone& done, Real h, WarmStartTable& last) {
+    const std::size_t count = done.key.size();
+    SKERRY_CHECK(done.normal.size() == count && done.impulse.size() == count);
+    SKERRY_CHECK(done.point.empty() || done.point.size() == count);
+    const auto keep = [](const auto& from, auto& to) {
+        to.resize(from.size());
+        std::copy(from.begin(), from.end(), to.begin());
+    };
+    keep(done.key, last.key);
+    keep(done.normal, last.normal);
+    keep(done.impulse, last.impulse);
+    keep(done.point, last.point);
+    last.step.assign(count == 0 ? 0 : 1, h);
 }
 
 }  // namespace skerry

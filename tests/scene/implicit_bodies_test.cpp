@@ -252,6 +252,27 @@ TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not
     CHECK(unconverged(SolverMethod::ags) > 0);
 }
 
+TEST_CASE("a stack at rest whose contacts come and go by the last bits goes on from their impulses",
+          "[scene][implicit]") {
+    Settings settings;
+    settings.step_size = 0.01;
+    settings.tolerance = 1e-6;
+    settings.sleep = false;
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .friction = 0.5});
+    world.add_collider(Plane{});
+    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
+    for (int k = 0; k < 6; ++k)
+        world.add_body(
+            block,
+            {.material = stiff, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = BodyDynamics::implicit_elastic});
+    REQUIRE(world.advance(0.5).ok());
+    const WorldReport landed = world.report();
+    REQUIRE(world.advance(0.5).ok());
+    const WorldReport rested = world.report();
+    CHECK(rested.iteration_sum - landed.iteration_sum < 10 * (rested.steps - landed.steps));
+}
+
 TEST_CASE("theta is refused where it has no meaning", "[scene][implicit]") {
     Settings settings;
     settings.theta = 0.4;

@@ -36,6 +36,7 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
     WarmStartTable& warm = cache.warm_start;
     expect_size(file, "/warm_start/impulse", warm.impulse.size(), warm.key.size());
     expect_size(file, "/warm_start/normal", warm.normal.size(), warm.key.size());
+    if (!warm.point.empty()) expect_size(file, "/warm_start/point", warm.point.size(), warm.key.size());
     if (warm.step.size() > 1)
         file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one, or none");
     if (!warm.key.empty() && warm.step.empty())

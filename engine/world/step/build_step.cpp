@@ -104,6 +104,9 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.cache.warm_start),
             read(w.cache.resting), value(p.h), write(c.impulse), if_warm);
+    const auto if_frames = only_if([](const Column<Real>& mass) { return !mass.empty(); }, value(m.rigid_bodies.mass));
+    g.stage("contact/hand_on_impulses", hand_on_impulses, inputs<ContactsNow>(c, m.bodies), read(w.cache.warm_start),
+            value(p.h), write(c.impulse), if_warm, if_frames);
     const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(m.any_asleep));
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
@@ -244,7 +247,7 @@ void list_commit(WorldState& w, TaskGraph& g) {
                         if_sleepy);
     g.stage("dynamics/store_joints", store_joints, read(w.scratch.joints), value(p.h),
             outputs<JointMemory>(w.model.joints), if_taken);
-    g.stage("contact/store_warm_start", store_warm_start, read(c.key), read(c.normal), read(c.impulse), value(p.h),
+    g.stage("contact/store_warm_start", store_warm_start, inputs<ContactsDone>(c, w.model.rigid_bodies), value(p.h),
             make(w.cache.warm_start), if_taken);
     g.stage("contact/keep_resting_contacts", keep_resting_contacts, read(c),
             inputs<RestingInputs>(w.cache.pairs, b, w.model.colliders), value(p.h), make(w.scratch.resting_memory),

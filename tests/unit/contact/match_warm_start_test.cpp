@@ -23,7 +23,7 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
     const std::vector<Vec3> normal(4, Vec3::UnitZ());
     const std::vector<Vec3> impulse{{0, 0, 1}, {0, 0, 2}, {0, 1, 3}, {0, 0, 4}};
     WarmStartTable last;
-    store_warm_start(before, normal, impulse, 0.1, last);
+    store_warm_start({before, normal, impulse}, 0.1, last);
 
     const std::vector<ContactKey> now{key(5), key(10), key(25), key(30), key(50)};  // 20 and 40 gone, 5, 25 and 50 new
     std::vector<Vec3> matched(5, Vec3::Ones());
@@ -33,8 +33,9 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
 
 TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]") {
     WarmStartTable last;
-    store_warm_start(std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()),
-                     std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}}, 1, last);
+    store_warm_start({std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()),
+                      std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}}},
+                     1, last);
     std::vector<Vec3> matched(3);
     match_warm_start(*serial, std::vector<ContactKey>{{1, 3}, {2, 3}, {2, 9}}, std::vector<Vec3>(3, Vec3::UnitX()),
                      last, {}, 1, matched);
@@ -44,7 +45,8 @@ TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]
 TEST_CASE("a contact that was not in the last step starts from what it came to rest with", "[unit][contact]") {
     WarmStartTable last;
     const auto ups = [](std::size_t count) { return std::vector<Vec3>(count, Vec3::UnitZ()); };
-    store_warm_start(std::vector<ContactKey>{{1, 1}, {4, 1}}, ups(2), std::vector<Vec3>{{1, 0, 0}, {4, 0, 0}}, 1, last);
+    store_warm_start({std::vector<ContactKey>{{1, 1}, {4, 1}}, ups(2), std::vector<Vec3>{{1, 0, 0}, {4, 0, 0}}}, 1,
+                     last);
     RestingContactTable resting;
     resting.contact.resize(3);
     const std::vector<ContactKey> rest{{1, 1}, {2, 1}, {2, 2}};  // the first has been looked for again since
@@ -72,7 +74,7 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
         if (from.dot(to) < -0.99) continue;
         const Vec3 impulse(normal_number(random), normal_number(random), normal_number(random));
         WarmStartTable last;
-        store_warm_start(std::vector{key(1)}, std::vector{from}, std::vector{impulse}, 0.2, last);
+        store_warm_start({std::vector{key(1)}, std::vector{from}, std::vector{impulse}}, 0.2, last);
         std::vector<Vec3> matched(1);
         match_warm_start(*serial, std::vector{key(1)}, std::vector{to}, last, {}, 0.1, matched);
         const Vec3 expected = 0.5 * (Eigen::AngleAxisd(std::acos(from.dot(to)), from.cross(to).normalized()) * impulse);
@@ -83,7 +85,8 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
 
 TEST_CASE("a normal that flipped carries nothing over", "[unit][contact]") {
     WarmStartTable last;
-    store_warm_start(std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}, 1, last);
+    store_warm_start({std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}}, 1,
+                     last);
     std::vector<Vec3> matched(1, Vec3::Ones());
     match_warm_start(*serial, std::vector{key(1)}, std::vector<Vec3>{-Vec3::UnitZ()}, last, {}, 1, matched);
     CHECK(matched[0] == Vec3::Zero());
@@ -106,12 +109,108 @@ TEST_CASE("matching many contacts gives the same on any number of workers", "[un
     std::vector<Vec3> impulse(before.size());
     for (std::size_t i = 0; i < before.size(); ++i) impulse[i] = Vec3(0, 0, static_cast<Real>(before[i].feature));
     WarmStartTable last;
-    store_warm_start(before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse, 1, last);
+    store_warm_start({before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse}, 1, last);
     for (const int workers : {1, 2, 3, 8}) {
         std::vector<Vec3> matched(now.size());
         const auto executor = make_executor(Backend::threads, workers);
         match_warm_start(*executor, now, std::vector<Vec3>(now.size(), Vec3::UnitZ()), last, {}, 1, matched);
         for (std::size_t i = 0; i < now.size(); ++i)
             REQUIRE(matched[i].z() == (now[i].feature % 3 == 0 ? 0 : static_cast<Real>(now[i].feature)));
+    }
+}
+
+namespace {
+
+/// Contacts of one kind of pair: body 0 with body 1, which is rigid unless it is said to move node by node.
+struct Stacked {
+    std::vector<ContactKey> key;
+    std::vector<Vec3> normal, point;
+    std::vector<Index> first, second;
+    std::vector<Range> rigid{{0, 0}, {0, 1}};
+    std::vector<Real> distance{0.01, 0.01};
+
+    void add(ContactKey of, const Vec3& at, const Vec3& along = Vec3::UnitZ()) {
+        key.push_back(of);
+        normal.push_back(along);
+        point.push_back(at);
+        first.push_back(0);
+        second.push_back(1);
+    }
+    ContactsNow now() const { return {key, normal, point, first, second, rigid, distance}; }
+};
+
+}  // namespace
+
+TEST_CASE("what a contact that is gone carried goes to the nearest one of its pair", "[unit][contact]") {
+    Stacked before, after;
+    for (std::uint64_t f : {1, 2, 3, 4, 5}) before.add(key(f), {0.1 * static_cast<Real>(f), 0, 0});
+    before.add({9, 1}, {0.1, 0, 0});
+    WarmStartTable last;
+    const std::vector<Vec3> impulse{{0, 0, 1}, {0, 0.5, 2}, {0, 0, 4}, {0, 0, 8}, {0, 0, 16}, {0, 0, 32}};
+    store_warm_start({before.key, before.normal, impulse, before.point}, 0.2, last);
+
+    after.add(key(1), {0.1, 0, 0});
+    after.add(key(6), {0.205, 0, 0});                // in place of 2, and nearer to it than 8
+    after.add(key(7), {0.3, 0, 0}, -Vec3::UnitZ());  // at 3, but from the other side
+    after.add(key(8), {0.21, 0, 0});
+    after.add(key(9), {0.421, 0, 0});                    // further from 4 than twice the contact distance
+    after.add(key(10), {0.5, 0.001, 0}, {0, 0.6, 0.8});  // about where 5 was, but turned by too much
+    std::vector<Vec3> matched(6, Vec3::Zero());
+    matched[0] = {0, 0, 0.5};
+    matched[1] = {1, 0, 0};
+    CHECK(hand_on_impulses(*serial, after.now(), last, 0.1, matched));
+    const std::vector<Vec3> expected{{0, 0, 0.5}, {1, 0.25, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    CHECK(matched == expected);
+
+    SECTION("turned with the normal") {
+        after.normal[1] = Vec3(0, 0.28, 0.96);
+        std::fill(matched.begin(), matched.end(), Vec3::Zero());
+        hand_on_impulses(*serial, after.now(), last, 0.2, matched);
+        CHECK(matched[1].dot(after.normal[1]) == Approx(2));
+        CHECK(matched[1].norm() == Approx(std::hypot(0.5, 2)));
+    }
+    SECTION("not between bodies that move node by node") {
+        after.rigid[1] = {0, 0};
+        std::fill(matched.begin(), matched.end(), Vec3::Zero());
+        hand_on_impulses(*serial, after.now(), last, 0.1, matched);
+        CHECK(matched == std::vector<Vec3>(6, Vec3::Zero()));
+    }
+    SECTION("a step whose places were not kept has nothing to hand on") {
+        store_warm_start({before.key, before.normal, impulse}, 0.2, last);
+        CHECK_FALSE(hand_on_impulses(*serial, after.now(), last, 0.1, matched));
+        CHECK(matched == expected);
+    }
+}
+
+TEST_CASE("handing on gives the same on any number of workers", "[unit][contact][determinism]") {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<Real> number(0, 0.05);
+    Stacked before, after;
+    std::vector<Vec3> impulse;
+    for (std::uint64_t pair = 0; pair < 300; ++pair)
+        for (std::uint64_t f = 0; f < 3 + pair % 50; ++f) {
+            const Vec3 at(number(random), number(random), 0);
+            if (random() % 4 != 0) {
+                before.add({pair, f}, at);
+                impulse.emplace_back(number(random), number(random), 1);
+            }
+            if (random() % 4 != 0) after.add({pair, f}, at);
+        }
+    WarmStartTable last;
+    store_warm_start({before.key, before.normal, impulse, before.point}, 1, last);
+    std::vector<Vec3> expected;
+    for (const int workers : {1, 2, 3, 8}) {
+        std::vector<Vec3> matched(after.key.size(), Vec3::Zero());
+        const auto executor = make_executor(Backend::threads, workers);
+        CHECK(hand_on_impulses(*executor, after.now(), last, 1, matched));
+        if (workers == 1) {
+            expected = matched;
+            // beyond one block, and most of what is gone has found a neighbour
+            REQUIRE(before.key.size() > 5000);
+            Real carried = 0;
+            for (const Vec3& r : matched) carried += r.z();
+            CHECK(carried > 500);
+        }
+        CHECK(matched == expected);
     }
 }
