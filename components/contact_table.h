@@ -103,7 +103,7 @@ struct WarmStartTable {
     Column<Vec3> impulse;  // N s
     Column<Vec3> normal;
     Column<Vec3> point;  // m; no rows where no body is rigid or implicit
-    Column<Real> step;   // s, one row: the step the impulses belong to; empty before the first
+    Column<Real> step;   // s, one row: for which forces acted in their step; empty before the first
 
     void for_each_column(auto&& visit) {
         visit("key", key, ColumnRole::state);

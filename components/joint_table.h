@@ -75,6 +75,7 @@ struct AxisLaw {
     Real lower = -std::numeric_limits<Real>::infinity(), upper = std::numeric_limits<Real>::infinity();
     JointDrive drive = JointDrive::none;
     JointMotorRow motor{};
+    Real most_impulse = 0;  // N s or N m s, of the motor in this step
 };
 
 /// Three rows of one joint in this step: of the velocities at its point, or of the spins. Impulses are on the first

@@ -9,7 +9,7 @@ namespace skerry {
 /// from when something wakes; the others are kept to be shown.
 struct RestingContactTable {
     ContactTable contact;  // `region`: no_index
-    Column<Real> step;     // s, of the step that its impulse belongs to
+    Column<Real> step;     // s, for which forces acted in the step that its impulse belongs to
 
     void for_each_column(auto&& visit) {
         contact.for_each_column([&](const char* name, auto& column, ColumnRole) {

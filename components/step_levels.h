@@ -22,8 +22,8 @@ using LevelMask = std::uint16_t;
 inline constexpr int touched_level = 15;
 static_assert(touched_level >= element_level_count && touched_level < 16);
 
-/// Which levels get an impulse in this step, and how long each lasts in steps; 0: none. Without multirate every level
-/// lasts one step.
+/// Which levels get an impulse in this step, and how long each lasts, in kicks of the step; 0: none. Without multirate
+/// every level lasts one.
 struct ActiveLevels {
     std::array<Real, step_level_count> duration;
 

@@ -42,12 +42,12 @@ struct Missing {
 };
 
 Missing missing_weight(World& world) {
-    const double h = world.advance(1e-3).step_size;
+    world.advance(1e-3);
     std::map<std::uint32_t, Vec3> force;
     for (const BodyHandle body : world.bodies()) force[body.slot] = world.mass(body) * world.settings().gravity;
     for (const Contact& contact : world.contacts()) {
-        if (world.alive(contact.first)) force[contact.first.slot] += contact.impulse / h;
-        if (world.alive(contact.second)) force[contact.second.slot] -= contact.impulse / h;
+        if (world.alive(contact.first)) force[contact.first.slot] += contact.force();
+        if (world.alive(contact.second)) force[contact.second.slot] -= contact.force();
     }
     Missing missing;
     for (const BodyHandle body : world.bodies()) {

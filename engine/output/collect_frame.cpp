@@ -17,15 +17,9 @@ std::vector<Index> materials_of(const World& world, BodyHandle body) {
 
 }  // namespace
 
-Frame FrameCollector::collect(const World& world) {
+Frame collect_frame(const World& world) {
     const WorldReport report = world.report();
-    if (report.steps > steps_prev_)
-        step_size_ = (report.time - time_prev_) / static_cast<Real>(report.steps - steps_prev_);
-    time_prev_ = report.time;
-    steps_prev_ = report.steps;
-
     Frame frame{.time = report.time,
-                .step_size = step_size_,
                 .gravity = world.settings().gravity,
                 .energy = report.energy,
                 .bodies = {},

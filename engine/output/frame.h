@@ -34,17 +34,11 @@ struct ColliderFrame {
 
 struct Frame {
     Real time = 0;                // s
-    Real step_size = 0;           // s, mean of the steps since the frame before; 0 without steps
     Vec3 gravity = Vec3::Zero();  // m/s^2
     Energy energy;
     std::vector<BodyFrame> bodies;
     std::vector<ColliderFrame> colliders;
     std::span<const Contact> contacts;
-
-    /// N, on the first body. Zero when no step was made, because then there is no time that the impulse acted for.
-    Vec3 force(const Contact& contact) const {
-        return step_size > 0 ? Vec3(contact.impulse / step_size) : Vec3(Vec3::Zero());
-    }
 };
 
 /// Regions are numbered by row, so the last number counts them; -1 marks contacts without a moving node.

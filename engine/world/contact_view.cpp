@@ -28,6 +28,11 @@ Index local_node(const Model& model, Index node) {
     return node - model.bodies.nodes[static_cast<std::size_t>(body)].begin;
 }
 
+/// Whether contacts with a body answer what acts for a kick: implicit bodies take their steps at once.
+bool is_kicked(const Model& model, Index body) {
+    return deforms(model, body) && model.bodies.implicit[static_cast<std::size_t>(body)].size() == 0;
+}
+
 Contact contact_at(const Model& model, const ContactTable& table, std::size_t c) {
     Contact contact;
     contact.first = body_handle(model, table.first_body[c]);
@@ -58,14 +63,16 @@ void view_contacts(WorldState& world) {
     Column<Index>& rows = record.contact_rows;
     merge_contacts(of_step, resting, rows);
     record.contact_view.resize(rows.size());
+    const Real kick = world.scratch.parameters.kick, whole = world.clock.step_before;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i] >= 0) {
-            record.contact_view[i] = contact_at(world.model, of_step, static_cast<std::size_t>(rows[i]));
-            continue;
-        }
-        const auto row = static_cast<std::size_t>(~rows[i]);
-        record.contact_view[i] = contact_at(world.model, resting.contact, row);
-        record.contact_view[i].impulse *= world.scratch.parameters.h / resting.step[row];
+        const bool rests = rows[i] < 0;
+        const ContactTable& table = rests ? resting.contact : of_step;
+        const auto row = static_cast<std::size_t>(rests ? ~rows[i] : rows[i]);
+        Contact& contact = record.contact_view[i] = contact_at(world.model, table, row);
+        if (rests) contact.impulse *= kick / resting.step[row];
+        const bool kicked =
+            rests || is_kicked(world.model, table.first_body[row]) || is_kicked(world.model, table.second_body[row]);
+        contact.seconds = kicked ? kick : whole;
     }
     record.contact_view_is_current = true;
 }

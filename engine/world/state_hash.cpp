@@ -166,6 +166,7 @@ void add_pairs(Hash& hash, const Model& model, const PairTable& pairs) {
 void add_clock(Hash& hash, const Model& model, const Clock& clock) {
     add_row(hash, clock.time);
     add_row(hash, clock.offset);
+    add_row(hash, clock.step_before);
     add_row(hash, model.watch.steps);
     add_row(hash, clock.cycle.index);
     add_row(hash, clock.cycle.lead);

@@ -386,7 +386,10 @@ void World::set_gravity(const Vec3& gravity) {
     changed.gravity = gravity;
     validate(changed);
     state_->model.settings.gravity = gravity;
-    state_->scratch.parameters = step_parameters(state_->model.settings);
+    StepParameters& parameters = state_->scratch.parameters;
+    const Real kick = parameters.kick;  // contacts of the last step can still be asked for
+    parameters = step_parameters(state_->model.settings);
+    parameters.kick = kick;
     state_->record.balance.close();
     state_->model.wake_all();
 }

@@ -94,7 +94,7 @@ void list_sources(const ContactTable& contacts, const RestingPairs& pairs, const
 
 }  // namespace
 
-bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real h, RestingMemory& memory,
+bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept) {
     SKERRY_CHECK(inputs.idle.size() == inputs.pair.size());
     const RestingPairs pairs(inputs);
@@ -121,7 +121,7 @@ bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& in
     });
     std::ranges::fill(next.contact.region, no_index);
     gather(
-        next.step, [&](std::size_t row) { return kept.step[row]; }, [h](std::size_t) { return h; });
+        next.step, [&](std::size_t row) { return kept.step[row]; }, [kick](std::size_t) { return kick; });
     std::swap(kept, next);
     return true;
 }

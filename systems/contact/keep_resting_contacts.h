@@ -37,10 +37,10 @@ struct RestingMemory {
     RestingContactTable next;
 };
 
-/// After a step of length h: keeps the contacts of this step all of whose sides rest or stand still, and of those kept
-/// before the ones of pairs that this step did not look at. Returns false, and costs a look at the contacts and one at
-/// the pairs, where nothing changes.
-bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real h, RestingMemory& memory,
+/// After a step in which forces acted for `kick` (s): keeps the contacts of this step all of whose sides rest or stand
+/// still, and of those kept before the ones of pairs that this step did not look at. Returns false, and costs a look at
+/// the contacts and one at the pairs, where nothing changes.
+bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept);
 
 /// The rows to show of both, in key order: a row of the step's contacts, or the complement of a row of those that rest.

@@ -70,14 +70,15 @@ Real reach_of_pair(const ContactsNow& now, std::size_t row) {
 }  // namespace
 
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
-                      const WarmStartTable& last, const RestingContactTable& resting, Real h, std::span<Vec3> impulse) {
+                      const WarmStartTable& last, const RestingContactTable& resting, Real kick,
+                      std::span<Vec3> impulse) {
     SKERRY_CHECK(normal.size() == key.size() && impulse.size() == key.size());
     if (key.empty() || (last.key.empty() && resting.empty())) {
         std::fill(impulse.begin(), impulse.end(), Vec3::Zero());
         return false;
     }
     SKERRY_CHECK(last.key.empty() || (last.step.size() == 1 && last.step[0] > 0));
-    const Real scale = last.key.empty() ? 0 : h / last.step[0];
+    const Real scale = last.key.empty() ? 0 : kick / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         // every block finds its own place in both tables, then all run along together
         SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
@@ -88,20 +89,20 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
                 impulse[i] = scale * turn(last.impulse[old], last.normal[old], normal[i]);
             } else if (of_resting.find(key[i])) {
                 const std::size_t old = of_resting.row();
-                impulse[i] =
-                    h / resting.step[old] * turn(resting.contact.impulse[old], resting.contact.normal[old], normal[i]);
+                impulse[i] = kick / resting.step[old] *
+                             turn(resting.contact.impulse[old], resting.contact.normal[old], normal[i]);
             }
         }
     });
     return true;
 }
 
-bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real h,
+bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real kick,
                       std::span<Vec3> impulse) {
     if (last.point.empty() || now.key.empty()) return false;
     SKERRY_CHECK(last.point.size() == last.key.size() && impulse.size() == now.key.size());
     constexpr Real least_cosine = 0.9;  // of both normals
-    const Real scale = h / last.step[0];
+    const Real scale = kick / last.step[0];
     const auto hand_on = [&](std::size_t gone, Rows rows, Real reach) {
         std::size_t nearest = rows.end;
         Real least = reach * reach;
@@ -132,7 +133,7 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
     return true;
 }
 
-void store_warm_start(const ContactsDone& done, Real h, WarmStartTable& last) {
+void store_warm_start(const ContactsDone& done, Real kick, WarmStartTable& last) {
     const std::size_t count = done.key.size();
     SKERRY_CHECK(done.normal.size() == count && done.impulse.size() == count);
     SKERRY_CHECK(done.point.empty() || done.point.size() == count);
@@ -144,7 +145,7 @@ void store_warm_start(const ContactsDone& done, Real h, WarmStartTable& last) {
     keep(done.normal, last.normal);
     keep(done.impulse, last.impulse);
     keep(done.point, last.point);
-    last.step.assign(count == 0 ? 0 : 1, h);
+    last.step.assign(count == 0 ? 0 : 1, kick);
 }
 
 }  // namespace skerry

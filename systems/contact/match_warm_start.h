@@ -14,10 +14,12 @@
 namespace skerry {
 
 /// impulse = last step's impulse of the same key, or that with which it came to rest, turned so that the old normal
-/// becomes the new one, times h / the step that it belongs to; zero for a new contact. All tables are in key order: a
-/// merge. Parallel over blocks of contacts. Returns false when there is nothing to do (skipped).
+/// becomes the new one, times kick, for which forces act in this step, over that of the step that it belongs to; zero
+/// for a new contact. All tables are in key order: a merge. Parallel over blocks of contacts. Returns false when there
+/// is nothing to do (skipped).
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
-                      const WarmStartTable& last, const RestingContactTable& resting, Real h, std::span<Vec3> impulse);
+                      const WarmStartTable& last, const RestingContactTable& resting, Real kick,
+                      std::span<Vec3> impulse);
 
 /// The contacts of this step, and how their bodies move.
 struct ContactsNow {
@@ -42,7 +44,7 @@ struct ContactsNow {
 /// its normal is about the same. For pairs of which a body is rigid or implicit: faces that lie on each other have more
 /// contacts than freedoms, which come and go by the last bits of places, and each takes a part of the weight along.
 /// After match_warm_start. Parallel over blocks of pairs. Returns false when there is nothing to do (skipped).
-bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real h,
+bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real kick,
                       std::span<Vec3> impulse);
 
 /// What is kept of a step's contacts.
@@ -61,6 +63,6 @@ struct ContactsDone {
 };
 
 /// Keeps this step's impulses for the next.
-void store_warm_start(const ContactsDone& done, Real h, WarmStartTable& last);
+void store_warm_start(const ContactsDone& done, Real kick, WarmStartTable& last);
 
 }  // namespace skerry

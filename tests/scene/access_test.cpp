@@ -11,7 +11,7 @@ using namespace skerry;
 
 TEST_CASE("a stage that is slipped into the step and looks at what it has not declared fails, by name", "[scene]") {
     WorldState world{Settings{}};
-    world.scratch.parameters.h = 1e-3;
+    world.scratch.parameters.h = world.scratch.parameters.kick = 1e-3;
     const auto fails_with = [&](const char* message, auto touch) {
         TaskGraph graph;
         graph.track(&world, sizeof world, name_of_column);

@@ -23,10 +23,12 @@ struct ForceReport {
     Vec3 friction_impulse = Vec3::Zero();  // N s, of `impulse` what acts along the surfaces; attachments have none
     // N s, sizes of the normal parts added up: how hard surfaces are pressed, also where opposite ones cancel
     Real pressing_impulse = 0;
-    Real largest_force = 0;            // N, of one step: the impulse of that step over its length
-    Index contacts = 0;                // with an impulse, in the last step
-    Index most_contacts = 0;           // the same, of the step that had most
-    Real seconds = 0;                  // s, by which the call moved time on
+    Real largest_force = 0;   // N, of one step: the impulse of that step over the time that loads act in it
+    Index contacts = 0;       // with an impulse, in the last step
+    Index most_contacts = 0;  // the same, of the step that had most
+    // s, for which loads acted: by which the call moved time on, and half of what its last step is shorter than that
+    // before its first (docs/methods/time_stepping.md 1.5)
+    Real seconds = 0;
     Vec3 moment_point = Vec3::Zero();  // m, that of measure_forces
 
     /// N, mean over the call; zero where it took no step.

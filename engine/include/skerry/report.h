@@ -56,8 +56,14 @@ struct Contact {
     Real gap = 0;
     Vec3 slip = Vec3::Zero();     // m/s, tangential relative velocity after the step
     Vec3 impulse = Vec3::Zero();  // N s, on the first body
+    // s, for which loads act in the step that the impulse is of, between half a step before its start and half a step
+    // before its end: the step itself, but where its length differs from that of the step before
+    Real seconds = 0;
     ContactMotion motion = ContactMotion::open;
     Index region = -1;  // -1: none of its nodes moves, or it is between what rests
+
+    /// N, on the first body: those on a body at rest add up to what its weight and loads are, whatever the steps.
+    Vec3 force() const { return seconds > 0 ? Vec3(impulse / seconds) : Vec3(Vec3::Zero()); }
 };
 
 /// Seconds and runs of one stage.

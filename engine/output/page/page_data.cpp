@@ -39,7 +39,7 @@ void PageData::add(const Frame& frame) {
     values_.resize(frame.bodies.size());
     for (std::size_t i = 0; i < frame.bodies.size(); ++i) measure_body(frame.bodies[i], i);
     for (const Contact& contact : frame.contacts) {
-        const Real force = frame.force(contact).norm();
+        const Real force = contact.force().norm();
         force_.add(force);
         force_scale_.widen(force);
     }

@@ -9,11 +9,10 @@ struct PageWriter::Impl {
     std::filesystem::path file;
     std::string title;
     PageData data;
-    FrameCollector collector;
 };
 
 PageWriter::PageWriter(const std::filesystem::path& file, const std::string& title)
-    : impl_(new Impl{.file = file, .title = title, .data = {}, .collector = {}}) {
+    : impl_(new Impl{.file = file, .title = title, .data = {}}) {
     // What would fail after a long run is better said before it.
     require_page_library(file);
     if (file.has_parent_path()) make_folder(file.parent_path());
@@ -22,7 +21,7 @@ PageWriter::PageWriter(const std::filesystem::path& file, const std::string& tit
 PageWriter::~PageWriter() = default;
 
 void PageWriter::add_frame(const World& world) {
-    impl_->data.add(impl_->collector.collect(world));
+    impl_->data.add(collect_frame(world));
 }
 
 void PageWriter::close(const World& world) {

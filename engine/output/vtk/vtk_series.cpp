@@ -311,7 +311,7 @@ void VtkSeries::write_contacts(const Frame& frame, const std::string& name) cons
     file.close("Verts");
     file.open("PointData");
     vectors(file, "impulse", rows, [](const Contact& c) { return c.impulse; });
-    vectors(file, "force", rows, [&](const Contact& c) { return frame.force(c); });
+    vectors(file, "force", rows, [&](const Contact& c) { return c.force(); });
     vectors(file, "normal", rows, [](const Contact& c) { return c.normal; });
     vectors(file, "slip", rows, [](const Contact& c) { return c.slip; });
     scalars<float>(file, "distance", rows, [](const Contact& c) { return c.distance; });

@@ -8,17 +8,16 @@ namespace skerry {
 
 struct VtkWriter::Impl {
     VtkSeries series;
-    FrameCollector collector;
 };
 
 VtkWriter::VtkWriter(const std::filesystem::path& folder, const std::string& name)
-    : impl_(new Impl{.series = VtkSeries(folder, name), .collector = {}}) {}
+    : impl_(new Impl{.series = VtkSeries(folder, name)}) {}
 
 VtkWriter::~VtkWriter() = default;
 
 void VtkWriter::go_on(const World& world, std::size_t frames, Real frame_step) {
     // forces of the next frame are impulses over the mean step since this one
-    impl_->series.go_on(impl_->collector.collect(world), frames, frame_step);
+    impl_->series.go_on(collect_frame(world), frames, frame_step);
 }
 
 void VtkWriter::name_materials(std::vector<std::string> names) {
@@ -26,7 +25,7 @@ void VtkWriter::name_materials(std::vector<std::string> names) {
 }
 
 void VtkWriter::write_frame(const World& world) {
-    impl_->series.write_frame(impl_->collector.collect(world));
+    impl_->series.write_frame(collect_frame(world));
 }
 
 void VtkWriter::close() {

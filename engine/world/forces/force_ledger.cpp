@@ -56,14 +56,25 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     return hold;
 }
 
+/// Implicit bodies take their steps at once (docs/methods/time_stepping.md 1.5).
+bool is_implicit(const Model& model, std::size_t body) {
+    return model.bodies.implicit[body].size() > 0;
+}
+
+/// Whether nothing but implicit bodies moves.
+bool is_implicit(const Model& model, const PairKey& key) {
+    return is_implicit(model, body_row(model, key.first)) &&
+           (!key.bodies || is_implicit(model, body_row(model, key.second)));
+}
+
 bool is_zero(const ContactSums& sums) {
     return sums.pressing == 0 && sums.impulse == Vec3::Zero();
 }
 
 }  // namespace
 
-void ForceLedger::Peak::end_step(Real h) {
-    largest_force = std::max(largest_force, impulse.norm() / h);
+void ForceLedger::Peak::end_step(Real kick) {
+    largest_force = std::max(largest_force, impulse.norm() / kick);
     contacts = step_contacts;
     most_contacts = std::max(most_contacts, contacts);
     impulse.setZero();
@@ -147,9 +158,17 @@ void ForceLedger::fit(const Model& model) {
     make_room(attachments_, slots_in(model.attachments.slot));
 }
 
+Real ForceLedger::seconds_on(const Model& model, Index row) const {
+    return row != no_index && is_implicit(model, static_cast<std::size_t>(row)) ? call_.whole : call_.kick;
+}
+
+Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
+    return is_implicit(model, key) ? call_.whole : call_.kick;
+}
+
 void ForceLedger::begin_call(const Model& model, StepScratch& scratch) {
     fit(model);
-    seconds_ = 0;
+    call_ = {};
     for (PairRow& row : pairs_) {
         row.sums = {};
         row.peak.begin_call();
@@ -181,12 +200,13 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 }
 
 /// What a pair does at the end of a step: rest goes on as it was while the two were still, and how it was is noted.
-void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, Real h, PairRow& row) {
+void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
     if (rested[first] && rested[second]) {
         if (!row.touched && row.still_seconds > 0) {
-            const ContactSums held = (h / row.still_seconds) * row.still;
+            const Real seconds = is_implicit(model, row.key) ? step_.whole : step_.kick;
+            const ContactSums held = (seconds / row.still_seconds) * row.still;
             row.sums += held;
             row.peak.add(held.impulse, row.still_contacts);
             add_to_partners(row.key, held.impulse, row.still_contacts);
@@ -204,7 +224,6 @@ void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t
 }
 
 void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch) {
-    const Real h = scratch.parameters.h;
     for (const PairSums& of_step : scratch.forces.pairs) {
         PairRow& row = pair(key_of(model, of_step.partners));
         row.sums += of_step.sums;
@@ -214,23 +233,25 @@ void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> re
         add_to_partners(row.key, of_step.sums.impulse, of_step.contacts);
     }
     for (PairRow& row : pairs_) {
-        end_pair_step(model, rested, h, row);
-        row.peak.end_step(h);
+        end_pair_step(model, rested, row);
+        row.peak.end_step(is_implicit(model, row.key) ? step_.whole : step_.kick);
         row.touched = false;
     }
-    for (Peak& peak : bodies_) peak.end_step(h);
-    for (Peak& peak : colliders_) peak.end_step(h);
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
+        if (model.bodies.kind[b] == BodyKind::deformable)
+            bodies_[model.bodies.slot[b]].end_step(is_implicit(model, b) ? step_.whole : step_.kick);
+    for (Peak& peak : colliders_) peak.end_step(step_.kick);
 }
 
 void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch) {
-    const Real h = scratch.parameters.h;
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a) {
         if (model.attachments.slot[a] == no_slot) continue;
         AttachmentRow& row = attachments_[model.attachments.slot[a]];
         const auto body = static_cast<std::size_t>(model.attachments.body[a]);
+        const Real seconds = is_implicit(model, body) ? step_.whole : step_.kick;
         ImpulseAndMoment of_step = scratch.forces.reactions[a];
         if (rested[body]) {
-            const Real part = row.still_seconds > 0 ? h / row.still_seconds : 0;
+            const Real part = row.still_seconds > 0 ? seconds / row.still_seconds : 0;
             of_step = {part * row.still.impulse, part * row.still.moment};
         } else if (model.bodies.still_time[body] > 0) {
             row.still += of_step;
@@ -241,14 +262,15 @@ void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t
         }
         row.sums += of_step;
         row.peak.add(of_step.impulse, 0);
-        row.peak.end_step(h);
+        row.peak.end_step(seconds);
     }
 }
 
 void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch) {
-    const Real h = scratch.parameters.h;
-    seconds_ += h;
-    measured_seconds_ += h;
+    step_ = {scratch.parameters.h, scratch.parameters.kick};
+    call_.whole += step_.whole;
+    call_.kick += step_.kick;
+    measured_seconds_ += scratch.parameters.h;
     add_pairs(model, rested, scratch);
     add_reactions(model, rested, scratch);
     for (const Index n : model.attachments.node)

@@ -39,7 +39,8 @@ public:
             impulse += more;
             step_contacts += of_contacts;
         }
-        void end_step(Real h);
+        /// `kick`: s, for which loads act in it.
+        void end_step(Real kick);
         void begin_call() { *this = {}; }
     };
     struct PairRow {
@@ -59,8 +60,11 @@ public:
 
     bool on() const { return on_; }
     const Vec3& moment_point() const { return moment_point_; }
-    /// s, that the call has moved time on by.
-    Real seconds() const { return seconds_; }
+    /// s, for which forces have acted in the call on what `row` of BodyTable moves; no_index: on all but implicit
+    /// bodies.
+    Real seconds_on(const Model& model, Index row) const;
+    /// The same of a pair: of both where both are implicit.
+    Real seconds_of(const Model& model, const PairKey& key) const;
 
     /// What holds bodies that rest already is as it was when they came to rest.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
@@ -86,13 +90,17 @@ private:
     void take_over_rest(const Model& model, const RestingContactTable& resting);
     void take_over_reactions(const Model& model, std::span<const Vec3> contact_force);
     void add_pairs(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);
-    void end_pair_step(const Model& model, std::span<const std::uint8_t> rested, Real h, PairRow& row);
+    void end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row);
     void add_to_partners(const PairKey& key, const Vec3& impulse, Index contacts);
     void add_reactions(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);
 
     bool on_ = false;
     Vec3 moment_point_ = Vec3::Zero();  // m
-    Real seconds_ = 0;
+    // s, for which forces acted on implicit bodies (`whole`), and on others
+    struct Seconds {
+        Real whole = 0, kick = 0;
+    };
+    Seconds step_, call_;
     Real measured_seconds_ = 0;   // s, since forces are measured
     std::vector<PairRow> pairs_;  // by key
     // by slot

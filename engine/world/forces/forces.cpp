@@ -9,9 +9,9 @@ namespace skerry {
 
 namespace {
 
-ForceReport report_of(const ForceLedger& ledger, const ForceLedger::Peak& peak) {
+ForceReport report_of(const ForceLedger& ledger, const ForceLedger::Peak& peak, Real seconds) {
     ForceReport report;
-    report.seconds = ledger.seconds();
+    report.seconds = seconds;
     report.moment_point = ledger.moment_point();
     report.largest_force = peak.largest_force;
     report.contacts = peak.contacts;
@@ -29,14 +29,16 @@ void add(const ContactSums& sums, PairSide side, ForceReport& report) {
     report.pressing_impulse += sums.pressing;
 }
 
-ForceReport pair_report(const ForceLedger& ledger, const PairKey& key, PairSide side) {
+ForceReport pair_report(const WorldState& world, const PairKey& key, PairSide side) {
+    const ForceLedger& ledger = world.record.forces;
+    const Real seconds = ledger.seconds_of(world.model, key);
     for (const ForceLedger::PairRow& row : ledger.pairs())
         if (row.key == key) {
-            ForceReport report = report_of(ledger, row.peak);
+            ForceReport report = report_of(ledger, row.peak, seconds);
             add(row.sums, side, report);
             return report;
         }
-    return report_of(ledger, {});
+    return report_of(ledger, {}, seconds);
 }
 
 }  // namespace
@@ -79,9 +81,9 @@ Forces World::forces() const {
 }
 
 ForceReport Forces::on(BodyHandle body) const {
-    (void)world_->model.row(body, "forces");
+    const Index row = world_->model.row(body, "forces");
     const ForceLedger& ledger = world_->record.forces;
-    ForceReport report = report_of(ledger, ledger.body(body.slot));
+    ForceReport report = report_of(ledger, ledger.body(body.slot), ledger.seconds_on(world_->model, row));
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {
         const bool is_first = pair.key.first == body.slot;
         const bool is_second = pair.key.bodies && pair.key.second == body.slot;
@@ -96,7 +98,7 @@ ForceReport Forces::on(BodyHandle body) const {
 ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
-    ForceReport report = report_of(ledger, ledger.collider(collider.slot));
+    ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
     for (const ForceLedger::PairRow& pair : ledger.pairs())
         if (!pair.key.bodies && pair.key.second == collider.slot) add(pair.sums, PairSide::second, report);
     return report;
@@ -107,7 +109,7 @@ ForceReport Forces::on(BodyHandle body, BodyHandle by) const {
     (void)world_->model.row(by, "forces");
     const bool is_first = body.slot <= by.slot;
     const PairKey key{true, is_first ? body.slot : by.slot, is_first ? by.slot : body.slot};
-    ForceReport report = pair_report(world_->record.forces, key, is_first ? PairSide::first : PairSide::second);
+    ForceReport report = pair_report(*world_, key, is_first ? PairSide::first : PairSide::second);
     if (body == by) {
         report.impulse = report.moment_impulse = report.friction_impulse = Vec3::Zero();
         report.largest_force = 0;
@@ -119,21 +121,22 @@ ForceReport Forces::on(BodyHandle body, ColliderHandle by) const {
     (void)world_->model.row(body, "forces");
     (void)world_->model.row(by, "forces");
     const PairKey key{false, body.slot, by.slot};
-    return pair_report(world_->record.forces, key, PairSide::first);
+    return pair_report(*world_, key, PairSide::first);
 }
 
 ForceReport Forces::on(ColliderHandle collider, BodyHandle by) const {
     (void)world_->model.row(by, "forces");
     (void)world_->model.row(collider, "forces");
     const PairKey key{false, by.slot, collider.slot};
-    return pair_report(world_->record.forces, key, PairSide::second);
+    return pair_report(*world_, key, PairSide::second);
 }
 
 ForceReport Forces::by(AttachmentHandle attachment) const {
-    (void)world_->model.row(attachment, "forces");
+    const auto row = static_cast<std::size_t>(world_->model.row(attachment, "forces"));
     const ForceLedger& ledger = world_->record.forces;
     const ForceLedger::AttachmentRow& sums = ledger.attachment(attachment.slot);
-    ForceReport report = report_of(ledger, sums.peak);
+    ForceReport report =
+        report_of(ledger, sums.peak, ledger.seconds_on(world_->model, world_->model.attachments.body[row]));
     report.impulse = sums.sums.impulse;
     report.moment_impulse = sums.sums.moment;
     return report;

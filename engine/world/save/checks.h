@@ -20,7 +20,8 @@ void check_candidates(const Hdf5File& file, const Model& model, const PairTable&
 /// Contacts of the last step.
 void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts);
 void check_resting_contacts(const Hdf5File& file, const Model& model, RestingContactTable& resting);
-void check_clock(const Hdf5File& file, const Clock& clock);
+/// `kick`: s, of the last step.
+void check_clock(const Hdf5File& file, const Clock& clock, Real kick);
 
 /// Columns of one table, all as long as it.
 inline void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected) {

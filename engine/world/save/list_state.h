@@ -129,7 +129,7 @@ void list_run(WorldState& world, SavedRows& saved, auto&& archive) {
     archive.column("/run/start/moved", start.moved);
     list_ragged("/run/start/moved_name", start.moved_name, archive);
     archive.column("/run/start/translation", start.translation);
-    archive.value("/last_step/h", world.scratch.parameters.h);
+    archive.value("/last_step/kick", world.scratch.parameters.kick);
     saved.contacts.for_each_column([&](const char* name, auto& column, ColumnRole) {
         archive.column(std::string("/last_step/contacts/") + name, column);
     });
@@ -139,6 +139,7 @@ void list_run(WorldState& world, SavedRows& saved, auto&& archive) {
 void list_state(WorldState& world, SavedRows& saved, auto&& archive) {
     archive.value("/clock/time", world.clock.time);
     archive.value("/clock/offset", world.clock.offset);
+    archive.value("/clock/step_before", world.clock.step_before);
     archive.value("/clock/cycle", world.clock.cycle);
     list_records(saved, archive);
     list_model(world.model, archive);

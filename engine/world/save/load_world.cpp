@@ -133,7 +133,7 @@ Settings settings_of(const Hdf5File& file, const LoadSettings& wanted, Reader& r
 /// What is not saved is made from what is.
 void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     Model& model = world.model;
-    check_clock(file, world.clock);
+    check_clock(file, world.clock, world.scratch.parameters.kick);
     check_model(file, model);
     put_records(saved, file, model);
     // laws that have none of it leave both as they are, and the step swaps them

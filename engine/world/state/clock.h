@@ -23,6 +23,8 @@ struct StepCycle {
 struct Clock {
     Real time = 0;    // s, start of the next step
     Real offset = 0;  // s, by which positions are ahead of velocities; only leapfrog, and only within advance
+    // s, of the last step: velocities are half of it behind positions (symplectic Euler); 0: no step yet
+    Real step_before = 0;
     StepCycle cycle;
 };
 

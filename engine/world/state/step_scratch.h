@@ -27,7 +27,8 @@ namespace skerry {
 
 /// What a step is asked to be. Written before its stages start; none of them writes it.
 struct StepParameters {
-    Real h = 0;        // s
+    Real h = 0;     // s, for which positions move
+    Real kick = 0;  // s, for which forces act: from the time of the velocities before the step to that of those after
     Real longest = 0;  // s, that the next step may be at most, as far as is known
     Real lag = 0;      // s, by which velocities are behind positions at the kick
     ActiveLevels active;
@@ -120,7 +121,7 @@ struct StepScratch {
     Column<Vec3> cluster_kick;         // of kick_clusters
     Column<Real> cluster_work;         // of kick_clusters
     ImplicitCoupling coupling;         // of couple_implicit_bodies
-    Column<Real> strain_parts;         // of strain_implicit_bodies
+    Column<StrainPart> strain_parts;   // of strain_implicit_bodies
     Column<std::uint8_t> pressed;      // by body at rest, in this step
     Column<ExternalWork> work_parts;   // of measure_work
     InversionMemory inversions;        // of find_inversions

@@ -168,7 +168,8 @@ VelocityLag lag_between_steps(const WorldState& world) {
     VelocityLag lag;
     if (integrator == Integrator::forward_euler) return lag;
     const StepCycle& cycle = world.clock.cycle;
-    const Real half = (world.record.counters.steps > 0 ? world.scratch.parameters.h : trusted_step(world.model)) / 2;
+    const Real before = world.clock.step_before;
+    const Real half = (before > 0 ? before : trusted_step(world.model)) / 2;
     for (std::size_t l = 0; l < lag.of_level.size(); ++l) {
         const bool at_start = l == 0 || cycle.levels == 0;  // of the time that an impulse stands for
         lag.of_level[l] = (at_start ? half : 0) - cycle.lead[l];

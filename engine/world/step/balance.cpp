@@ -103,8 +103,9 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (!balance.open) return;
     const ContactMeasures& contacts = step.findings.measures;
     const ExternalWork& external = step.findings.external;
-    const Vec3 impulse = step.parameters.h * step.awake_mass * step.parameters.gravity + external.impulse +
-                         contacts.outer_impulse + step.findings.joints.impulse - step.findings.rest.momentum;
+    const Vec3 impulse = step.parameters.kick * step.awake_mass * step.parameters.gravity + external.impulse +
+                         step.findings.strained.impulse + contacts.outer_impulse + step.findings.joints.impulse -
+                         step.findings.rest.momentum;
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;

@@ -66,25 +66,25 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     const auto if_unknown = only_if([](bool known) { return !known; }, value(p.forces_known));
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
-                        read(n.position), read(n.velocity), value(p.h), read(e.rotation), outputs<ElementMemory>(e),
+                        read(n.position), read(n.velocity), value(p.kick), read(e.rotation), outputs<ElementMemory>(e),
                         outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
     g.stage_with_result("dynamics/stiffen_clusters", w.scratch.findings.stiffened, stiffen_clusters,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b), inputs<StiffenInputs>(b, n),
                         write(m.patches.stiffening), outputs<StiffenOutputs>(e, m.clusters), if_unknown);
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
-            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.h),
+            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.kick),
             write(n.force), write(n.velocity_next));
     g.stage("dynamics/kick_clusters", kernels().kick_clusters,
             inputs<ClusterKickInputs>(m.clusters, n, b, m.any_asleep), read(n.velocity), value(p.forces_known),
             make(w.scratch.cluster_kick), make(w.scratch.cluster_work), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
-            read(n.velocity), value(p.h), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
+            read(n.velocity), value(p.kick), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies,
             inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep, m.loaded),
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h),
-            outputs<RigidKicks>(m.rigid_bodies, n));
+            value(p.kick), outputs<RigidKicks>(m.rigid_bodies, n));
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
-            inputs<ImplicitLoads>(n, p.gravity, m.loaded), inputs<ImplicitSpins>(m.rigid_bodies), value(p.h),
+            inputs<ImplicitLoads>(n, p.gravity, m.loaded, p.kick), inputs<ImplicitSpins>(m.rigid_bodies), value(p.h),
             value(p.theta), make(m.stiff_bodies), outputs<ImplicitKicks>(m.implicit_nodes, n));
 }
 
@@ -103,15 +103,16 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
             make(w.cache.pairs), make(w.cache.crossings), make(c));
     const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.cache.warm_start),
-            read(w.cache.resting), value(p.h), write(c.impulse), if_warm);
+            read(w.cache.resting), value(p.kick), write(c.impulse), if_warm);
     const auto if_frames = only_if([](const Column<Real>& mass) { return !mass.empty(); }, value(m.rigid_bodies.mass));
     g.stage("contact/hand_on_impulses", hand_on_impulses, inputs<ContactsNow>(c, m.bodies), read(w.cache.warm_start),
-            value(p.h), write(c.impulse), if_warm, if_frames);
+            value(p.kick), write(c.impulse), if_warm, if_frames);
     const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(m.any_asleep));
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/prepare_joints", prepare_joints,
-            inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep), value(p.h), make(w.scratch.joints));
+            inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep), value(p.kick),
+            make(w.scratch.joints));
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
@@ -153,7 +154,7 @@ void list_forces(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/measure_reactions", measure_reactions,
             inputs<ReactionInputs>(m.attachments, m.nodes, m.bodies, m.materials, m.elements, m.element_nodes,
                                    m.rigid_bodies, f.held_impulse, f.held_velocity),
-            value(p.h), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
+            value(p.kick), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 
 /// What implicit bodies deform by, and how that pulls at what holds them.
@@ -161,7 +162,7 @@ void list_strains(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
-                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded),
+                        implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded, p.kick),
                         inputs<ImplicitSpins>(m.rigid_bodies), make(m.stiff_bodies), value(p.h), value(p.theta),
                         outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
                         make(w.scratch.strain_parts));
@@ -210,8 +211,8 @@ void list_checks(WorldState& w, TaskGraph& g) {
     const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
                                 value(m.loaded), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
-                        inputs<WorkInputs>(n, m.attachments, b, m.loaded, m.any_asleep), value(p.h),
-                        make(w.scratch.work_parts), if_any);
+                        inputs<WorkInputs>(n, m.attachments, b, m.loaded, m.any_asleep, p.gravity), value(p.h),
+                        value(p.kick), make(w.scratch.work_parts), if_any);
     g.stage_with_result("collision/find_crossings", found.crossings, kernels().find_crossings, collision_inputs(m),
                         value(p.collision), value(p.h), read(n.velocity_next), read(n.push_out), make(w.cache.pairs),
                         make(w.cache.crossings), if_possible);
@@ -245,12 +246,12 @@ void list_commit(WorldState& w, TaskGraph& g) {
                         inputs<RestInputs>(a, b, w.model.materials, n, r), value(p.sleep), value(p.h),
                         make(w.scratch.sleep_memory), outputs<RestOutputs>(b, n, r, w.model.implicit_nodes), if_taken,
                         if_sleepy);
-    g.stage("dynamics/store_joints", store_joints, read(w.scratch.joints), value(p.h),
+    g.stage("dynamics/store_joints", store_joints, read(w.scratch.joints), value(p.kick),
             outputs<JointMemory>(w.model.joints), if_taken);
-    g.stage("contact/store_warm_start", store_warm_start, inputs<ContactsDone>(c, w.model.rigid_bodies), value(p.h),
+    g.stage("contact/store_warm_start", store_warm_start, inputs<ContactsDone>(c, w.model.rigid_bodies), value(p.kick),
             make(w.cache.warm_start), if_taken);
     g.stage("contact/keep_resting_contacts", keep_resting_contacts, read(c),
-            inputs<RestingInputs>(w.cache.pairs, b, w.model.colliders), value(p.h), make(w.scratch.resting_memory),
+            inputs<RestingInputs>(w.cache.pairs, b, w.model.colliders), value(p.kick), make(w.scratch.resting_memory),
             make(w.cache.resting), if_taken);
 }
 

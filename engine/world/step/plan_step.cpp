@@ -153,14 +153,15 @@ StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit, i
 }
 
 void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameters& parameters) {
-    const Real h = parameters.h;
+    const Real h = parameters.h, kick = parameters.kick;
     for (int l = 0; l < step_level_count; ++l) {
         const int period = 1 << std::min(l, cycle.levels), place = cycle.index % period;
         Real& duration = parameters.active.duration[static_cast<std::size_t>(l)];
         duration = 0;
         if (place != period / 2) continue;
         // To the end of its period; ahead of time already only where a cycle was broken off or its steps shortened.
-        duration = std::max(0.0, ((period - place) * h - cycle.lead[static_cast<std::size_t>(l)]) / h);
+        const Real due = period > 1 ? (period - place) * h : kick;
+        duration = std::max(0.0, (due - cycle.lead[static_cast<std::size_t>(l)]) / kick);
     }
     const LevelMask mask = parameters.active.mask();
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
@@ -202,7 +203,8 @@ void end_cycle(Model& model, const StepCycle& cycle) {
 void count_impulses(const StepParameters& parameters, StepCycle& cycle, RunCounters& counters) {
     for (std::size_t l = 0; l < step_level_count; ++l) {
         const Real duration = parameters.active.duration[l];
-        cycle.lead[l] += duration * parameters.h - parameters.h;
+        const bool every_step = std::min<int>(static_cast<int>(l), cycle.levels) == 0;
+        cycle.lead[l] += duration * parameters.kick - (every_step ? parameters.kick : parameters.h);
         counters.element_steps += cycle.elements[l];
         if (duration > 0) counters.element_impulses += cycle.elements[l];
     }

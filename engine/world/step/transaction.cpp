@@ -55,6 +55,19 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     }
 }
 
+/// s, for which forces act in a step of length h. Symplectic Euler is leapfrog with velocities half a step before the
+/// positions that their forces belong to: from the middle of the last step to the middle of this one
+/// (docs/methods/time_stepping.md 1.5). The others kick at the time of the velocities, for the step itself.
+Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
+    if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
+    Real before = clock.step_before;
+    // What stands much less than the last step was not there then, or was softer, and would be thrown by its force.
+    constexpr Real growth = 2;
+    if (before > growth * plan.stable)
+        before = std::min(before, growth * model.settings.step_safety * stable_step(model));
+    return (before + plan.h) / 2;
+}
+
 /// Runs the stages, unless they have nothing to do; they leave what they find in world.scratch. Returns false when it
 /// could tell without them that the step is not to be taken.
 bool run_stages(WorldState& world) {
@@ -128,6 +141,7 @@ void commit(WorldState& world) {
         if (world.clock.cycle.index == 0) end_cycle(world.model, world.clock.cycle);
     }
     world.clock.time += parameters.h;
+    world.clock.step_before = parameters.h;
 }
 
 /// A strained body stands less than this part of its step at rest.
@@ -259,7 +273,9 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.forces_known = tried && scratch.parameters.h == plan.h;
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
-    scratch.parameters.lag = scratch.parameters.integrator == Integrator::forward_euler ? 0 : plan.h / 2;
+    scratch.parameters.kick = kick_of_step(world.model, world.clock, plan);
+    scratch.parameters.lag =
+        scratch.parameters.integrator == Integrator::forward_euler ? 0 : scratch.parameters.kick - plan.h / 2;
     scratch.parameters.let_invert =
         tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);

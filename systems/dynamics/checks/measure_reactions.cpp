@@ -22,7 +22,7 @@ bool counts(const ReactionInputs& inputs, Index body) {
 }
 
 /// What takes a rigid body along, against its weight, loads and contacts, or keeps the frame of an implicit one.
-void add_rigid_body(const ReactionInputs& inputs, Real h, const Vec3& moment_point, std::size_t a,
+void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, std::size_t a,
                     ImpulseAndMoment& reaction) {
     const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
     if (rows.size() == 0 || inputs.holder[static_cast<std::size_t>(rows.begin)] != static_cast<Index>(a)) return;
@@ -35,22 +35,22 @@ void add_rigid_body(const ReactionInputs& inputs, Real h, const Vec3& moment_poi
     for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
          i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
         const auto n = static_cast<std::size_t>(inputs.held[i]);
-        const Vec3 others = -(h * inputs.force[n] + inputs.held_impulse[n]);
+        const Vec3 others = -(kick * inputs.force[n] + inputs.held_impulse[n]);
         reaction += {others, (inputs.position[n] - moment_point).cross(others)};
     }
 }
 
 /// Part of its velocity that damping takes from a node of a body that is held.
-Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real h) {
+Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) {
     const Index material = inputs.body_material[body];
-    return material == no_index ? 0 : -std::expm1(-inputs.material_damping[static_cast<std::size_t>(material)] * h);
+    return material == no_index ? 0 : -std::expm1(-inputs.material_damping[static_cast<std::size_t>(material)] * kick);
 }
 
 /// Rows of held nodes in the added inertia of the implicit elements (docs/methods/clusters.md 1): what changes the
 /// velocities of moving nodes there pulls at the held ones, too. Damping does not act by that inertia.
-void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real h, Column<Vec3>& node_impulse) {
+void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
     const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
-    const Real damped = damped_fraction(inputs, body, h);
+    const Real damped = damped_fraction(inputs, body, kick);
     for (auto b = static_cast<std::size_t>(inputs.blocks[body].begin);
          b < static_cast<std::size_t>(inputs.blocks[body].end); ++b)
         for (std::size_t lane = 0; lane < element_lanes; ++lane) {
@@ -78,7 +78,7 @@ void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real 
 
 }  // namespace
 
-void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_point, Column<Vec3>& node_impulse,
+void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions) {
     const std::size_t count = inputs.attached.size();
     SKERRY_CHECK(inputs.velocity_before.size() == inputs.velocity.size());
@@ -90,8 +90,8 @@ void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
              i < static_cast<std::size_t>(inputs.attached[a].end); ++i) {
             const auto n = static_cast<std::size_t>(inputs.held[i]);
-            node_impulse[n] = inputs.mass[n] * (inputs.velocity[n] - inputs.velocity_before[n]) - h * inputs.force[n] -
-                              inputs.held_impulse[n];
+            node_impulse[n] = inputs.mass[n] * (inputs.velocity[n] - inputs.velocity_before[n]) -
+                              kick * inputs.force[n] - inputs.held_impulse[n];
         }
     }
     Index last = no_index;
@@ -100,11 +100,11 @@ void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_
         // attachments of one body need not stand together: a body is done at its first
         bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
-        if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), h, node_impulse);
+        if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);
         last = body;
     }
     for (std::size_t a = 0; a < count; ++a)
-        if (is_awake(inputs, inputs.attached_body[a])) add_rigid_body(inputs, h, moment_point, a, reactions[a]);
+        if (is_awake(inputs, inputs.attached_body[a])) add_rigid_body(inputs, kick, moment_point, a, reactions[a]);
     // From the last attachment back: the first that takes the impulse of a node has it.
     for (std::size_t a = count; a-- > 0;) {
         if (!counts(inputs, inputs.attached_body[a])) continue;

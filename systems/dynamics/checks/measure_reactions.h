@@ -96,7 +96,7 @@ struct ReactionInputs {
 /// several attachments hold counts for the last one, whose motion it follows. Of bodies at rest, and of colliders,
 /// nothing. A rigid body is held as a whole, by the last attachment that does. `node_impulse` is memory, by node.
 /// Sequential.
-void measure_reactions(const ReactionInputs& inputs, Real h, const Vec3& moment_point, Column<Vec3>& node_impulse,
+void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 
 }  // namespace skerry

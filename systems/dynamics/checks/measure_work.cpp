@@ -4,7 +4,8 @@
 
 namespace skerry {
 
-ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Column<ExternalWork>& partial) {
+ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick,
+                          Column<ExternalWork>& partial) {
     constexpr std::size_t nodes_per_part = 4096;
     const auto join = [](const ExternalWork& a, const ExternalWork& b) {
         return ExternalWork{a.impulse + b.impulse, a.work + b.work};
@@ -15,15 +16,22 @@ ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, C
             ExternalWork part;
             for (std::size_t n = begin; n < end; ++n) {
                 if (nodes.resting.contain(n)) continue;
-                part.impulse += h * nodes.load[n];
+                part.impulse += kick * nodes.load[n];
                 part.work += h * nodes.load[n].dot(nodes.velocity_next[n]);
             }
             return part;
         },
         join);
-    for (const Index n : nodes.held)
-        if (!nodes.resting.contain(static_cast<std::size_t>(n)))
-            sum = join(sum, {-h * nodes.force[n], -h * nodes.force[n].dot(nodes.velocity_next[n])});
+    for (const Index n : nodes.held) {
+        if (nodes.resting.contain(static_cast<std::size_t>(n))) continue;
+        const Vec3 &force = nodes.force[n], &velocity = nodes.velocity_next[n];
+        ExternalWork hold{-kick * force, -kick * force.dot(velocity)};
+        if (nodes.body_implicit[static_cast<std::size_t>(nodes.node_body[n])].size() == 0) {
+            hold.work -= (h - kick) * nodes.mass[n] * nodes.gravity.dot(velocity);
+            if (!nodes.load.empty()) hold.work -= (h - kick) * nodes.load[n].dot(velocity);
+        }
+        sum = join(sum, hold);
+    }
     return sum;
 }
 

@@ -55,8 +55,8 @@ struct Run {
     std::size_t begin, end;
     const ElementInputs& elements;
     MaterialConstants material;
-    Real duration;                   // in steps
-    Real h;                          // s, a step
+    Real duration;                   // in kicks
+    Real kick;                       // s
     const PaddedVec3* position;      // m, of the patch, by slot
     PaddedVec3* force;               // N, the same
     std::span<const Vec3> velocity;  // of all nodes
@@ -94,7 +94,7 @@ struct Run {
         const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
         const LaneSymmetric<T> strain = green_strain(F);
         const ViscousStretch<T> before = viscous_stretch(strain, elements.viscous_strain[block], part);
-        const Real time = duration * h;
+        const Real time = duration * kick;
         const T forgets = time * part_of<T>(elements.relaxation_rate, block, part);
         const T forgets_volume = (time / bulk_time) * part_of<T>(elements.own_frequency, block, part);
         // backward Euler: never more than all; one division for both
@@ -220,7 +220,7 @@ struct Run {
 
     void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t block, std::size_t part) const {
         ElementViscousImpulse& impulse = patches.viscous_impulse[block];
-        const KernelReal scale = (duration * h) * part_of<KernelReal>(elements.volume, block, part);
+        const KernelReal scale = (duration * kick) * part_of<KernelReal>(elements.volume, block, part);
         const KernelReal entry[9] = {stress.c0.x, stress.c0.y, stress.c0.z, stress.c1.x, stress.c1.y,
                                      stress.c1.z, stress.c2.x, stress.c2.y, stress.c2.z};
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
@@ -372,7 +372,7 @@ std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::si
 }  // namespace
 
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
+                            std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, const PatchForces& patches) {
     SKERRY_CHECK(patches.force.size() == patches.node.size() && patches.position.size() == patches.node.size());
     SKERRY_CHECK(rotation.size() == elements.blocks() && next.rotation.size() == elements.blocks());
@@ -392,8 +392,9 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 const Real duration = elements.schedule.duration(b);
                 const std::size_t after = end_of_run(elements, b, end, touched);
                 if (duration > 0) {
-                    const Run run{b,        after, elements, elements.material_of(b), duration, h, x, force, velocity,
-                                  rotation, next,  patches};
+                    const Run run{b,        after,    elements, elements.material_of(b),
+                                  duration, kick,     x,        force,
+                                  velocity, rotation, next,     patches};
                     if (elements.count[b] == 4)
                         compute_run(run, Fans{run});
                     else

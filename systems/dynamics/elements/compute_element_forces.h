@@ -133,9 +133,9 @@ struct ElementMemory {
 /// lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
 /// `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Patches that are not active
 /// keep what they had; those that are active for several steps at once get so many times the force. Where some blocks
-/// are touched the force is that of the blocks that are due. Parallel over patches.
+/// are touched the force is that of the blocks that are due. `kick`: s, for which they act. Parallel over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const Vec3> velocity, Real h, std::span<const ElementRotation> rotation,
+                            std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, const PatchForces& patches);
 
 }  // namespace skerry

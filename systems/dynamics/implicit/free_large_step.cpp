@@ -52,8 +52,10 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         next[n] = before + (during - before) / theta;
         // what contacts and loads are said to have done, less what energy has grown by
         taken += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
-        if (!loads.load.empty())
-            taken += h * (to_mesh * loads.load[of.first_node + n]).dot(during - (next[n] - velocity[n]) / 2);
+        if (!loads.load.empty()) {
+            const Vec3 load = to_mesh * loads.load[of.first_node + n];
+            taken += h * load.dot(during - (next[n] - velocity[n]) / 2) + (loads.kick - h) * load.dot(velocity[n]);
+        }
         taken += stiff.mass(k) / 2 * velocity[n].squaredNorm();
     }
     const Mat3 turned = stiff.turn_to_own_frame(displacement_next);

@@ -161,7 +161,7 @@ void forces_of_large_step(const HeldNodes& nodes, const OfBody& of, Real inertia
 
 }  // namespace
 
-Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff,
+Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real kick, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out) {
     const OfBody of(bodies, stiff, r);
     const LedFrame frame(bodies, r, h);
@@ -209,7 +209,9 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
             taken += h * next[n].dot(of_mesh);
         else if (!frame.stands)
             taken += of_mesh.dot(place - frame.across * place);
-        if (nodes.held(n)) out.force[of.first_node + n] -= pull;
+        // over the step, and told as what acts for `kick`
+        if (Vec3& force_on_held = out.force[of.first_node + n]; nodes.held(n))
+            force_on_held = h / kick * (force_on_held - pull);
     }
     out.hold_moment[r] = -h * moment;
     // (theta - 1/2)( dw M dw + du K du ), and the damping of the material

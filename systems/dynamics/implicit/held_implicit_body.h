@@ -28,7 +28,7 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
                     StiffBody& stiff, const ImplicitKicks& out);
 
 /// As strain_implicit_bodies, of one body. Returns what it damped, less what its hold gave by its moment, J.
-Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff,
+Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real kick, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out);
 
 /// As drift_implicit_bodies, of one body.

@@ -163,18 +163,33 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
     return true;
 }
 
+namespace {
+
+/// See StrainPart::impulse.
+Vec3 impulse_of_longer_step(const ImplicitLoads& loads, Real h, const OfBody& of) {
+    Vec3 force = Vec3::Zero();
+    for (std::size_t n = 0; n < of.count; ++n) {
+        force += of.stiff.mass(of.place(n)) * loads.gravity;
+        if (!loads.load.empty()) force += loads.load[of.first_node + n];
+    }
+    return (h - loads.kick) * force;
+}
+
+}  // namespace
+
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, StiffBodies& stiff, Real h, Real theta,
-                                      const ImplicitStrains& out, Column<Real>& damped) {
+                                      const ImplicitStrains& out, Column<StrainPart>& parts) {
     if (!bodies.any()) return {};
-    damped.assign(bodies.body.size(), 0);
+    parts.assign(bodies.body.size(), {});
     keep_spins(bodies, spins, out);
     for_each_implicit(executor, bodies, [&](std::size_t r) {
+        const OfBody of(bodies, stiff[r], r);
+        if (h != loads.kick && !bodies.asleep(r)) parts[r].impulse = impulse_of_longer_step(loads, h, of);
         if (bodies.holds.hold(r)) {
-            damped[r] = strain_held_body(bodies, r, h, theta, stiff[r], out);
+            parts[r].damped = strain_held_body(bodies, r, h, loads.kick, theta, stiff[r], out);
             return;
         }
-        const OfBody of(bodies, stiff[r], r);
         const std::span<Vec3> impulse = of.rows(out.impulse), rate = of.rows(out.force_rate),
                               next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
         const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
@@ -190,7 +205,7 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
         if (bodies.asleep(r)) return;
         if (bodies.large[r] != 0 || stiff[r].is_tangent() ||
             is_large_after(false, displacement_next, back * spins.after(r), of, stiff[r])) {
-            damped[r] = end_large_free_step(bodies, loads, spins, r, h, theta, stiff[r], out);
+            parts[r].damped = end_large_free_step(bodies, loads, spins, r, h, theta, stiff[r], out);
             return;
         }
         for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = next[n];
@@ -204,16 +219,20 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
             taken += (back * contact[n]).dot(before + during) / 2;
             if (!loads.load.empty()) {
                 const Vec3 load = back * loads.load[of.first_node + n];
-                taken += h * load.dot(during - (after - before) / 2);
+                // J, said to be theirs by the velocities of now, which are by so much behind or ahead
+                taken += h * load.dot(during - (after - before) / 2) + (loads.kick - h) * load.dot(before);
             }
             taken -= of.stiff.mass(k) / 2 * (after - before).dot(after + before);
             taken -= h * during.dot(force[k] + h / 2 * rate[k]);
             next[n] = after;
         }
-        damped[r] = taken;
+        parts[r].damped = taken;
     });
     StrainFindings found;
-    for (const Real of_body : damped) found.damped += of_body;
+    for (const StrainPart& of_body : parts) {
+        found.damped += of_body.damped;
+        found.impulse += of_body.impulse;
+    }
     for (std::size_t r = 0; r < stiff.size(); ++r) {
         found.newton += stiff[r].large_step.counts;
         if (found.unsolved == no_index && stiff[r].large_step.failed) found.unsolved = bodies.body[r];

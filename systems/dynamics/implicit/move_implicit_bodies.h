@@ -80,9 +80,13 @@ struct ImplicitBodies {
 struct ImplicitLoads {
     std::span<const Vec3> load;  // N, by node; empty: none
     Vec3 gravity;                // m/s^2: of bodies that are held; others fall with their frames
+    Real kick;                   // s, for which loads act on all others; on implicit bodies as long as the step is
 
-    static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded) {
-        return {.load = binder.read_if(binder.value(loaded), node.load), .gravity = binder.value(gravity)};
+    static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded,
+                              const Real& kick) {
+        return {.load = binder.read_if(binder.value(loaded), node.load),
+                .gravity = binder.value(gravity),
+                .kick = binder.value(kick)};
     }
 };
 
@@ -156,17 +160,26 @@ struct ImplicitStrains {
     }
 };
 
+/// What the step of one body did.
+struct StrainPart {
+    Real damped = 0;  // J, less what holds by their moments gave
+    // N s, of weight and loads: over the step less over the time for which they act on other bodies
+    Vec3 impulse = Vec3::Zero();
+};
+
 struct StrainFindings {
-    Real damped = 0;  // J, by the step, less what holds by their moments gave
+    Real damped = 0;  // sums over the bodies
+    Vec3 impulse = Vec3::Zero();
     NewtonCounts newton;
     Index unsolved = no_index;  // row of BodyTable: the first whose step of large strain was not found
 };
 
 /// The velocities and displacements at the end of the step, and what elasticity does to held nodes and frames, added to
-/// `force` and written to `hold_moment`. `damped` is memory, by row of RigidBodyTable. Parallel over bodies.
+/// `force`, which then acts for `loads.kick`, and written to `hold_moment`. `parts` is memory, by row of
+/// RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, StiffBodies& stiff, Real h, Real theta,
-                                      const ImplicitStrains& out, Column<Real>& damped);
+                                      const ImplicitStrains& out, Column<StrainPart>& parts);
 
 /// What deforms goes on for `seconds` with the velocity that it has. Writes what ElasticMotion reads.
 void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, const StiffBodies& stiff,

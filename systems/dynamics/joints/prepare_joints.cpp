@@ -21,13 +21,14 @@ Vec3 turning_error(JointKind kind, const Mat3& first, const Mat3& second) {
     return second.transpose() * second.col(2).cross(first.col(2));
 }
 
-AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate) {
+AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, Real kick) {
     return {.locked = false,
             .coordinate = coordinate,
             .lower = joints.lower[j],
             .upper = joints.upper[j],
             .drive = joints.drive[j],
-            .motor = joints.motor[j]};
+            .motor = joints.motor[j],
+            .most_impulse = kick * joints.motor[j].most};
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace&
     return angle + turn * std::round((before - angle) / turn);
 }
 
-bool prepare_joints(const JointInputs& joints, Real h, JointBlockTable& blocks) {
+bool prepare_joints(const JointInputs& joints, Real kick, JointBlockTable& blocks) {
     blocks.block.clear();
     blocks.impulse.clear();
     blocks.coordinate.resize(joints.size());
@@ -70,26 +71,26 @@ bool prepare_joints(const JointInputs& joints, Real h, JointBlockTable& blocks) 
                          .error = second.axes.transpose() * (first.point - second.point),
                          .axis = {}};
         if (block.first_node == no_index && block.second_node == no_index) continue;
-        const Real scale = joints.step[j] > 0 ? h / joints.step[j] : 0;
-        if (kind == JointKind::slider) block.axis = axis_of(joints, j, blocks.coordinate[j]);
+        const Real scale = joints.step[j] > 0 ? kick / joints.step[j] : 0;
+        if (kind == JointKind::slider) block.axis = axis_of(joints, j, blocks.coordinate[j], kick);
         blocks.block.push_back(block);
         blocks.impulse.push_back(scale * joints.impulse[j]);
         if (kind == JointKind::ball) continue;
         block.turning = true;
         block.error = turning_error(kind, first.axes, second.axes);
-        block.axis = kind == JointKind::hinge ? axis_of(joints, j, blocks.coordinate[j]) : AxisLaw{};
+        block.axis = kind == JointKind::hinge ? axis_of(joints, j, blocks.coordinate[j], kick) : AxisLaw{};
         blocks.block.push_back(block);
         blocks.impulse.push_back(scale * joints.moment[j]);
     }
     return joints.size() > 0;
 }
 
-bool store_joints(const JointBlockTable& blocks, Real h, const JointMemory& out) {
+bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& out) {
     for (std::size_t j = 0; j < out.step.size(); ++j) {
         if (blocks.resting[j]) continue;
         out.coordinate[j] = blocks.coordinate[j];
         out.impulse[j] = out.moment[j] = Vec3::Zero();
-        out.step[j] = h;
+        out.step[j] = kick;
     }
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const auto j = static_cast<std::size_t>(blocks.block[i].joint);

@@ -84,8 +84,9 @@ struct JointInputs {
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
 
 /// Writes the blocks of all joints of which a body moves, with the impulses of the last step as the first guess.
+/// `kick`: s, for which forces act, those of motors among them.
 /// Returns false where there is no joint (skipped).
-bool prepare_joints(const JointInputs& joints, Real h, JointBlockTable& blocks);
+bool prepare_joints(const JointInputs& joints, Real kick, JointBlockTable& blocks);
 
 /// What is known of the joints once a step is taken.
 struct JointMemory {
@@ -102,6 +103,6 @@ struct JointMemory {
 };
 
 /// Keeps what the joints gave for the next step. Returns false where there is no joint (skipped).
-bool store_joints(const JointBlockTable& blocks, Real h, const JointMemory& out);
+bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& out);
 
 }  // namespace skerry

@@ -139,7 +139,7 @@ Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, c
 
 }  // namespace
 
-bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real h,
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,
                    std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated) {
     const std::size_t body_count = bodies.body_node_blocks.size(), block_count = bodies.block_begin.size();
     SKERRY_CHECK(sums.size() == block_count);
@@ -163,7 +163,7 @@ bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<co
             if (!is_damped(bodies, body)) continue;
             const NodeBlockSums& total = sums[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)];
             sums[b].dissipated =
-                damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * h), total, velocity, velocity_next);
+                damp_block(bodies, b, -std::expm1(-damping_of(bodies, body) * kick), total, velocity, velocity_next);
         }
     });
     for (const NodeBlockSums& block : sums) dissipated += block.dissipated;

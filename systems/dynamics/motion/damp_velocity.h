@@ -43,15 +43,15 @@ struct DampingInputs {
     }
 };
 
-/// Takes (1 - exp(-damping h)) of the deformation velocity v - v_rigid out of velocity_next, for every body with
-/// damping > 0 that neither rests nor moves as rigid bodies do. `velocity` is that at the start of the step, not the
-/// predicted one: a body at rest under load must not feel its damping. v_rigid is the rigid motion, of the places that
-/// the nodes had `lag` ago, with the momentum and the angular momentum of the body; a body with pinned nodes is damped
-/// towards rest. With places and velocities of one time a body that turns at its centrifugal stretch has no deformation
-/// velocity, and by taking moments about the places of now what is taken out has no angular momentum there.
-/// `dissipated` (J) is the kinetic energy taken. Returns false when no body has damping (skipped). Parallel over node
-/// blocks; sums in block order.
-bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real h,
+/// Takes (1 - exp(-damping kick)) of the deformation velocity v - v_rigid out of velocity_next, with `kick` (s) the
+/// time between both velocities, for every body with damping > 0 that neither rests nor moves as rigid bodies do.
+/// `velocity` is that at the start of the step, not the predicted one: a body at rest under load must not feel its
+/// damping. v_rigid is the rigid motion, of the places that the nodes had `lag` ago, with the momentum and the angular
+/// momentum of the body; a body with pinned nodes is damped towards rest. With places and velocities of one time a body
+/// that turns at its centrifugal stretch has no deformation velocity, and by taking moments about the places of now
+/// what is taken out has no angular momentum there. `dissipated` (J) is the kinetic energy taken. Returns false when no
+/// body has damping (skipped). Parallel over node blocks; sums in block order.
+bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,
                    std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated);
 
 }  // namespace skerry

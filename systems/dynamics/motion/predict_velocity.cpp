@@ -15,7 +15,7 @@ constexpr std::size_t kicked_blocks_per_job = 4;
 struct Kick {
     const KickInputs& nodes;
     std::span<const Vec3> velocity;
-    Real h;
+    Real seconds;
     std::span<Vec3> force, velocity_next;
 
     void block(std::size_t b) const {
@@ -93,7 +93,7 @@ private:
         if (!nodes.load.empty()) total += nodes.load[n];
         // Not a product with zero: a pinned node stays put even when the force on it is not finite.
         if (nodes.inverse_mass[n] > 0) {
-            velocity_next[n] = velocity[n] + (h * nodes.inverse_mass[n]) * total;
+            velocity_next[n] = velocity[n] + (seconds * nodes.inverse_mass[n]) * total;
         } else {
             velocity_next[n] = velocity[n];
             force[n] = total;
@@ -103,16 +103,16 @@ private:
 
 }  // namespace
 
-void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real h,
+void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next) {
     [[maybe_unused]] const std::size_t count = velocity_next.size();
     SKERRY_CHECK(nodes.slots_of_node.size() == count && nodes.mass.size() == count &&
                  nodes.inverse_mass.size() == count);
     SKERRY_CHECK(velocity.size() == count && force.size() == count &&
                  (nodes.load.empty() || nodes.load.size() == count));
-    const Kick kick{nodes, velocity, h, force, velocity_next};
+    const Kick kicked{nodes, velocity, kick, force, velocity_next};
     parallel_for(executor, nodes.block_begin.size(), kicked_blocks_per_job, [&](std::size_t first, std::size_t last) {
-        for (std::size_t b = first; b < last; ++b) kick.block(b);
+        for (std::size_t b = first; b < last; ++b) kicked.block(b);
     });
 }
 

@@ -54,11 +54,12 @@ struct KickInputs {
     }
 };
 
-/// velocity_next = velocity + h F inverse_mass, with F = sum of what the patches around the node that are due do to it,
-/// in a fixed order, + mass gravity + load. Nodes without freedom (inverse mass 0) keep their velocity; of
-/// them alone F is written to `force`: what holds them is its opposite. One pass, since F of all nodes, kept and read
-/// again, took as long as the kick itself. Parallel over node blocks.
-void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real h,
+/// velocity_next = velocity + kick F inverse_mass, `kick` (s) the time for which forces act in this step, with F = sum
+/// of what the patches around the node that are due do to it, in a fixed order, + mass gravity + load. Nodes without
+/// freedom (inverse mass 0) keep their velocity; of them alone F is written to `force`: what holds them is its
+/// opposite. One pass, since F of all nodes, kept and read again, took as long as the kick itself. Parallel over node
+/// blocks.
+void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 
 }  // namespace skerry

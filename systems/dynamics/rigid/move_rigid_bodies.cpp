@@ -74,7 +74,7 @@ Vec3 angular_momentum_after(const RigidBodies& bodies, const RigidImpulses& impu
 }  // namespace
 
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
-                       const RigidForces& forces, Real h, const RigidKicks& out) {
+                       const RigidForces& forces, Real h, Real kick, const RigidKicks& out) {
     if (bodies.size() == 0) return false;
     for_each_body(executor, bodies, [&](std::size_t r) {
         out.contact_impulse[r] = out.contact_moment[r] = out.push_velocity[r] = out.push_spin[r] = Vec3::Zero();
@@ -98,8 +98,9 @@ bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
                 force += forces.load[n];
                 moment += (forces.position[n] - bodies.center[r]).cross(forces.load[n]);
             });
-        out.kick[r] = h * force;
-        out.moment_kick[r] = h * moment;
+        const Real seconds = bodies.implicit(r).size() > 0 ? h : kick;
+        out.kick[r] = seconds * force;
+        out.moment_kick[r] = seconds * moment;
         const RigidField field{bodies.center[r], (bodies.momentum[r] + out.kick[r]) / bodies.mass[r],
                                out.inverse_inertia[r] * (bodies.angular_momentum[r] + out.moment_kick[r])};
         for_each_node(bodies.step_nodes(r),

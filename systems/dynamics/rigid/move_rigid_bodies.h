@@ -119,11 +119,12 @@ struct RigidKicks {
     }
 };
 
-/// The impulse and moment of gravity and loads, and the velocities with them, as contacts see them. Those at rest get
-/// none, those that are held what takes them along: their nodes have their velocities already. Frames that are held
-/// have neither momentum nor freedom. Parallel over bodies. Returns false where there is none (skipped).
+/// The impulse and moment of gravity and loads, which act for `kick`, on frames of implicit bodies for the step, and
+/// the velocities with them, as contacts see them. Those at rest get none, those that are held what takes them along:
+/// their nodes have their velocities already. Frames that are held have neither momentum nor freedom. Parallel over
+/// bodies. Returns false where there is none (skipped).
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
-                       const RigidForces& forces, Real h, const RigidKicks& out);
+                       const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 
 /// What acted on rigid bodies in this step.
 struct RigidImpulses {

@@ -50,7 +50,7 @@ AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     bounds.low = std::min((axis.lower - axis.coordinate) / h, fastest);
     bounds.high = std::max((axis.upper - axis.coordinate) / h, -fastest);
     if (axis.drive == JointDrive::none) return bounds;
-    bounds.most = h * axis.motor.most;
+    bounds.most = axis.most_impulse;
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
     const Real way = axis.motor.target - axis.coordinate;

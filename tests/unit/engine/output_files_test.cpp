@@ -112,13 +112,13 @@ TEST_CASE("a frame of nothing is written, too", "[unit][output]") {
     CHECK(content(folder.path() / "run_contacts_0000.vtp").find("NumberOfVerts=\"0\"") != std::string::npos);
 }
 
-TEST_CASE("a contact force is its impulse over the step, and none without a step", "[unit][output]") {
+TEST_CASE("a contact force is its impulse over the time that it stands for, and none without a step",
+          "[unit][output]") {
     Contact contact{};
     contact.impulse = {0, 0, 3};
-    Frame frame;
-    CHECK(frame.force(contact) == Vec3(0, 0, 0));
-    frame.step_size = 0.5;
-    CHECK(frame.force(contact) == Vec3(0, 0, 6));
+    CHECK(contact.force() == Vec3(0, 0, 0));
+    contact.seconds = 0.5;
+    CHECK(contact.force() == Vec3(0, 0, 6));
 }
 
 TEST_CASE("regions are counted by their highest number", "[unit][output]") {

@@ -202,7 +202,7 @@ TEST_CASE("packed contacts give back what touches, where, how strongly, and whic
             CHECK(row.collider == 0);
             CHECK((row.point - contact.point).cwiseAbs().maxCoeff() <=
                   run.shapes[static_cast<std::size_t>(row.first)].step / 2 * 1.000001);
-            const Vec3 force = frame.force(contact);
+            const Vec3 force = contact.force();
             for (Index axis = 0; axis < 3; ++axis)
                 CHECK(std::abs(row.force[axis] - force[axis]) <= 1.001 * half_code(force[axis], read.top[3]));
             CHECK(std::abs(row.normal_force - force.z()) <= 1.001 * half_code(force.z(), read.top[3]));

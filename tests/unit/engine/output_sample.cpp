@@ -128,6 +128,7 @@ void OutputSample::add_contacts(int number, Real time) {
                              .gap = open ? 1e-4 : 0,
                              .slip = slides ? Vec3(0.01 * std::cos(time), 0.02, 0) : Vec3::Zero(),
                              .impulse = {slides ? -0.5 * press : 0.1 * press, 0, press},
+                             .seconds = frame_step / 20,
                              .motion = open     ? ContactMotion::open
                                        : slides ? ContactMotion::slide
                                                 : ContactMotion::stick,
@@ -137,13 +138,8 @@ void OutputSample::add_contacts(int number, Real time) {
 
 const Frame& OutputSample::frame(int number) {
     const Real time = number * frame_step;
-    frame_ = Frame{.time = time,
-                   .step_size = number == 0 ? 0 : frame_step / 20,
-                   .gravity = {0, 0, -gravity},
-                   .energy = {},
-                   .bodies = {},
-                   .colliders = {},
-                   .contacts = {}};
+    frame_ =
+        Frame{.time = time, .gravity = {0, 0, -gravity}, .energy = {}, .bodies = {}, .colliders = {}, .contacts = {}};
     contacts_.clear();
     for (int ball = 0; ball < static_cast<int>(balls_.size()); ++ball) {
         if ((ball == 0 && 3 * number >= 2 * frame_count_) || (ball == 1 && 3 * number < frame_count_)) continue;

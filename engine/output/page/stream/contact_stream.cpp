@@ -76,7 +76,7 @@ void ContactStream::put_frame(const Frame& frame, std::span<const ContactSides> 
             base = rows_.back().code;
         }
         const Code3 point = lattice.code(contact.point, {base[0], base[1], base[2]});
-        const Vec3 f = frame.force(contact);
+        const Vec3 f = contact.force();
         const Row row{sides[i],
                       contact.node,
                       {point[0], point[1], point[2], force.code(f.x()), force.code(f.y()), force.code(f.z()),
