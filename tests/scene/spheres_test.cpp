@@ -266,20 +266,19 @@ TEST_CASE("a sphere lies in a soft body that closes around it, and is carried by
                                             {.material = soft, .position = {0, 0, 0.1005}, .contact_distance = 0.001});
     const BodyHandle ball = s.add({0.013, 0.007, 0.2 + radius + 0.003});
     REQUIRE(s.world.advance(1.5).ok());
-    const StepReport last = s.world.advance(1e-4);
-    REQUIRE(last.steps == 1);
+    REQUIRE(s.world.advance(1e-4).steps == 1);
     const Real depth = 0.2 + radius - s.place(ball).z();
     CHECK(depth > 0.01);
     Vec3 carried = Vec3::Zero();
     Index touching = 0;
     for (const Contact& contact : s.world.contacts())
         if (contact.first == ball || contact.second == ball) {
-            carried += (contact.first == ball ? 1 : -1) * contact.impulse;
+            carried += (contact.first == ball ? 1 : -1) * contact.force();
             ++touching;
             CHECK(contact.distance > 0);
         }
     CHECK(touching > 5);
-    CHECK(carried.z() / last.step_size == Approx(mass * g).epsilon(0.05));
+    CHECK(carried.z() == Approx(mass * g).epsilon(0.05));
     for (const Vec3& x : s.world.positions(pad)) CHECK((x - s.place(ball)).norm() > radius);
 }
 

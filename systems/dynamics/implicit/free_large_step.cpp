@@ -86,10 +86,11 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
     return taken + stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
 }
 
-void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, const StiffBody& stiff,
+void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, StiffBody& stiff,
                   Vec3& moments, Mat3& axes, Mat3& rotation) {
-    const std::vector<Vec3> rest(large ? 0 : stiff.size(), Vec3::Zero());
-    BodyShape shape;
+    BodyShape& shape = stiff.large_step.shape;
+    std::vector<Vec3>& rest = stiff.large_step.within;
+    if (!large) rest.assign(stiff.size(), Vec3::Zero());
     stiff.find_shape(large ? Displacements(displacement, stiff.nodes()) : Displacements(rest), shape);
     const PrincipalInertia principal(shape.inertia());
     moments = principal.moments;

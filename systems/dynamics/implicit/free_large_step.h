@@ -16,7 +16,7 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
                          std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out);
 
 /// How a body of large strain turns in the shape that it has by now.
-void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, const StiffBody& stiff,
+void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, StiffBody& stiff,
                   Vec3& moments, Mat3& axes, Mat3& rotation);
 
 }  // namespace skerry

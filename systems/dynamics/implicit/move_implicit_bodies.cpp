@@ -240,8 +240,8 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
     return found;
 }
 
-void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, const StiffBodies& stiff,
-                           Real seconds, const ImplicitStrains& out) {
+void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,
+                           const ImplicitStrains& out) {
     if (!bodies.any()) return;
     keep_spins(bodies, spins, out);
     const std::span<Vec3> displacement_next = out.displacement_next, velocity_next = out.velocity_next;

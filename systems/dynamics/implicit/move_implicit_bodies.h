@@ -182,7 +182,7 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
 /// What deforms goes on for `seconds` with the velocity that it has. Writes what ElasticMotion reads.
-void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, const StiffBodies& stiff,
-                           Real seconds, const ImplicitStrains& out);
+void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,
+                           const ImplicitStrains& out);
 
 }  // namespace skerry

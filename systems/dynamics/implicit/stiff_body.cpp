@@ -163,17 +163,17 @@ void StiffBody::forget_columns() {
     touched_.clear();
 }
 
-bool StiffBody::is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part) const {
+bool StiffBody::is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part) {
     const BodyElements::Misfit misfit = elements_.misfit(displacement);
     if (!(misfit.off <= part * energy_share * misfit.linear)) return true;
     if (!(energy_of_spin(angular_momentum) > part * energy_share * misfit.linear)) return false;
-    BodyShape shape;
+    BodyShape& shape = large_step.shape;
     find_shape(displacement, shape);
     const Vec3 spin = inverse_solid_inertia_ * angular_momentum;
     return (shape.inertia().ldlt().solve(angular_momentum) - spin).norm() > part * small_strain * spin.norm();
 }
 
-bool StiffBody::is_beyond(const Displacements& displacement, const Vec3& angular_momentum) const {
+bool StiffBody::is_beyond(const Displacements& displacement, const Vec3& angular_momentum) {
     if (!elements_.any_bends()) return false;
     return energy_of_spin(angular_momentum) > stretching_spin_ ||
            (!(elements_.largest_strain(displacement) <= small_strain) && is_off(displacement, angular_momentum, 1));
@@ -198,7 +198,7 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
     return large_there_;
 }
 
-bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) const {
+bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
     constexpr Real calmer = 0.25, still = 0.1;  // of the shares; of the strain, where energies are mostly rounding
     if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
     const Displacements at(displacement, node_);

@@ -41,9 +41,9 @@ struct LargeStep {
     std::vector<Vec3> force;     // N, dU/du, within the step
     std::vector<Vec3> before;    // m/s, at its start, as elasticity finds them
     std::vector<Vec3> gradient, direction, within;
-    Vec3 angular_momentum =
-        Vec3::Zero();  // kg m^2/s, of the frame in which a free body deforms, in that of the mesh; zero of a held one
-    BodyShape shape;   // within the step, where there is such a momentum
+    // kg m^2/s, of the frame in which a free body deforms, in that of the mesh; zero of a held one
+    Vec3 angular_momentum = Vec3::Zero();
+    BodyShape shape;  // within the step, where there is such a momentum; memory of looks at shapes outside of it
     NewtonCounts counts;
     bool failed = false;  // no velocity was found
 
@@ -85,14 +85,14 @@ public:
     /// body spins, with more than that share of energy, by small_strain faster than its shape does; or its spin would
     /// stretch a bar by small_strain. `displacement`: by node of the body. `angular_momentum`: kg m^2/s, in the frame
     /// of the mesh; none of what is held.
-    bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) const {
+    bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
         return is_beyond({displacement, node_}, angular_momentum);
     }
     /// The same of displacements by place. Looks at elements only where nodes have moved so far since it last did that
     /// it could be.
     bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     /// Whether both are good enough again: by a quarter of these shares, or small strain.
-    bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) const;
+    bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     static constexpr Real small_strain = 0.02, energy_share = 0.01;
     /// J, u K u / 2, or where strain is `large` by the laws of the elements; `displacement`: by node of the body.
     Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
@@ -150,12 +150,12 @@ private:
     void forget_factor();
     void forget_columns();
     /// But for the look at strain; `part`: of the shares.
-    bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part) const;
+    bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part);
     /// J, as at rest.
     Real energy_of_spin(const Vec3& angular_momentum) const {
         return angular_momentum.dot(inverse_solid_inertia_ * angular_momentum) / 2;
     }
-    bool is_beyond(const Displacements& displacement, const Vec3& angular_momentum) const;
+    bool is_beyond(const Displacements& displacement, const Vec3& angular_momentum);
     /// What keeps answers by a tangent free of rigid motion, which it does not leave alone.
     void find_rigid_answers();
     template <class X>
