@@ -51,8 +51,9 @@ std::size_t start_of_pair(std::span<const ContactKey> key, std::size_t row) {
 }
 
 Rows rows_of_pair(std::span<const ContactKey> key, std::uint64_t pair) {
-    const auto rows = std::ranges::equal_range(key, pair, {}, &ContactKey::pair);
-    return {static_cast<std::size_t>(rows.begin() - key.begin()), static_cast<std::size_t>(rows.end() - key.begin())};
+    const auto begin = std::ranges::lower_bound(key, pair, {}, &ContactKey::pair),
+               end = std::ranges::upper_bound(begin, key.end(), pair, {}, &ContactKey::pair);
+    return {static_cast<std::size_t>(begin - key.begin()), static_cast<std::size_t>(end - key.begin())};
 }
 
 /// How far, m, what is gone may be from the contact that takes its impulse over; 0 if bodies move node by node.

@@ -286,7 +286,7 @@ TEST_CASE("that strain becomes large is seen by bounds as by looking each time",
     const ElasticBody body = rubber(model);
     StiffBody stiff = stiff_body_of(body);
     const std::vector<Vec3> shape = random_vectors(stiff.size(), 0.02, 17);  // rough: bounds are near
-    const Vec3 spin = GENERATE(0.0, 0.4) * Vec3(1, 0.5, 2);  // kg m^2/s
+    const Vec3 spin = GENERATE(0.0, 0.4) * Vec3(1, 0.5, 2);                  // kg m^2/s
     int large = 0;
     for (int k = 0; k < 600; ++k) {
         const Real size = 0.2 * std::pow(std::sin(0.01 * k), 2);
