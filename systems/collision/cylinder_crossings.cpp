@@ -151,39 +151,9 @@ private:
                        at_start = other_motion.position + other_motion.rotation * (other_end.rotation.transpose() *
                                                                                    (on_other - other_end.position));
             const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
-            if (along < 0) {
-                const Vec3 last =
-                    other_end.rotation.transpose() * (on_other + touch.distance * normal - other_end.position);
-                if (add_entry(candidate, crossing_of_shape + touch.number, other, part, other_motion, stencil, arm,
-                              last, velocity))
-                    continue;
-            }
             put(candidate, crossing_of_shape + touch.number, stencil, arm, normal, along, velocity(at_start),
                 touch.distance);
         }
-        return true;
-    }
-
-    /// Where a place of the cylinder that was beyond the tangent plane of where it would end, a surface that is round
-    /// the other way or behind a rim, comes into the other. `last`: m, in the frame of the other. Returns whether it
-    /// does.
-    bool add_entry(const Candidate& candidate, Index number, const ColliderGeometry& other, Index part,
-                   const RigidMotion& other_motion, const Stencil& stencil, const Vec3& arm, const Vec3& last,
-                   auto&& velocity) {
-        const Vec3 from = other_motion.rotation.transpose() * (cylinder_.motion.position + arm - other_motion.position);
-        const auto on_way = [&](Real part_of_way) {
-            return local_distance(other, from + part_of_way * (last - from), part);
-        };
-        Real outside = 0, inside = 1;
-        if (!(on_way(outside).distance > 0 && on_way(inside).distance < 0)) return false;
-        constexpr int halvings = 30;
-        for (int k = 0; k < halvings; ++k) {
-            const Real middle = (outside + inside) / 2;
-            (on_way(middle).distance > 0 ? outside : inside) = middle;
-        }
-        const Vec3 normal = on_way(outside).normal, met = from + outside * (last - from);
-        put(candidate, number, stencil, arm, other_motion.rotation * normal, normal.dot(from - met),
-            velocity(other_motion.position + other_motion.rotation * met), on_way(1).distance);
         return true;
     }
 

@@ -207,9 +207,7 @@ private:
             for_each_minimum(
                 rim, [&](const Vec3& p) { return other_at(p); },
                 [&](Index k, const Vec3& direction, const SurfacePoint& on) {
-                    // what is in the other is that whichever way it comes out
-                    if (on.distance < 0 || rim.faces(-on.normal, direction))
-                        add(of_rim * end + k, on.distance, on.normal, on.point);
+                    if (rim.faces(-on.normal, direction)) add(of_rim * end + k, on.distance, on.normal, on.point);
                 });
         }
     }
@@ -224,7 +222,7 @@ private:
                 return on;
             },
             [&](Index k, const Vec3& direction, const SurfacePoint& on) {
-                if (!(on.distance < 0) && !rim.faces(-on.normal, direction)) return;
+                if (!rim.faces(-on.normal, direction)) return;
                 add(of_other_rims + of_rim * rim_number + k, on.distance, -(place_.rotation * on.normal),
                     from_other(rim_place(rim.radius, rim.z, direction)));
             });
