@@ -1,6 +1,7 @@
 #include "engine/world/step/balance.h"
 
 #include <algorithm>
+#include <array>
 
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
@@ -103,9 +104,12 @@ void add_step(const StepScratch& step, Balance& balance) {
     if (!balance.open) return;
     const ContactMeasures& contacts = step.findings.measures;
     const ExternalWork& external = step.findings.external;
-    const Vec3 impulse = step.parameters.kick * step.awake_mass * step.parameters.gravity + external.impulse +
-                         step.findings.strained.impulse + contacts.outer_impulse + step.findings.joints.impulse -
-                         step.findings.rest.momentum;
+    const std::array<Vec3, 6> impulses{step.parameters.kick * step.awake_mass * step.parameters.gravity,
+                                       external.impulse,
+                                       step.findings.strained.impulse,
+                                       contacts.outer_impulse,
+                                       step.findings.joints.impulse,
+                                       -step.findings.rest.momentum};
     Real push_work = 0;
     if (step.regions.pushed)
         for (Real of_region : step.regions.push_work) push_work += of_region;
@@ -113,8 +117,13 @@ void add_step(const StepScratch& step, Balance& balance) {
                       contacts.dissipated - step.findings.damped - step.findings.strained.damped -
                       step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
+    // what cancels, as weight does what holds it, has been exchanged as well
+    Vec3 impulse = Vec3::Zero();
+    for (const Vec3& part : impulses) {
+        impulse += part;
+        balance.momentum_flow += part.norm();
+    }
     balance.impulse += impulse;
-    balance.momentum_flow += impulse.norm();
     balance.work += work;
     balance.energy_flow += std::abs(work);
 }

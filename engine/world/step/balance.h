@@ -25,7 +25,7 @@ struct Balance {
     Vec3 momentum = Vec3::Zero();             // kg m/s, of moving nodes
     Vec3 impulse = Vec3::Zero();              // N s, from outside, since then
     Real work = 0;                            // J, from outside less what was dissipated, since then
-    Real energy_flow = 0, momentum_flow = 0;  // sums of their sizes by step, J and N s
+    Real energy_flow = 0, momentum_flow = 0;  // sums of their sizes by step, J and N s: of impulses, of each kind
     // the worst over the run
     Real energy_error = 0, energy_scale = 0;      // J; the largest energy that was there to be exchanged
     Real momentum_error = 0, momentum_scale = 0;  // kg m/s
