@@ -22,6 +22,7 @@
 #include "systems/dynamics/stability/frame_masses.h"
 #include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/strained_step.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "systems/solver/solve_regions.h"
 
@@ -57,6 +58,7 @@ struct Kernels {
     decltype(&skerry::find_mass_shares) find_mass_shares;
     decltype(&skerry::find_mass_forms) find_mass_forms;
     decltype(&skerry::find_frame_masses) find_frame_masses;
+    decltype(&skerry::strained_step) strained_step;
     decltype(&skerry::watch_stable_steps) watch_stable_steps;
     decltype(&skerry::solve_regions) solve_regions;
 };

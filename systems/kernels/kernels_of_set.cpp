@@ -33,6 +33,7 @@ const skerry::Kernels SKERRY_KERNELS = {
     .find_mass_shares = &skerry::find_mass_shares,
     .find_mass_forms = &skerry::find_mass_forms,
     .find_frame_masses = &skerry::find_frame_masses,
+    .strained_step = &skerry::strained_step,
     .watch_stable_steps = &skerry::watch_stable_steps,
     .solve_regions = &skerry::solve_regions,
 };

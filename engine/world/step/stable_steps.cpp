@@ -11,6 +11,7 @@
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
+#include "systems/dynamics/stability/strained_step.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 
 namespace skerry {
@@ -60,17 +61,18 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// What the explicit elements of a body with clusters stand by shares, s: these follow a deformation, where forms are
-/// for the shape at rest. 0 of bodies that have no forms, or no clusters, whose shares are not for themselves.
-Real step_by_shares(const Model& model, std::size_t body, std::span<const Vec3> position, Column<Real>& stiffness_sum) {
-    const Range blocks = model.bodies.blocks[body];
-    ElementInputs by_shares = model.all_elements();
-    if (!(model.bodies.cluster_step[body] > 0) || !has_mass_form(by_shares, static_cast<std::size_t>(blocks.begin)))
-        return 0;
-    by_shares.mass_form = {};
-    by_shares.frame_bound = {};
-    stiffness_sum.resize(position.size());
-    return kernels().stable_step(by_shares, blocks, position, model.nodes.mass, stiffness_sum).step;
+/// What the explicit elements of a body with clusters stand where it is strained in places, s, if they stand `stands`
+/// for certain; no more than that where there is no such bound, and no more than is `asked` for.
+Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real asked, Real stands,
+                      Column<Real>& memory) {
+    const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
+    const ElementInputs elements = model.all_elements();
+    if (!(model.bodies.cluster_step[body] > 0) || !has_mass_form(elements, static_cast<std::size_t>(blocks.begin)) ||
+        !(stands > 0) || !(stands < asked))
+        return stands;
+    memory.resize(std::max(memory.size(), strained_step_memory(nodes, blocks)));
+    return std::max(stands, kernels().strained_step(elements, blocks, nodes, position, model.nodes.mass,
+                                                    {asked, stands}, memory.span()));
 }
 
 /// What the explicit elements of a body stand in this shape, s.
@@ -80,7 +82,7 @@ Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> p
         kernels()
             .stable_step(model.all_elements(), model.bodies.blocks[body], position, model.nodes.mass, stiffness_sum)
             .step;
-    return std::max(step, step_by_shares(model, body, position, stiffness_sum));
+    return strained_step_of(model, body, position, model.bodies.rest_step[body], step, stiffness_sum);
 }
 
 /// The step that a body stands whose explicit elements stand `step`. Not a number where a shape is none.
@@ -117,8 +119,7 @@ public:
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
-        if (step > 0 && step < 0.9 * goal_)
-            step = std::max(step, step_by_shares(model_, b, model_.nodes.position, stiffness_sum_));
+        if (step < 0.9 * goal_) step = strained_step_of(model_, b, model_.nodes.position, goal_, step, stiffness_sum_);
         bodies.stable_step[b] = within_clusters(model_, b, model_.nodes.position, step);
         if (!(bodies.stable_step[b] > 0) || bodies.stable_step[b] * worth_clusters >= goal_ ||
             !clusters_allowed(model_.settings))

@@ -254,6 +254,23 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
     return bisected(A, volume, least, most, 6);
 }
 
+/// Of enough, 1.1 enough, 1.21 enough..., the least that an eigenvalue of volume A is below, lane by lane.
+BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
+    constexpr Real growth = 1.1;
+    constexpr int steps = 25;
+    BlockReals bounds;
+    for (std::size_t part = 0; part < kernel_parts; ++part) {
+        const KernelReal unknown = KernelReal{} + std::numeric_limits<Real>::infinity();
+        KernelReal& bound = bounds[part] = unknown;
+        Real limit = enough;
+        for (int i = 0; i < steps && !all(bound < unknown); ++i, limit *= growth) {
+            const auto below = is_below(A[part], volume[part], KernelReal{} + limit);
+            bound = below & (bound == unknown) ? KernelReal{} + limit : bound;
+        }
+    }
+    return bounds;
+}
+
 }  // namespace
 
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
@@ -284,6 +301,8 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
     for (std::size_t part = 0; part < kernel_parts; ++part) volumes[part] = lanes_in(volume, part);
     if (sharpness == Sharpness::bisected)
         bounds = bisected_bound(A, volumes, enough);
+    else if (sharpness == Sharpness::stepped)
+        bounds = stepped_bound(A, volumes, enough);
     else
         for (std::size_t part = 0; part < kernel_parts; ++part)
             bounds[part] = volumes[part] * largest_eigenvalue_bound(A[part]);

@@ -30,7 +30,8 @@ struct FramePart {
 enum class Sharpness {
     trace,     // at most 15 % too large
     bisected,  // at most 0.3 %, in twice the time
-    compared   // infinity where not all eight are below `enough`
+    compared,  // infinity where not all eight are below `enough`
+    stepped    // at most a tenth, in steps of a tenth from `enough` on; infinity beyond ten times that
 };
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,

@@ -21,20 +21,11 @@ namespace {
 
 using Symmetric = LaneSymmetric<Real8>;
 
-Symmetric load_form(const ElementForm& form) {
-    return {load(form[0]), load(form[1]), load(form[2]), load(form[3]), load(form[4]), load(form[5])};
-}
 void store_form(const Symmetric& s, ElementForm& form) {
     const Real8 entry[6] = {s.xx, s.yy, s.zz, s.xy, s.yz, s.zx};
     for (std::size_t i = 0; i < 6; ++i) store(entry[i], form[i]);
 }
 
-Symmetric inverse_of(const Symmetric& s) {
-    const Real8 xx = s.yy * s.zz - s.yz * s.yz, xy = s.zx * s.yz - s.xy * s.zz, zx = s.xy * s.yz - s.zx * s.yy;
-    const Real8 scale = 1.0 / (s.xx * xx + s.xy * xy + s.zx * zx);
-    return {scale * xx, scale * (s.xx * s.zz - s.zx * s.zx), scale * (s.xx * s.yy - s.xy * s.xy),
-            scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
-}
 Symmetric mean_of(const Symmetric& a, const Symmetric& b, Real part_of_b) {
     const auto mean = [=](const Real8& x, const Real8& y) { return (1 - part_of_b) * x + part_of_b * y; };
     return {mean(a.xx, b.xx), mean(a.yy, b.yy), mean(a.zz, b.zz), mean(a.xy, b.xy), mean(a.yz, b.yz), mean(a.zx, b.zx)};

@@ -5,8 +5,20 @@
 #include <vector>
 
 #include "systems/dynamics/elements/compute_element_forces.h"
+#include "systems/material/relaxation.h"
 
 namespace skerry {
+
+inline LaneSymmetric<Real8> load_form(const ElementForm& form) {
+    return {load(form[0]), load(form[1]), load(form[2]), load(form[3]), load(form[4]), load(form[5])};
+}
+
+inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
+    const Real8 xx = s.yy * s.zz - s.yz * s.yz, xy = s.zx * s.yz - s.xy * s.zz, zx = s.xy * s.yz - s.zx * s.yy;
+    const Real8 scale = 1.0 / (s.xx * xx + s.xy * xy + s.zx * zx);
+    return {scale * xx, scale * (s.xx * s.zz - s.zx * s.zx), scale * (s.xx * s.yy - s.xy * s.xy),
+            scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
+}
 
 /// Stiffness of explicit elements at rest, with what relaxes as it will count in steps of about the length that
 /// elements bound one by one, times `longer`.

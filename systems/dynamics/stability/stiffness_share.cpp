@@ -40,6 +40,12 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             viscous_stretch(green_strain(F), elements.viscous_strain[block])};
 }
 
+/// A spring that relaxes by a step's end counts less, and the less the longer the step.
+void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
+    viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
+    viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
+}
+
 /// Bound of omega^2 of each element of a block with the masses that Q stands for.
 Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const LaneMat3<Real8>& Q,
                LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness, const FramePart* frame = nullptr) {
@@ -50,11 +56,7 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
     if (!material.relaxes() || elements.viscous_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
-    // A spring that relaxes by a step's end counts less, and the less the longer the step.
-    const auto count_in = [&](const Real8& step) {
-        viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
-        viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
-    };
+    const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
     // Most elements stand the step that others allow: no more has to be known of them. Counted in full next to none of
     // them would be below, as all allow about the same at rest.
     if (enough > 0) {
@@ -115,12 +117,32 @@ Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, con
                     Sharpness::trace);
 }
 
-Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
-                                LaneQuaternion<Real8>& q, Real enough) {
+namespace {
+
+LaneMat3<Real8> form_of(const ElementInputs& elements, std::size_t block) {
     const ElementForm& form = elements.mass_form[block];
     const Real8 xy = load(form[3]), yz = load(form[4]), zx = load(form[5]);
-    return bound_of(elements, block, F, {{load(form[0]), xy, zx}, {xy, load(form[1]), yz}, {zx, yz, load(form[2])}}, q,
-                    enough, Sharpness::bisected);
+    return {{load(form[0]), xy, zx}, {xy, load(form[1]), yz}, {zx, yz, load(form[2])}};
+}
+
+}  // namespace
+
+Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                                LaneQuaternion<Real8>& q, Real enough) {
+    return bound_of(elements, block, F, form_of(elements, block), q, enough, Sharpness::bisected);
+}
+
+Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                      LaneQuaternion<Real8>& q, Real enough, Real step) {
+    const MaterialConstants material = elements.material_of(block);
+    ViscousPart viscous;
+    if (material.relaxes() && !elements.viscous_strain.empty()) {
+        viscous = viscous_part(elements, block, F);
+        count_springs(elements, block, Real8{} + step, viscous);
+    }
+    return frequency_squared_bound(material, F, viscous, load(elements.volume[block]), form_of(elements, block), q,
+                                   enough, Sharpness::stepped) +
+           0.0 * inner_product(F, F);  // no number where F is none
 }
 
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

@@ -63,6 +63,11 @@ inline bool has_mass_form(const ElementInputs& elements, std::size_t block) {
 Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                 LaneQuaternion<Real8>& q, Real enough = 0);
 
+/// The same, the least of `enough`, 1.1 `enough`, 1.21 `enough`... that an element is below; infinity beyond ten times
+/// that. Springs relax as they do in steps of `step` (s), and so for every longer one less.
+Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
+                      LaneQuaternion<Real8>& q, Real enough, Real step);
+
 /// 1/s^2, bound of omega^2 at rest of a body with frame masses (frame_masses.h); 0 of the others.
 inline Real frame_bound(const ElementInputs& elements, Range blocks) {
     return elements.frame_bound.empty() || blocks.size() == 0

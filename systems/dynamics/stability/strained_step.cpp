@@ -1,0 +1,120 @@
+// With the forms M_e of the mass and bounds w_e of each element alone, K_e <= w_e M_e, so for any base
+//     K <= base sum M_e + sum (w_e - base)^+ M_e <= base M + E ,
+// and E is below the mass times max_i ( sum_j |E_ij| d_j )/( m_i d_i ) for any positive d (Collatz 1942): rows of
+// numbers, since forms are the same for x, y and z.
+#include "systems/dynamics/stability/strained_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "components/check.h"
+#include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/stability/mass_search.h"
+#include "systems/dynamics/stability/stiffness_share.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr Real above_asked = 1.1;  // of omega^2: most elements of a strained body stay below it
+constexpr int rounds = 4;          // towards the d for which all rows are alike
+
+/// The part of the memory that has what elements need beyond the base, 1/s^2, and those by node.
+struct Memory {
+    std::span<Real> excess, weight, row;
+
+    Memory(std::span<Real> of, Range nodes, Range blocks) {
+        const auto node_count = static_cast<std::size_t>(nodes.size());
+        excess = of.first(element_lanes * static_cast<std::size_t>(blocks.size()));
+        weight = of.subspan(excess.size(), node_count);
+        row = of.subspan(excess.size() + node_count, node_count);
+    }
+};
+
+/// Finds what each element needs beyond the base. Returns whether any does.
+bool find_excess(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Real base, Real stands,
+                 std::span<Real> excess) {
+    LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+    bool any = false;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {
+        const std::size_t b = static_cast<std::size_t>(blocks.begin) + i;
+        const Real8 need = stepped_by_form(elements, b, deformation_of(elements, b, position), q, base, stands);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            Real& more = excess[element_lanes * i + l];
+            more = elements.volume[b][l] > 0 && !(need[l] <= base) ? need[l] - base : 0;
+            any |= !(more <= 0);
+        }
+    }
+    return any;
+}
+
+LaneVec3<Real8> multiply(const LaneSymmetric<Real8>& s, const LaneVec3<Real8>& x) {
+    return {s.xx * x.x + s.xy * x.y + s.zx * x.z, s.xy * x.x + s.yy * x.y + s.yz * x.z,
+            s.zx * x.x + s.yz * x.y + s.zz * x.z};
+}
+
+/// row[node] += sum over these elements and their nodes of |E_ij| d_j.
+void add_rows(const BlockNodes& of, const LaneSymmetric<Real8>& form, Index first_node, std::span<const Real> weight,
+              std::span<Real> row) {
+    for (Index k = 0; k < of.count; ++k) {
+        const LaneVec3<Real8> moved = multiply(form, load_gradient(of.gradient[k]));
+        Real8 sum{};
+        for (Index j = 0; j < of.count; ++j) {
+            Real8 of_node;
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                of_node[l] = weight[static_cast<std::size_t>(of.node[j][l] - first_node)];
+            const Real8 entry = dot(moved, load_gradient(of.gradient[j]));
+            sum += (entry < 0.0 ? -entry : entry) * of_node;
+        }
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            row[static_cast<std::size_t>(of.node[k][l] - first_node)] += sum[l];
+    }
+}
+
+}  // namespace
+
+std::size_t strained_step_memory(Range nodes, Range blocks) {
+    return element_lanes * static_cast<std::size_t>(blocks.size()) + 2 * static_cast<std::size_t>(nodes.size());
+}
+
+Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std::span<const Vec3> position,
+                   std::span<const Real> mass, const StrainedLook& look, std::span<Real> memory) {
+    SKERRY_CHECK(memory.size() >= strained_step_memory(nodes, blocks));
+    const Memory of(memory, nodes, blocks);
+    const Real base = above_asked * step_times_frequency * step_times_frequency / (look.asked * look.asked);
+    if (!find_excess(elements, blocks, position, base, look.stands, of.excess))
+        return step_times_frequency / std::sqrt(base);
+    const std::span<const Real> of_nodes =
+        mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
+    // what has no mass never moves
+    for (std::size_t n = 0; n < of_nodes.size(); ++n) of.weight[n] = of_nodes[n] > 0 ? 1 : 0;
+    Real least = std::numeric_limits<Real>::infinity();  // 1/s^2, of the bounds on E
+    for (int round = 0; round < rounds; ++round) {
+        std::ranges::fill(of.row, Real(0));
+        for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {
+            const Real* const excess = &of.excess[element_lanes * i];
+            if (std::all_of(excess, excess + element_lanes, [](Real more) { return more == 0; })) continue;
+            const std::size_t b = static_cast<std::size_t>(blocks.begin) + i;
+            Real8 more;
+            for (std::size_t l = 0; l < element_lanes; ++l) more[l] = excess[l];
+            add_rows(elements.nodes_of(b), more * inverse_of(load_form(elements.mass_form[b])), nodes.begin, of.weight,
+                     of.row);
+        }
+        Real bound = 0;
+        for (std::size_t n = 0; n < of_nodes.size(); ++n) {
+            if (!(of.weight[n] > 0)) continue;
+            const Real ratio = of.row[n] / (of_nodes[n] * of.weight[n]);
+            if (!(ratio <= bound)) bound = ratio;
+            of.row[n] = ratio;
+        }
+        least = std::min(least, bound);
+        if (!(bound > 0) || !std::isfinite(bound)) break;
+        // halfway to what the matrix makes of d; nodes that it hardly touches bound nothing with a little
+        for (std::size_t n = 0; n < of_nodes.size(); ++n)
+            of.weight[n] *= std::sqrt(std::max(of.row[n] / bound, Real(1e-6)));
+    }
+    return step_times_frequency / std::sqrt(base + least);
+}
+
+}  // namespace skerry
