@@ -70,13 +70,14 @@ struct ElementBlockTable {
     // Green strain that the relaxing part of the stress has forgotten, and the volume strain that the bulk viscosity
     // has; 0 where nothing is viscous (systems/material/relaxation.h)
     Column<ElementStrain> viscous_strain;
-    Column<ElementStrain> viscous_strain_next;  // of this step; swapped when the step is committed
-    Column<ElementLane> relaxation_rate;        // 1/s, how fast the relaxing part forgets
-    Column<ElementLane> own_frequency;          // 1/s, highest of the element at rest, from above
-    Column<Real> relaxing_share;                // stiffness of the relaxing part over that of the law at rest
-    Column<Real> relaxed;                       // J, what the block dissipated in this step
-    Column<Index> body;                         // row of BodyTable
-    Column<Index> material;                     // row of MaterialTable
+    // Of this step; swapped when the step is committed, so that between steps it is that of before the last one.
+    Column<ElementStrain> viscous_strain_next;
+    Column<ElementLane> relaxation_rate;  // 1/s, how fast the relaxing part forgets
+    Column<ElementLane> own_frequency;    // 1/s, highest of the element at rest, from above
+    Column<Real> relaxing_share;          // stiffness of the relaxing part over that of the law at rest
+    Column<Real> relaxed;                 // J, what the block dissipated in this step
+    Column<Index> body;                   // row of BodyTable
+    Column<Index> material;               // row of MaterialTable
     Column<ElementPart> part;
     Column<std::uint8_t> opens_patch;  // 1: the block is the first of a patch
     // 1: in all lanes nodes 0, 1 and 2 are nodes 0, 1 and 3 of the block before, which is of the same patch; both have
@@ -113,7 +114,7 @@ struct ElementBlockTable {
         visit("relaxation_rate", relaxation_rate, ColumnRole::state);
         visit("own_frequency", own_frequency, ColumnRole::state);
         visit("relaxing_share", relaxing_share, ColumnRole::state);
-        visit("viscous_strain_next", viscous_strain_next, ColumnRole::scratch);
+        visit("viscous_strain_next", viscous_strain_next, ColumnRole::memory);
         visit("relaxed", relaxed, ColumnRole::scratch);
         visit("rotation_next", rotation_next, ColumnRole::scratch);
     }

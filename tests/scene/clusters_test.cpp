@@ -209,6 +209,24 @@ TEST_CASE("a spinning body with clusters keeps energy, momentum and angular mome
     CHECK(world.center_of_mass(body).x() == Approx(0.3).epsilon(1e-6));
 }
 
+TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
+    World world(weightless(true));
+    MaterialSettings rubber = lossless_rubber();
+    rubber.damping = 30;
+    const auto body = world.add_body(sliver_box(0.2, 8, 0.01, 0.005),
+                                     {.material = world.add_material(rubber), .angular_velocity = {0, 0, 3}});
+    REQUIRE(world.report().clusters > 0);
+    std::vector<Vec3> velocity(world.velocities(body).begin(), world.velocities(body).end());
+    for (std::size_t n = 0; n < velocity.size(); ++n)
+        velocity[n].x() += 5 * (world.positions(body)[n].x() - world.positions(body)[0].x());
+    world.set_velocities(body, velocity);
+    const WorldReport start = world.report();
+    REQUIRE(world.advance(0.1).ok());
+    const WorldReport end = world.report();
+    CHECK(end.energy.dissipated > 0.1 * start.energy.kinetic);
+    CHECK(end.energy_error_share < 1e-3);
+}
+
 TEST_CASE("what hangs from clusters hangs as low as without", "[scene][clusters]") {
     std::vector<Real> height;
     for (const bool clusters : {false, true}) {

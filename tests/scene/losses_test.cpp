@@ -58,7 +58,7 @@ Real measured_loss_factor(Beam& beam, Real period) {
         last = now;
     }
     REQUIRE(peaks.size() >= 8);
-    CHECK(beam.world.report().energy_error_share < 5e-3);
+    CHECK(beam.world.report().energy_error_share < 1e-3);
     return std::log(peaks.front() / peaks.back()) / (std::numbers::pi * static_cast<Real>(peaks.size() - 1) / 2);
 }
 
@@ -139,8 +139,23 @@ TEST_CASE("at its stable step a body with losses is stable, and energy adds up",
             }
             CHECK(last.dissipated > 0.5 * start.kinetic);
             // white noise at the highest frequencies, where a step is a third of a period
-            CHECK(world.report().energy_error_share < 0.1);
+            CHECK(world.report().energy_error_share < 3e-4);
         }
+}
+
+// Booked by what springs are stretched at the end of steps alone it was 2 to 3 %.
+TEST_CASE("a body that bounces on the floor loses what is booked as lost", "[scene]") {
+    for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed}) {
+        World world;
+        const auto rubber = world.add_material({.young_modulus = 1e6, .poisson_ratio = 0.4, .density = 1000});
+        world.add_collider(Plane{});
+        world.add_body(mesh::box({0.3, 0.3, 0.3}, {5, 5, 4}),
+                       {.material = rubber, .position = {0, 0, 0.2}, .velocity = {0, 0, -5}, .element = kind});
+        REQUIRE(world.advance(0.5).ok());
+        const WorldReport report = world.report();
+        CHECK(report.energy.dissipated > 50);  // of 340 J
+        CHECK(report.energy_error_share < 2e-3);
+    }
 }
 
 // Damping takes from the velocities that a step begins with: at the bound of its elements a body whose velocities are

@@ -90,7 +90,7 @@ struct ElasticBody {
     /// `h`: s, since the elements were last looked at: what relaxes does so for this long. Returns what that
     /// dissipates, J.
     Real compute_elements(Executor& executor, Real h = 0) {
-        return compute_element_forces(executor, inputs(), position, velocity, h, elements.rotation,
+        return compute_element_forces(executor, inputs(), position, velocity, h, 0, elements.rotation,
                                       {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
                                       patch_forces());
     }

@@ -141,6 +141,7 @@ void relax_fully(Model& model, std::size_t body) {
             const std::array<Real, 7> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0), E.trace()};
             for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = entry[i];
         }
+        model.elements.viscous_strain_next[static_cast<std::size_t>(b)] = taken;
     }
 }
 

@@ -156,6 +156,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
         settle_clusters(model, state_->scratch.stiffness_sum);
         // what does not relax any more leaves both as they are, and the step swaps them
         model.elements.viscous_strain_next = model.elements.viscous_strain;
+        state_->clock.kick_before = 0;
     }
     state_->record.balance.close();
     for (const std::size_t body : bodies) model.wake(body);

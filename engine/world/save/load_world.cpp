@@ -136,9 +136,8 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     check_clock(file, world.clock, world.scratch.parameters.kick);
     check_model(file, model);
     put_records(saved, file, model);
-    // laws that have none of it leave both as they are, and the step swaps them
+    // laws that have no frame leave both as they are, and the step swaps them
     model.elements.rotation_next = model.elements.rotation;
-    model.elements.viscous_strain_next = model.elements.viscous_strain;
     model.rebuild_outlines();
     model.derive_all();
     find_holders(model);

@@ -25,6 +25,9 @@ struct Clock {
     Real offset = 0;  // s, by which positions are ahead of velocities; only leapfrog, and only within advance
     // s, of the last step: velocities are half of it behind positions (symplectic Euler); 0: no step yet
     Real step_before = 0;
+    // s, for which forces acted in it, while elements know what relaxed in it; else 0. Only what is booked as lost
+    // depends on it.
+    Real kick_before = 0;
     StepCycle cycle;
 };
 

@@ -29,6 +29,8 @@ namespace skerry {
 struct StepParameters {
     Real h = 0;     // s, for which positions move
     Real kick = 0;  // s, for which forces act: from the time of the velocities before the step to that of those after
+    // kick over that of the step before, of which elements still know what relaxed; 0: they do not
+    Real kick_over_last = 0;
     Real longest = 0;  // s, that the next step may be at most, as far as is known
     Real lag = 0;      // s, by which velocities are behind positions at the kick
     ActiveLevels active;

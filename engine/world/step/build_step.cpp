@@ -66,19 +66,19 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     const auto if_unknown = only_if([](bool known) { return !known; }, value(p.forces_known));
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
-                        read(n.position), read(n.velocity), value(p.kick), read(e.rotation), outputs<ElementMemory>(e),
-                        outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
+                        read(n.position), read(n.velocity), value(p.kick), value(p.kick_over_last), read(e.rotation),
+                        outputs<ElementMemory>(e), outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
     g.stage_with_result("dynamics/stiffen_clusters", w.scratch.findings.stiffened, stiffen_clusters,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b), inputs<StiffenInputs>(b, n),
                         write(m.patches.stiffening), outputs<StiffenOutputs>(e, m.clusters), if_unknown);
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
             inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.kick),
             write(n.force), write(n.velocity_next));
+    g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
+            read(n.velocity), value(p.kick), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
     g.stage("dynamics/kick_clusters", kernels().kick_clusters,
             inputs<ClusterKickInputs>(m.clusters, n, b, m.any_asleep), read(n.velocity), value(p.forces_known),
             make(w.scratch.cluster_kick), make(w.scratch.cluster_work), write(n.velocity_next));
-    g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
-            read(n.velocity), value(p.kick), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies,
             inputs<RigidBodies>(m.rigid_bodies, b, n, m.any_asleep, m.loaded),
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h),

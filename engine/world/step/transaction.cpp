@@ -142,6 +142,7 @@ void commit(WorldState& world) {
     }
     world.clock.time += parameters.h;
     world.clock.step_before = parameters.h;
+    world.clock.kick_before = parameters.limits_impulses ? 0 : parameters.kick;
 }
 
 /// A strained body stands less than this part of its step at rest.
@@ -274,6 +275,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
     scratch.parameters.kick = kick_of_step(world.model, world.clock, plan);
+    scratch.parameters.kick_over_last =
+        world.clock.kick_before > 0 ? scratch.parameters.kick / world.clock.kick_before : 0;
     scratch.parameters.lag =
         scratch.parameters.integrator == Integrator::forward_euler ? 0 : scratch.parameters.kick - plan.h / 2;
     scratch.parameters.let_invert =
@@ -309,7 +312,10 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
         case StepOutcome::refused:
             break;
     }
-    if (ran) world.transaction.roll_back_try(world.model);
+    if (ran) {
+        world.transaction.roll_back_try(world.model);
+        world.clock.kick_before = 0;  // elements wrote over what they knew of the step before
+    }
     return outcome;
 }
 

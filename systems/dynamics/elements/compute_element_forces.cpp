@@ -57,6 +57,7 @@ struct Run {
     MaterialConstants material;
     Real duration;                   // in kicks
     Real kick;                       // s
+    Real kick_over_last;             // 0: what relaxed in the step before is not known
     const PaddedVec3* position;      // m, of the patch, by slot
     PaddedVec3* force;               // N, the same
     std::span<const Vec3> velocity;  // of all nodes
@@ -78,6 +79,9 @@ struct Run {
         const auto* const to = reinterpret_cast<const char*>(elements.gradient.data() + row) +
                                static_cast<std::size_t>(elements.count[block]) * sizeof(ElementGradient);
         for (const char* line = from; line < to; line += 64) __builtin_prefetch(line);
+        if (next.viscous_strain.empty()) return;
+        const auto* const taken = reinterpret_cast<const char*>(next.viscous_strain.data() + block);
+        for (const char* line = taken; line < taken + sizeof(ElementStrain); line += 64) __builtin_prefetch(line, 1);
     }
 
     template <class T>
@@ -93,13 +97,28 @@ struct Run {
         ElementStrain& forgotten_next = next.viscous_strain[block];
         const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
         const LaneSymmetric<T> strain = green_strain(F);
-        const ViscousStretch<T> before = viscous_stretch(strain, elements.viscous_strain[block], part);
+        const ElementStrain& forgotten = elements.viscous_strain[block];
+        const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
         const Real time = duration * kick;
         const T forgets = time * part_of<T>(elements.relaxation_rate, block, part);
         const T forgets_volume = (time / bulk_time) * part_of<T>(elements.own_frequency, block, part);
         // backward Euler: never more than all; one division for both
         const T kept = 1.0 + forgets, kept_volume = 1.0 + forgets_volume, over_both = 1.0 / (kept * kept_volume);
         const ViscousStretch<T> after{T(over_both * kept_volume) * before.strain, over_both * kept * before.volume};
+        // Springs push, in the mean, as stretched as in the step before and in this one, on what the dashpots take; and
+        // they took of the step before what it was stretched, times its rate.
+        const auto took_before = [&](std::size_t i) {
+            return T(load_part<T>(forgotten[i], part) - load_part<T>(forgotten_next[i], part));
+        };
+        const LaneSymmetric<T> strain_before{took_before(0), took_before(1), took_before(2),
+                                             took_before(3), took_before(4), took_before(5)};
+        const Real of_now = kick_over_last > 0 ? 1 : 2;  // not known: as if it had been stretched as now
+        const LaneSymmetric<T> taken_twice =
+            T(of_now * forgets) * after.strain + T(T{} + kick_over_last) * strain_before;
+        const T volume_twice = of_now * forgets_volume * after.volume + kick_over_last * took_before(6);
+        const T work =
+            strain_work_density(moduli, after.strain, taken_twice) + moduli.bulk * (after.volume * volume_twice);
+        store_part(T(0.5 * part_of<T>(elements.volume, block, part) * work), dissipated, part);
         const LaneSymmetric<T> taken = strain - after.strain;
         store_part(taken.xx, forgotten_next[0], part);
         store_part(taken.yy, forgotten_next[1], part);
@@ -108,12 +127,6 @@ struct Run {
         store_part(taken.yz, forgotten_next[4], part);
         store_part(taken.zx, forgotten_next[5], part);
         store_part(T(strain.trace() - after.volume), forgotten_next[6], part);
-        // What the springs, as stretched as they push, do to the dashpots. Not the drop of their energy: the kick that
-        // follows is by so much weaker, which velocities half a step off the positions do not show yet.
-        store_part(T(part_of<T>(elements.volume, block, part) *
-                     (forgets * strain_work_density(moduli, after.strain, after.strain) +
-                      forgets_volume * (moduli.bulk * (after.volume * after.volume)))),
-                   dissipated, part);
         return multiply(F, stress(moduli, after));
     }
 
@@ -372,8 +385,9 @@ std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::si
 }  // namespace
 
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
-                            const ElementMemory& next, const PatchForces& patches) {
+                            std::span<const Vec3> velocity, Real kick, Real kick_over_last,
+                            std::span<const ElementRotation> rotation, const ElementMemory& next,
+                            const PatchForces& patches) {
     SKERRY_CHECK(patches.force.size() == patches.node.size() && patches.position.size() == patches.node.size());
     SKERRY_CHECK(rotation.size() == elements.blocks() && next.rotation.size() == elements.blocks());
     parallel_for(executor, patches.blocks.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -392,9 +406,10 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 const Real duration = elements.schedule.duration(b);
                 const std::size_t after = end_of_run(elements, b, end, touched);
                 if (duration > 0) {
-                    const Run run{b,        after,    elements, elements.material_of(b),
-                                  duration, kick,     x,        force,
-                                  velocity, rotation, next,     patches};
+                    const Run run{b,        after,    elements,       elements.material_of(b),
+                                  duration, kick,     kick_over_last, x,
+                                  force,    velocity, rotation,       next,
+                                  patches};
                     if (elements.count[b] == 4)
                         compute_run(run, Fans{run});
                     else

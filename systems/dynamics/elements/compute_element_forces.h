@@ -118,8 +118,9 @@ struct PatchForces {
 /// What elements will remember of this step.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
-    std::span<ElementStrain> viscous_strain = {};  // empty: nothing relaxes
-    std::span<Real> relaxed = {};                  // J, by block
+    // What dashpots have taken: of this step; until that is written, of before the last one. Empty: nothing relaxes.
+    std::span<ElementStrain> viscous_strain = {};
+    std::span<Real> relaxed = {};  // J, by block
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
         return {.rotation = binder.write(element.rotation_next),
@@ -133,9 +134,12 @@ struct ElementMemory {
 /// lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
 /// `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Patches that are not active
 /// keep what they had; those that are active for several steps at once get so many times the force. Where some blocks
-/// are touched the force is that of the blocks that are due. `kick`: s, for which they act. Parallel over patches.
+/// are touched the force is that of the blocks that are due. `kick`: s, for which they act; `kick_over_last`: over that
+/// of the step before, of which next.viscous_strain still knows what relaxed, 0 where it does not: then what is booked
+/// as relaxed is exact to first order only (docs/methods/elasticity.md 6.2). Parallel over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
-                            const ElementMemory& next, const PatchForces& patches);
+                            std::span<const Vec3> velocity, Real kick, Real kick_over_last,
+                            std::span<const ElementRotation> rotation, const ElementMemory& next,
+                            const PatchForces& patches);
 
 }  // namespace skerry

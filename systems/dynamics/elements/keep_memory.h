@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// rotation and viscous_strain = those of the step, of the blocks that were due and whose law or losses have them; the
-/// others keep those of their own last impulse. Parallel over blocks.
+/// rotation and viscous_strain = those of the step, of the blocks that were due and whose law or losses have them, and
+/// viscous_strain_next = that of before; the others keep those of their own last impulse. Parallel over blocks.
 void keep_memory(Executor& executor, const ElementInputs& elements, ElementBlockTable& table);
 
 }  // namespace skerry

@@ -27,7 +27,7 @@ struct SliverBody : ElasticBody {
         for (Vec3& v : velocity) v = random_vector(random);
     }
     void compute(const ElementInputs& inputs) {
-        compute_element_forces(*executor, inputs, position, velocity, 1e-3, elements.rotation,
+        compute_element_forces(*executor, inputs, position, velocity, 1e-3, 0, elements.rotation,
                                {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
                                patch_forces());
     }

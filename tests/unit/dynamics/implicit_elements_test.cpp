@@ -426,7 +426,7 @@ std::vector<Vec3> viscous_forces(SliverBox& box, std::vector<std::uint8_t>& visc
     for (const bool with : {false, true}) {
         if (with) inputs.viscous_time = time;
         compute_element_forces(
-            *executor, inputs, box.body.position, box.body.velocity, 1e-4, box.body.elements.rotation,
+            *executor, inputs, box.body.position, box.body.velocity, 1e-4, 0, box.body.elements.rotation,
             {box.body.elements.rotation_next, box.body.elements.viscous_strain_next, box.body.elements.relaxed},
             patches);
         box.body.gather();

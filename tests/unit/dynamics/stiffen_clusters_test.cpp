@@ -68,7 +68,7 @@ TEST_CASE("where forces say that elements stiffen is all that a look at every el
         PatchForces patches = box.body.patch_forces();
         patches.stiffening = stiffening;
         compute_element_forces(
-            *executor, inputs, box.body.position, box.body.velocity, 1e-4, box.body.elements.rotation,
+            *executor, inputs, box.body.position, box.body.velocity, 1e-4, 0, box.body.elements.rotation,
             {box.body.elements.rotation_next, box.body.elements.viscous_strain_next, box.body.elements.relaxed},
             patches);
         const auto marked = static_cast<std::size_t>(std::ranges::count(stiffening, 1));

@@ -63,7 +63,7 @@ struct LevelledBody : ElasticBody {
         forces.touched = patches.touched;
         forces.viscous_impulse = impulse;
         forces.viscous = viscous;
-        compute_element_forces(*executor, inputs, position, velocity, h, elements.rotation,
+        compute_element_forces(*executor, inputs, position, velocity, h, 0, elements.rotation,
                                {elements.rotation_next, elements.viscous_strain_next, elements.relaxed}, forces);
     }
     std::vector<Vec3> kicked(unsigned mask, Real h) {
