@@ -387,7 +387,9 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     Index& slot = slot_of_[node];
     ++uses_;
     if (slot == no_index) {
-        const std::size_t most = std::max<std::size_t>(1, column_memory / (size() * sizeof(Mat3)));
+        // fewer than those of one step, asked for in turns, would all be made again in each
+        const std::size_t most = std::max({std::size_t(1), column_memory / (size() * sizeof(Mat3)), touched_.size()});
+        ++columns_made_;
         if (node_in_.size() < std::min(most, size())) {
             slot = static_cast<Index>(node_in_.size());
             node_in_.push_back(no_index);
@@ -426,6 +428,11 @@ void StiffBody::find_responses() {
         std::ranges::fill(responses_, 0);
         return;
     }
+    // those that are there first, so that new ones take the places of others
+    ++uses_;
+    for (const Index node : touched_)
+        if (const Index slot = slot_of_[static_cast<std::size_t>(node)]; slot != no_index)
+            used_at_[static_cast<std::size_t>(slot)] = uses_;
     for (std::size_t i = 0; i < count; ++i) {
         const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
         // both ways from one column: symmetric to the last bit

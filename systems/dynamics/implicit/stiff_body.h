@@ -136,8 +136,9 @@ public:
     /// a node. `nodes` ascend, and begin with `first` for the first of the body. Kept while the same are asked for;
     /// zero without a factor.
     std::span<const Real> responses(std::span<const Index> nodes, Index first);
-    /// Columns that are kept, at most.
+    /// Columns that are kept, at most, or as many as the nodes of one call of responses().
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // bytes
+    std::uint64_t columns_made() const { return columns_made_; }
 
     std::size_t factor_blocks() const { return factor_.blocks(); }
 
@@ -191,7 +192,7 @@ private:
     std::vector<Index> slot_of_;
     std::vector<Index> node_in_;          // by slot
     std::vector<std::uint64_t> used_at_;  // by slot
-    std::uint64_t uses_ = 0;
+    std::uint64_t uses_ = 0, columns_made_ = 0;
     std::vector<Mat3> columns_;  // size() a slot
     // of responses(); nodes of the body
     std::vector<Index> touched_;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
+#include <numeric>
 
 #include "tests/support/elastic_body.h"
 #include "tests/support/element_kinds.h"
@@ -210,6 +211,24 @@ TEST_CASE("responses of touched nodes are the columns of those nodes, whatever w
     stiff.hold(inverse_mass);
     REQUIRE(stiff.prepare(1, 1e-6));
     check(some);
+}
+
+TEST_CASE("columns of all nodes that a step touches are kept, however many", "[dynamics][implicit]") {
+    const ElasticBody body(jittered_box({9, 9, 9}, 0.1, 0.2, 2), stiff_rubber());
+    StiffBody stiff = stiff_body_of(body);
+    const std::size_t count = stiff.size(), within_memory = StiffBody::column_memory / (count * sizeof(Mat3));
+    REQUIRE(within_memory < count - 10);
+    REQUIRE(stiff.prepare(1, 1e-4));
+    std::vector<Index> most(within_memory + 5), others;
+    std::iota(most.begin(), most.end(), Index{0});
+    others = most;
+    others.back() = static_cast<Index>(count - 1);
+    stiff.responses(most, 0);
+    CHECK(stiff.columns_made() == most.size());
+    stiff.responses(others, 0);  // one more, in the place of the one that is left out
+    CHECK(stiff.columns_made() == most.size() + 1);
+    stiff.responses(most, 0);
+    CHECK(stiff.columns_made() == most.size() + 2);
 }
 
 TEST_CASE("a matrix that is not positive definite has no factor", "[dynamics][implicit]") {
