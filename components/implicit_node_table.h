@@ -11,6 +11,9 @@ namespace skerry {
 struct ImplicitNodeTable {
     Column<Vec3> displacement;  // m, u
     Column<Vec3> velocity;      // m/s, w; of a held body the whole velocity
+    // m, of what its contacts gave to the velocity of the displacement in the last long step, by its length; zero where
+    // it is in none. By carry_long_steps
+    Column<Vec3> left;
     // Of this step, by kick_implicit_bodies:
     Column<Vec3> elastic_force;  // N, K u, by place in the factor
     Column<Vec3> impulse;        // N s, by place; afterwards what is made of it
@@ -28,6 +31,7 @@ struct ImplicitNodeTable {
     void for_each_column(auto&& visit) {
         visit("displacement", displacement, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);
+        visit("left", left, ColumnRole::link);  // hashed where it is not zero
         visit("elastic_force", elastic_force, ColumnRole::scratch);
         visit("impulse", impulse, ColumnRole::scratch);
         visit("velocity_next", velocity_next, ColumnRole::scratch);

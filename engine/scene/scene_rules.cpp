@@ -217,6 +217,12 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "of the steps of implicit bodies, from 0.5 to 1: 1 damps what vibrates, 0.55 a tenth as "
                              "much; less than 1 with symplectic_euler only",
                   .limits = at_least(0.5)})
+            .key(
+                "implicit_step", &S::implicit_step,
+                {.meaning = "of implicit bodies that nothing holds, at most: they take one such step while others take "
+                            "several; 0 (default): all take the same; with symplectic_euler only",
+                 .unit = "s",
+                 .limits = at_least(0)})
             .key("max_strain_step", &S::max_strain_step,
                  {.meaning = "a step in which F of an element changes by more (Frobenius norm) is tried again, shorter",
                   .limits = above(0)})

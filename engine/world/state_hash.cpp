@@ -207,7 +207,11 @@ std::uint64_t body_hash(Model& model, std::size_t body) {
     }
     if (const Range implicit = bodies.implicit[body]; implicit != Range{implicit.begin, implicit.begin}) {
         add_row(hash, implicit.size());
-        if (implicit.size() == bodies.nodes[body].size()) add_state(hash, model.implicit_nodes, implicit);
+        if (implicit.size() == bodies.nodes[body].size()) {
+            add_state(hash, model.implicit_nodes, implicit);
+            const std::span<const Vec3> left = rows_of(model.implicit_nodes.left, implicit);
+            if (std::ranges::any_of(left, [](const Vec3& of_node) { return !of_node.isZero(0); })) add_rows(hash, left);
+        }
     }
     return hash.value();
 }

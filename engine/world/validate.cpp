@@ -144,6 +144,10 @@ void validate(const Settings& settings) {
             "a number from 0.5 to 1");
     require(settings.theta == 1 || settings.integrator == Integrator::symplectic_euler, "settings", "theta",
             settings.theta, "1 with this integrator; less goes with symplectic_euler only");
+    require(settings.implicit_step >= 0 && std::isfinite(settings.implicit_step), "settings", "implicit_step",
+            settings.implicit_step, "a time >= 0 (s)");
+    require(settings.implicit_step == 0 || settings.integrator == Integrator::symplectic_euler, "settings",
+            "implicit_step", settings.implicit_step, "0 with this integrator; others go with symplectic_euler only");
 }
 
 void validate(const MaterialSettings& material, const Settings& settings) {

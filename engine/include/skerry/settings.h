@@ -143,6 +143,9 @@ struct Settings {
     // Of the steps of implicit bodies, from 0.5 to 1: 1 damps what vibrates, 0.55 a tenth as much. Less than 1 with
     // symplectic_euler only (docs/methods/implicit_bodies.md 2).
     Real theta = 1;
+    // s, of the steps of implicit bodies that nothing holds, at most; 0: they take those of the others. With shorter
+    // ones they take one while others take several (docs/methods/implicit_bodies.md 9). With symplectic_euler only.
+    Real implicit_step = 0;
     Integrator integrator = Integrator::symplectic_euler;
     // elements that stand longer steps get impulses less often (docs/integration.md)
     bool multirate = false;

@@ -354,6 +354,7 @@ void check_implicit_nodes(const Hdf5File& file, const ImplicitNodeTable& table) 
         const std::string found = "what is not finite at row " + std::to_string(row);
         if (!table.displacement[row].allFinite()) file.complain("/implicit_nodes/displacement", found, "numbers (m)");
         if (!table.velocity[row].allFinite()) file.complain("/implicit_nodes/velocity", found, "numbers (m/s)");
+        if (!table.left[row].allFinite()) file.complain("/implicit_nodes/left", found, "numbers (m)");
     }
 }
 

@@ -302,6 +302,7 @@ struct MembersOf<Settings> {
                           Member{"recovery_speed", &S::recovery_speed},
                           Member{"max_strain_step", &S::max_strain_step},
                           Member{"theta", &S::theta},
+                          Member{"implicit_step", &S::implicit_step},
                           Member{"start_overlaps", &S::start_overlaps},
                           Member{"sleep", &S::sleep},
                           Member{"sleep_speed", &S::sleep_speed},
@@ -314,7 +315,7 @@ struct MembersOf<Settings> {
                           Member{"freeze_contacts", &S::freeze_contacts},
                           Member{"small_regions_in_lanes", &S::small_regions_in_lanes}};
     }
-    static_assert(sizeof(Settings) == 176, "a setting is not saved");
+    static_assert(sizeof(Settings) == 184, "a setting is not saved");
 };
 
 /// The type of HDF5 that numbers have in memory and in files.

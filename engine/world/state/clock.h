@@ -19,6 +19,12 @@ struct StepCycle {
     std::array<std::uint64_t, step_level_count> elements{};  // of each level in this cycle
 };
 
+/// A step of implicit bodies in which the others take several. None between calls of advance.
+struct LongStepClock {
+    Real length = 0;  // s; 0: there is none
+    Real left = 0;    // s, to its end
+};
+
 /// All of it is state: the next step depends on it.
 struct Clock {
     Real time = 0;    // s, start of the next step
@@ -29,6 +35,7 @@ struct Clock {
     // depends on it.
     Real kick_before = 0;
     StepCycle cycle;
+    LongStepClock long_step;
 };
 
 }  // namespace skerry

@@ -28,6 +28,7 @@ StepParameters step_parameters(const Settings& settings) {
     step.contact_regions = settings.contact_regions;
     step.max_strain_step = settings.max_strain_step;
     step.theta = settings.theta;
+    step.takes_long_steps = settings.implicit_step > 0;
     step.limits_impulses = settings.multirate;
     step.sleep = {settings.sleep_speed, settings.sleep && settings.sleep_speed == 0, settings.sleep_time,
                   settings.gravity.norm()};

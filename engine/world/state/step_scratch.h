@@ -43,6 +43,8 @@ struct StepParameters {
     SolverSettings solver;
     Real max_strain_step = 0;
     Real theta = 1;
+    LongStepTimes long_step;
+    bool takes_long_steps = false;  // implicit bodies may
     SleepSettings sleep;
     bool let_invert = false;           // the last of the tries to avoid it
     bool forces_known = false;         // the try before this one left them: of the same step, and as long

@@ -245,7 +245,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             blame(world, report);
             break;
         }
-        const StepPlan plan = plan_step(model, clock.cycle, left, tries.at_most(), levels_of_call);
+        const Real within = left_in_long_step(model, left, clock.long_step);
+        const StepPlan plan = plan_step(model, clock.cycle, within, tries.at_most(), levels_of_call);
         keep_shapes(model, steps_per_round(world));
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
@@ -266,7 +267,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         add_to_report(world, report);
         note_inversions(world, report);
         note_limit(world, report);
-        left = plan.steps > 1 ? left - plan.h : 0;
+        left = plan.steps > 1 || within < left ? left - plan.h : 0;
+        move_on_in_long_step(plan, clock.long_step);
         world.record.balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world)) {
             world.draw();
@@ -282,6 +284,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         });
         if (!heard) break;
     }
+    clock.long_step = {};                // implicit bodies are where they are by now
     world.cache.search.end_step(false);  // nothing, but where the call ends with a step that is not taken
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);

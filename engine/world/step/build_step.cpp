@@ -84,8 +84,9 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
             inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(n, p.gravity, m.loaded), value(p.h),
             value(p.kick), outputs<RigidKicks>(m.rigid_bodies, n));
     g.stage("dynamics/kick_implicit_bodies", kick_implicit_bodies, implicit_bodies(m),
-            inputs<ImplicitLoads>(n, p.gravity, m.loaded, p.kick), inputs<ImplicitSpins>(m.rigid_bodies), value(p.h),
-            value(p.theta), make(m.stiff_bodies), outputs<ImplicitKicks>(m.implicit_nodes, n));
+            inputs<ImplicitLoads>(n, p.gravity, m.loaded, p.kick), inputs<ImplicitSpins>(m.rigid_bodies),
+            inputs<ImplicitTimes>(p.h, p.theta, p.long_step), make(m.stiff_bodies),
+            outputs<ImplicitKicks>(m.implicit_nodes, n));
 }
 
 auto collision_inputs(const Model& m) {
@@ -117,7 +118,8 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
     g.stage("dynamics/couple_implicit_bodies", couple_implicit_bodies, implicit_bodies(m), read(c.stencil),
-            read(m.nodes.body), value(p.h), value(p.theta), make(m.stiff_bodies), make(w.scratch.coupling));
+            read(m.nodes.body), inputs<ImplicitTimes>(p.h, p.theta, p.long_step), make(m.stiff_bodies),
+            make(w.scratch.coupling));
 }
 
 void list_solve(WorldState& w, TaskGraph& g) {
@@ -163,8 +165,8 @@ void list_strains(WorldState& w, TaskGraph& g) {
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/strain_implicit_bodies", w.scratch.findings.strained, strain_implicit_bodies,
                         implicit_bodies(m), inputs<ImplicitLoads>(m.nodes, p.gravity, m.loaded, p.kick),
-                        inputs<ImplicitSpins>(m.rigid_bodies), make(m.stiff_bodies), value(p.h), value(p.theta),
-                        outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
+                        inputs<ImplicitSpins>(m.rigid_bodies), inputs<ImplicitTimes>(p.h, p.theta, p.long_step),
+                        make(m.stiff_bodies), outputs<ImplicitStrains>(m.implicit_nodes, m.rigid_bodies, m.nodes),
                         make(w.scratch.strain_parts));
 }
 
@@ -240,6 +242,10 @@ void list_commit(WorldState& w, TaskGraph& g) {
             inputs<RigidBodies>(r, b, n, w.model.any_asleep, w.model.loaded), inputs<RigidImpulses>(r),
             inputs<ElasticMotion>(w.model.implicit_nodes, r), read(r.center_next), read(r.rotation_next),
             value(p.draws_late), outputs<RigidMoves>(r, n, w.model.implicit_nodes), if_taken);
+    const auto if_long = only_if([](bool takes) { return takes; }, value(p.takes_long_steps));
+    g.stage("dynamics/carry_long_steps", carry_long_steps, inputs<ImplicitTimes>(p.h, p.theta, p.long_step),
+            read(r.body), read(b.implicit), make(w.model.stiff_bodies), write(w.model.implicit_nodes.left), if_taken,
+            if_long);
     g.stage("dynamics/measure_displacement", kernels().measure_displacement, inputs<DisplacementInputs>(k, b, n),
             value(p.h), outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken);
     g.stage_with_result("dynamics/rest_bodies", found.rest, rest_bodies, inputs<TouchInputs>(c, w.model.joints),

@@ -152,6 +152,28 @@ StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit, i
     return plan;
 }
 
+Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
+    if (!(model.settings.implicit_step > 0) || model.implicit_nodes.size() == 0) return left;
+    if (clock.length == 0) {
+        // a remainder of rounding size joins the last one
+        const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));
+        clock.length = clock.left = left / count;
+    }
+    return clock.left;
+}
+
+LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan) {
+    const LongStepTimes times{clock.length, clock.left == clock.length, plan.steps == 1};
+    return times.starts && times.ends ? LongStepTimes{} : times;  // as long as all others
+}
+
+void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock) {
+    if (plan.steps > 1)
+        clock.left -= plan.h;
+    else
+        clock = {};
+}
+
 void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameters& parameters) {
     const Real h = parameters.h, kick = parameters.kick;
     for (int l = 0; l < step_level_count; ++l) {

@@ -50,8 +50,11 @@ Real told_step(const Model& model, Index* body) {
 
 Real trusted_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body) * model.settings.step_safety;
-    const Real asked = model.rigid_bodies.size() > 0 ? step_of_rigid_bodies : stable;
-    return std::min(stable, model.settings.step_size.value_or(asked));
+    Real asked = model.rigid_bodies.size() > 0 ? step_of_rigid_bodies : stable;
+    if (model.settings.step_size) asked = *model.settings.step_size;
+    if (model.settings.implicit_step > 0 && model.implicit_nodes.size() > 0)
+        asked = std::min(asked, model.settings.implicit_step);
+    return std::min(stable, asked);
 }
 
 Real step_with_frame(const Model& model) {

@@ -79,6 +79,13 @@ struct StepPlan {
 /// The next step of a call that has `left` seconds to go, where no step may be longer than `fast_limit`. Begins a cycle
 /// between two, of at most 2^levels_of_call steps; below zero, as at the start of a call: to be chosen.
 StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit, int& levels_of_call);
+/// s, to the end of the step of implicit bodies that the next step belongs to, or of a call with `left` seconds to go
+/// where there is none. Begins it between two.
+Real left_in_long_step(const Model& model, Real left, LongStepClock& clock);
+/// What that is to a step that is planned within it.
+LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan);
+/// After a step that was taken.
+void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 /// Which levels are due in the step of length parameters.h, and which levels of each body that means.
 void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameters& parameters);
 /// After a step, with multirate: which nodes its contacts act on.

@@ -281,6 +281,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
         scratch.parameters.integrator == Integrator::forward_euler ? 0 : scratch.parameters.kick - plan.h / 2;
     scratch.parameters.let_invert =
         tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
+    scratch.parameters.long_step = times_in_long_step(world.clock.long_step, plan);
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
     scratch.parameters.forces_wanted = world.record.forces.on();
     scratch.parameters.moment_point = world.record.forces.moment_point();

@@ -36,28 +36,18 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
     return true;
 }
 
-Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
-                         std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out) {
+namespace {
+
+/// From velocities and displacements at the end of a step to those without rigid motion in the shape there. Returns
+/// `taken`, J, and what energy falls by, but for the velocities at the start.
+Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real taken,
+                  StiffBody& stiff, const ImplicitStrains& out) {
     const OfBody of(bodies, stiff, r);
     const std::span<Vec3> next = of.rows(out.velocity_next), displacement_next = of.rows(out.displacement_next);
-    const std::span<const Vec3> displacement = of.rows(bodies.displacement), velocity = of.rows(bodies.velocity),
-                                contact = of.rows(out.contact_impulse);
+    const std::span<const Vec3> displacement = of.rows(bodies.displacement);
     const Mat3 from_mesh = bodies.turn(r), to_mesh = from_mesh.transpose();
     LargeStep& step = stiff.large_step;
-    const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0;
-    Real taken = 0;
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
-        const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
-        next[n] = before + (during - before) / theta;
-        // what contacts and loads are said to have done, less what energy has grown by
-        taken += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
-        if (!loads.load.empty()) {
-            const Vec3 load = to_mesh * loads.load[of.first_node + n];
-            taken += h * load.dot(during - (next[n] - velocity[n]) / 2) + (loads.kick - h) * load.dot(velocity[n]);
-        }
-        taken += stiff.mass(k) / 2 * velocity[n].squaredNorm();
-    }
+    const bool was_large = bodies.large[r] != 0;
     const Mat3 turned = stiff.turn_to_own_frame(displacement_next);
     const Vec3 momentum = spins.after(r);
     const bool is_large =
@@ -84,6 +74,44 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
                spin_after = spin_of(turned_for_step, out.moments_next[r], momentum);
     taken += momentum.dot(spin_before - spin_after) / 2;
     return taken + stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
+}
+
+}  // namespace
+
+Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
+                         std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out) {
+    const OfBody of(bodies, stiff, r);
+    const std::span<Vec3> next = of.rows(out.velocity_next);
+    const std::span<const Vec3> velocity = of.rows(bodies.velocity), contact = of.rows(out.contact_impulse);
+    const Mat3 to_mesh = bodies.turn(r).transpose();
+    LargeStep& step = stiff.large_step;
+    const bool newton = stiff.is_tangent();
+    Real taken = 0;
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
+        next[n] = before + (during - before) / theta;
+        // what contacts and loads are said to have done, less what energy has grown by
+        taken += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
+        if (!loads.load.empty()) {
+            const Vec3 load = to_mesh * loads.load[of.first_node + n];
+            taken += h * load.dot(during - (next[n] - velocity[n]) / 2) + (loads.kick - h) * load.dot(velocity[n]);
+        }
+        taken += stiff.mass(k) / 2 * velocity[n].squaredNorm();
+    }
+    return end_in_shape(bodies, spins, r, h, taken, stiff, out);
+}
+
+Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, StiffBody& stiff,
+                  const ImplicitStrains& out) {
+    const OfBody of(bodies, stiff, r);
+    Real kinetic = 0;
+    for (std::size_t n = 0; n < of.count; ++n)
+        kinetic += stiff.mass(of.place(n)) / 2 * of.rows(out.velocity_next)[n].squaredNorm();
+    // elasticity of before has its part in what was said of the step
+    const Real linear = stiff.elastic_energy(of.rows(out.displacement_next), false) -
+                        stiff.elastic_energy(of.rows(bodies.displacement), false);
+    return end_in_shape(bodies, spins, r, h, kinetic + linear, stiff, out);
 }
 
 void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, StiffBody& stiff,

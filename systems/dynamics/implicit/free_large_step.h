@@ -15,6 +15,10 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                          std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out);
 
+/// Where strain was small in a step whose end is written: the same, beside what was damped with linear elasticity.
+Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, StiffBody& stiff,
+                  const ImplicitStrains& out);
+
 /// How a body of large strain turns in the shape that it has by now.
 void follow_shape(std::span<const Vec3> displacement, bool large, const Mat3& from_mesh, StiffBody& stiff,
                   Vec3& moments, Mat3& axes, Mat3& rotation);

@@ -8,6 +8,7 @@
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/implicit/free_large_step.h"
 #include "systems/dynamics/implicit/held_implicit_body.h"
+#include "systems/dynamics/implicit/long_step.h"
 #include "systems/dynamics/implicit/of_body.h"
 
 namespace skerry {
@@ -19,19 +20,6 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
         for (std::size_t r = first; r < last; ++r)
             if (bodies.rows(r).size() > 0) visit(r);
     });
-}
-
-/// The impulses of momenta, loads and elasticity, but for `force` (by place), on a body that is free; by place.
-void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
-                     std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse) {
-    const std::span<const Vec3> velocity = of.rows(bodies.velocity);
-    const Mat3 turn = bodies.turn(r);
-    for (std::size_t n = 0; n < of.count; ++n) {
-        const std::size_t k = of.place(n);
-        impulse[k] = of.stiff.mass(k) * velocity[n];
-        impulse[k] -= within * force[k];
-        if (!loads.load.empty()) impulse[k] += within * (turn.transpose() * loads.load[of.first_node + n]);
-    }
 }
 
 /// By the end of a step with these velocities (by place), where it is not now.
@@ -53,6 +41,18 @@ void keep_spins(const ImplicitBodies& bodies, const ImplicitSpins& spins, const 
 }
 
 }  // namespace
+
+void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
+                     std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse) {
+    const std::span<const Vec3> velocity = of.rows(bodies.velocity);
+    const Mat3 turn = bodies.turn(r);
+    for (std::size_t n = 0; n < of.count; ++n) {
+        const std::size_t k = of.place(n);
+        impulse[k] = of.stiff.mass(k) * velocity[n];
+        impulse[k] -= within * force[k];
+        if (!loads.load.empty()) impulse[k] += within * (turn.transpose() * loads.load[of.first_node + n]);
+    }
+}
 
 Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within) {
     return 1 + within * bodies.damping(r);
@@ -79,9 +79,10 @@ bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta
 }
 
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                          const ImplicitSpins& spins, Real h, Real theta, StiffBodies& stiff,
+                          const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                           const ImplicitKicks& out) {
     if (!bodies.any()) return false;
+    const Real h = times.h, theta = times.theta;
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const OfBody of(bodies, stiff[r], r);
         const std::span<Vec3> next = of.rows(out.velocity_next);
@@ -90,7 +91,13 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
         stiff[r].forget_tangent();
         stiff[r].large_step.counts = {};
         stiff[r].large_step.failed = false;
-        if (bodies.asleep(r)) return;
+        stiff[r].long_step.weight = 0;
+        stiff[r].long_step.rests = false;
+        if (times.starts) stiff[r].long_step.done = 0;
+        if (bodies.asleep(r)) {
+            rest_in_long_step(times, stiff[r]);
+            return;
+        }
         if (bodies.holds.hold(r)) {
             kick_held_body(bodies, loads, r, h, theta, stiff[r], out);
             return;
@@ -98,15 +105,18 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
         const std::span<Vec3> impulse = of.rows(out.impulse), force = of.rows(out.elastic_force);
         const std::span<const Vec3> displacement = of.rows(bodies.displacement);
         bool large = bodies.large[r] != 0, sound = true;
-        if (!large) {
+        if (takes_long_steps(bodies, times, r)) {
+            sound = kick_in_long_step(bodies, loads, r, times, stiff[r], force, impulse);
+        } else if (!large) {
             for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = displacement[n];
             of.stiff.elastic_forces(impulse, force);
             add_up_impulses(bodies, loads, r, theta * h, force, of, impulse);
             sound = make_factor(bodies, r, h, theta, stiff[r]);
             if (sound) of.stiff.respond(impulse);
-            large = sound &&
-                    becomes_large(displacement, impulse, bodies.turn(r).transpose() * spins.kicked(r), h, of, stiff[r]);
         }
+        large = large || (sound && becomes_large(displacement, impulse, bodies.turn(r).transpose() * spins.kicked(r), h,
+                                                 of, stiff[r]));
+        if (large) stiff[r].long_step.weight = 0;
         if (large) sound = kick_large_free_body(bodies, loads, spins, r, h, theta, stiff[r], impulse);
         if (!sound)  // the step is refused
             std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
@@ -120,7 +130,7 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
 }
 
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
-                            std::span<const Index> node_body, Real h, Real theta, StiffBodies& stiff,
+                            std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling) {
     coupling.nodes.clear();
     if (!bodies.any()) return false;
@@ -155,9 +165,10 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
     for_each_implicit(executor, bodies, [&](std::size_t r) {
         const std::span<const Index> nodes = coupling.nodes[r];
         if (nodes.empty()) return;
-        if (!stiff[r].is_tangent()) make_factor(bodies, r, h, theta, stiff[r]);
-        coupling.turn[r] = bodies.holds.hold(r) ? LedFrame(bodies, r, h).turn : bodies.turn(r);
-        coupling.impulse_turn[r] = theta * coupling.turn[r].transpose();
+        const Real weight = stiff[r].long_step.weight;
+        if (!stiff[r].is_tangent()) make_factor(bodies, r, weight > 0 ? times.length : times.h, times.theta, stiff[r]);
+        coupling.turn[r] = bodies.holds.hold(r) ? LedFrame(bodies, r, times.h).turn : bodies.turn(r);
+        coupling.impulse_turn[r] = (weight > 0 ? weight * times.theta : times.theta) * coupling.turn[r].transpose();
         coupling.response[r] = stiff[r].responses(nodes, bodies.nodes(r).begin);
     });
     return true;
@@ -178,9 +189,10 @@ Vec3 impulse_of_longer_step(const ImplicitLoads& loads, Real h, const OfBody& of
 }  // namespace
 
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                                      const ImplicitSpins& spins, StiffBodies& stiff, Real h, Real theta,
+                                      const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts) {
     if (!bodies.any()) return {};
+    const Real h = times.h, theta = times.theta;
     parts.assign(bodies.body.size(), {});
     keep_spins(bodies, spins, out);
     for_each_implicit(executor, bodies, [&](std::size_t r) {
@@ -199,8 +211,16 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
         if (touched) {
             for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = theta * (back * contact[n]);
             of.stiff.respond(impulse);
-            for (std::size_t n = 0; n < of.count; ++n) next[n] += impulse[of.place(n)];
         }
+        if (stiff[r].long_step.weight > 0 && !bodies.asleep(r)) {
+            if (!touched) std::ranges::fill(impulse, Vec3::Zero());
+            parts[r].damped = strain_in_long_step(bodies, loads, r, times, stiff[r], impulse, out);
+            if (is_large_after(false, displacement_next, back * spins.after(r), of, stiff[r]))
+                parts[r].damped += become_large(bodies, spins, r, h, stiff[r], out);
+            return;
+        }
+        if (touched)
+            for (std::size_t n = 0; n < of.count; ++n) next[n] += impulse[of.place(n)];
         for (std::size_t n = 0; n < of.count; ++n) displacement_next[n] = displacement[n] + h * next[n];
         if (bodies.asleep(r)) return;
         if (bodies.large[r] != 0 || stiff[r].is_tangent() ||

@@ -34,6 +34,7 @@ struct ImplicitBodies {
     std::span<const Real> material_damping;     // 1/s
     std::span<const Vec3> displacement;         // m
     std::span<const Vec3> velocity;             // m/s
+    std::span<const Vec3> left;                 // m, ImplicitNodeTable
     // Of those that attachments hold:
     RigidHolds holds;
     std::span<const Vec3> center, rest_center;           // RigidBodyTable
@@ -54,6 +55,7 @@ struct ImplicitBodies {
                 .material_damping = binder.read(material.damping),
                 .displacement = binder.read(node.displacement),
                 .velocity = binder.read(node.velocity),
+                .left = binder.read(node.left),
                 .holds = RigidHolds::bind(binder, rigid, attachment),
                 .center = binder.read(rigid.center),
                 .rest_center = binder.read(rigid.rest_center),
@@ -75,6 +77,26 @@ struct ImplicitBodies {
     }
     /// Frame of the mesh to the world.
     Mat3 turn(std::size_t r) const { return rotation[r] * axes[r].transpose(); }
+};
+
+/// A step that implicit bodies of small strain take while others take several.
+struct LongStepTimes {
+    Real length = 0;      // s; 0: there is none, all take the same step
+    bool starts = false;  // with this short step
+    bool ends = false;    // with this short step
+};
+
+/// How long the step is.
+struct ImplicitTimes : LongStepTimes {
+    Real h = 0;  // s
+    Real theta = 1;
+
+    static ImplicitTimes bind(const Binder& binder, const Real& h, const Real& theta, const LongStepTimes& long_step) {
+        ImplicitTimes times{binder.value(long_step)};
+        times.h = binder.value(h);
+        times.theta = binder.value(theta);
+        return times;
+    }
 };
 
 struct ImplicitLoads {
@@ -126,12 +148,13 @@ struct ImplicitKicks {
 /// in the world, and turned into the frame of its start; its held nodes have theirs already. Parallel over bodies.
 /// Returns false where there is none (skipped).
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                          const ImplicitSpins& spins, Real h, Real theta, StiffBodies& stiff, const ImplicitKicks& out);
+                          const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
+                          const ImplicitKicks& out);
 
 /// Lists the nodes that contacts touch, and what impulses on them do to each other. Returns false where no contact
 /// touches an implicit body (skipped).
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
-                            std::span<const Index> node_body, Real h, Real theta, StiffBodies& stiff,
+                            std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling);
 
 struct ImplicitStrains {
@@ -178,8 +201,12 @@ struct StrainFindings {
 /// `force`, which then acts for `loads.kick`, and written to `hold_moment`. `parts` is memory, by row of
 /// RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
-                                      const ImplicitSpins& spins, StiffBodies& stiff, Real h, Real theta,
+                                      const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
+
+/// When a short step is taken: bodies in a long step have come so far in it. `left`: m, ImplicitNodeTable.
+void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
+                      StiffBodies& stiff, std::span<Vec3> left);
 
 /// What deforms goes on for `seconds` with the velocity that it has. Writes what ElasticMotion reads.
 void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,

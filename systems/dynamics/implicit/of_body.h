@@ -29,6 +29,11 @@ Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
 /// Makes that of a step of small strain the matrix of stiff.respond(). Returns false where there is none.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
+/// The impulses of momenta, loads and elasticity, but for `force` (by place), on a body that is free; by place.
+/// `within`: theta times the length of the step, s.
+void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
+                     std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse);
+
 /// Whether strain is large after a step; `displacement`: m, at its end, by node. `angular_momentum`: kg m^2/s, of a
 /// free body, in the frame of its mesh.
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,

@@ -55,6 +55,28 @@ struct LargeStep {
     }
 };
 
+/// A step of small strain while other bodies take several, by node (docs/methods/implicit_bodies.md 9).
+struct LongStep {
+    Real done = 0;       // s, of it by now; 0: the body is in none
+    Real weight = 0;     // s/s, time at the end of this short step over its length; 0: this one is as all others
+    bool rests = false;  // in this short step
+    // of the start of the long step:
+    std::vector<Vec3> start, start_velocity;  // m, m/s
+    std::vector<Vec3> start_force;            // N, K u
+    std::vector<Vec3> impulse, free;          // N s, m/s: all but contacts, and what they give
+    std::vector<Vec3> left, left_impulse;     // m/s, N s: of contacts of the one before, which go on
+    // of contacts since then, by now and at the end of this short step:
+    std::vector<Vec3> answer, answer_next;    // m/s
+    std::vector<Vec3> contact, contact_next;  // N s, in the frame of the mesh
+    Real elastic = 0, elastic_next = 0;       // J
+
+    void resize(std::size_t count) {
+        for (std::vector<Vec3>* column : {&start, &start_velocity, &start_force, &impulse, &free, &left, &left_impulse,
+                                          &answer, &answer_next, &contact, &contact_next})
+            column->assign(count, Vec3::Zero());
+    }
+};
+
 /// Vectors by node are in the order of elimination: place() says where a node of the body stands.
 class StiffBody {
 public:
@@ -122,6 +144,8 @@ public:
     }
     /// Of the step that is being made, where its strain is large.
     LargeStep large_step;
+    /// Of the long step that is being made.
+    LongStep long_step;
     const BodyElements& elements() const { return elements_; }
     bool holds(std::size_t place) const { return is_held() && held_[place] != 0; }
     /// Impulses (N s) to the velocities (m/s) that they give by A^-1. Where the body is free without what moves it as a
