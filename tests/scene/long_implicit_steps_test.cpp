@@ -222,6 +222,36 @@ TEST_CASE("worlds with long steps go on bit by bit, on any number of workers, sa
         CHECK(world->state_hash() == reference.world.state_hash());
 }
 
+TEST_CASE("a long step that ends early loses energy, as the whole one does", "[scene][implicit]") {
+    constexpr int short_steps = 10;
+    Settings settings = settings_of(h, short_steps * h, Vec3::Zero());
+    settings.theta = GENERATE(1.0, 0.5);
+    World world(settings);
+    const auto weak = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3});
+    world.add_body(cube, {.material = weak, .dynamics = BodyDynamics::implicit_elastic});
+    WorldState& state = WorldAccess::state_of(world);
+    std::span<Vec3> velocity = state.model.implicit_nodes.velocity;
+    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n].x() = n % 2 == 0 ? 0.02 : -0.02;
+    state.model.stiff_bodies[0].take_rigid_motion(velocity);
+    const auto energy = [&world] {
+        const Energy now = world.report().energy;
+        return now.kinetic + now.elastic;
+    };
+    REQUIRE(energy() > 0);
+    Real before = energy();
+    for (int wanted = 1; wanted < 3 * short_steps; ++wanted) {
+        int steps = 0;
+        const StepReport report =
+            world.advance(2 * short_steps * h, [&](const StepReport&) { return ++steps <= wanted % short_steps; });
+        REQUIRE(report.status == StepStatus::stopped);
+        CAPTURE(wanted);
+        CHECK(energy() <= before * (1 + 1e-12));
+        before = energy();
+    }
+    CHECK(before > 0);
+    CHECK(world.report().energy_error_share < 1e-11);
+}
+
 TEST_CASE("a step that is refused in the midst of a long one leaves what was there", "[scene][implicit]") {
     Stack scene(settings_of(h, 12 * h, {0, 0, -standard_gravity}), 100);
     for (int k = 0; k < 10; ++k) REQUIRE(scene.world.advance(24 * h).ok());
