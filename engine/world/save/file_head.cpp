@@ -14,7 +14,7 @@ namespace skerry {
 namespace {
 
 constexpr const char* title = "Skerry world, version ";
-constexpr const char* expected_file = "a world that Skerry saved, version 16";
+constexpr const char* expected_file = "a world that Skerry saved, version 17";
 
 [[noreturn]] void refuse_file(const std::filesystem::path& file, const std::string& found, const std::string& expected,
                               const std::string& hint = {}) {
