@@ -15,6 +15,9 @@ namespace {
 // Smaller bodies share a job of as many.
 constexpr Index blocks_per_part = 256;
 
+// Looks at a narrow block, of which the first finds its width: half of what a look takes.
+constexpr std::uint8_t looks_at_narrow = 8;
+
 // Blocks whose budgets are tested together, without a branch for each.
 constexpr std::size_t blocks_at_once = 32;
 
@@ -61,13 +64,14 @@ struct Body {
           travel_bound(of.body_travel[body] + reach),
           travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
 
-    void look(InversionPart& part, std::span<Real> uninverted_until) const {
+    void look(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> looks_left) const {
         const auto end = static_cast<std::size_t>(part.blocks.end);
         for (auto b = static_cast<std::size_t>(part.blocks.begin); b < end; b += blocks_at_once) {
             const std::size_t stop = std::min(b + blocks_at_once, end);
             if (!(travel_bound < least(uninverted_until, b, stop)))
                 for (std::size_t i = b; i < stop; ++i)
-                    if (!(travel_bound < uninverted_until[i])) look_at_block(i, uninverted_until[i], part);
+                    if (!(travel_bound < uninverted_until[i]))
+                        look_at_block(i, uninverted_until[i], looks_left[i], part);
             part.uninverted_until = std::min(part.uninverted_until, least(uninverted_until, b, stop));
         }
     }
@@ -97,11 +101,17 @@ private:
         return least;
     }
 
-    void look_at_block(std::size_t b, Real& uninverted_until, InversionPart& part) const {
+    void look_at_block(std::size_t b, Real& uninverted_until, std::uint8_t& looks_left, InversionPart& part) const {
         const LaneMat3<Real8> now = edges(inputs.tetrahedron_node[b], inputs.position);
-        const Real safe = width(now, inputs.tetrahedron_volume[b]) / 2;
-        uninverted_until = travel_base + safe;
-        if (!(reach < safe)) find_turned(b, now, part);
+        if (looks_left > 0) {
+            --looks_left;
+        } else {
+            const Real safe = width(now, inputs.tetrahedron_volume[b]) / 2;
+            uninverted_until = travel_base + safe;
+            if (reach < safe) return;
+            looks_left = looks_at_narrow - 1;
+        }
+        find_turned(b, now, part);
     }
 
     void find_turned(std::size_t b, const LaneMat3<Real8>& now, InversionPart& part) const {
@@ -166,10 +176,12 @@ Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Re
     SKERRY_CHECK(budgets.body_uninverted_until.size() == inputs.body_blocks.size());
     SKERRY_CHECK(budgets.block_uninverted_until.size() == inputs.tetrahedron_node.size());
     list_parts(inputs, h, budgets.body_uninverted_until, memory);
+    memory.looks_left.resize(inputs.tetrahedron_node.size());
+    const std::span<std::uint8_t> looks_left = memory.looks_left.span();
     Column<InversionPart>& parts = memory.part;
     parallel_for(executor, memory.job.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
         for (Index p = memory.job[begin]; p < memory.job[end]; ++p)
-            Body(inputs, h, parts[p].body).look(parts[p], budgets.block_uninverted_until);
+            Body(inputs, h, parts[p].body).look(parts[p], budgets.block_uninverted_until, looks_left);
     });
     Inversions found;
     for (std::size_t first = 0, next = 0; first < parts.size(); first = next) {

@@ -1,6 +1,7 @@
 // Which tetrahedra the step would turn inside out (docs/methods/time_stepping.md 4.2).
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "components/body_table.h"
@@ -63,6 +64,8 @@ struct InversionPart {
 struct InversionMemory {
     Column<InversionPart> part;  // of all bodies that are due, in their order
     Column<Index> job;           // first rows of `part`, for each job, and their count
+    // by block of tetrahedra: looks that do without a new budget, since one is so narrow that it would be spent at once
+    Column<std::uint8_t> looks_left;
 };
 
 struct InversionBudgets {
@@ -76,7 +79,8 @@ struct InversionBudgets {
 
 /// Looks only where the body can have come far enough: a tetrahedron is not turned over before its corners have moved
 /// by half of its width, the distance of the two nearest parallel planes around it. So slivers are looked at often, the
-/// rest of their body is not. Budgets are written where tetrahedra are looked at. Parallel over parts of bodies.
+/// rest of their body is not. Budgets are written where tetrahedra are looked at, of blocks that are too narrow for one
+/// in every eighth look. Parallel over parts of bodies.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 
