@@ -1,6 +1,7 @@
 #include "systems/dynamics/elements/compute_element_forces.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "components/check.h"
@@ -50,6 +51,13 @@ Real sum_of(const ElementLane& lanes) {
     return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
 }
 
+// Blocks between the one that is computed and the one whose rows are asked for.
+constexpr std::size_t blocks_ahead = 6;
+
+// Positions of so many nodes of a patch, 16 kB, stand in a place that stays in the nearest cache; of more in rows of
+// their own.
+constexpr std::size_t near_nodes = 512;
+
 /// Blocks of a patch, one after the other, that are of one material and due for one time.
 struct Run {
     std::size_t begin, end;
@@ -71,14 +79,20 @@ struct Run {
         return {patches.slot.data() + row, elements.gradient.data() + row, elements.count[block]};
     }
 
-    /// Asks for the gradients of a block that is to come: what is fetched beside them, and in which order, keeps
-    /// processors from seeing that they lie one after the other.
-    [[gnu::always_inline]] void ask_for(std::size_t block) const {
+    /// Asks for the rows of a block that is to come, of the next patch, too: what is fetched beside them, and in which
+    /// order, keeps processors from seeing that they lie one after the other.
+    [[gnu::always_inline]] void ask_for_one_ahead_of(std::size_t current) const {
+        const std::size_t block = current + blocks_ahead;
+        if (block >= elements.blocks()) return;
         const auto row = static_cast<std::size_t>(elements.first[block]);
-        const auto* const from = reinterpret_cast<const char*>(elements.gradient.data() + row + 1);
-        const auto* const to = reinterpret_cast<const char*>(elements.gradient.data() + row) +
-                               static_cast<std::size_t>(elements.count[block]) * sizeof(ElementGradient);
-        for (const char* line = from; line < to; line += 64) __builtin_prefetch(line);
+        const auto rows = static_cast<std::size_t>(elements.count[block]);
+        const auto ask = [](const auto* from, const auto* to) {
+            const auto *line = reinterpret_cast<const char*>(from), *last = reinterpret_cast<const char*>(to);
+            for (; line < last; line += 64) __builtin_prefetch(line);
+        };
+        ask(elements.gradient.data() + row + 1, elements.gradient.data() + row + rows);
+        ask(patches.slot.data() + row, patches.slot.data() + row + rows);
+        ask(elements.volume.data() + block, elements.volume.data() + block + 1);
         if (next.viscous_strain.empty()) return;
         const auto* const taken = reinterpret_cast<const char*>(next.viscous_strain.data() + block);
         for (const char* line = taken; line < taken + sizeof(ElementStrain); line += 64) __builtin_prefetch(line, 1);
@@ -354,7 +368,7 @@ template <class Elements>
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = elements.fetch(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
-            if (block + 3 < run.end) run.ask_for(block + 3);
+            run.ask_for_one_ahead_of(block);
             const Parts<LaneMat3<KernelReal>> P = run.stress_of(law, block, F);
             if (ahead && block + 1 < run.end) F = elements.fetch(block + 1);
             elements.add(block, P);
@@ -400,8 +414,11 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 continue;
             }
             const auto slot = static_cast<std::size_t>(patches.slots[p].begin);
-            PaddedVec3 *const x = patches.position.data() + slot, *const force = patches.force.data() + slot;
-            fetch(patches.node.subspan(slot, static_cast<std::size_t>(patches.slots[p].size())), position, x, force);
+            const auto node = patches.node.subspan(slot, static_cast<std::size_t>(patches.slots[p].size()));
+            std::array<PaddedVec3, near_nodes> near;
+            PaddedVec3 *const x = node.size() <= near_nodes ? near.data() : patches.position.data() + slot,
+                              *const force = patches.force.data() + slot;
+            fetch(node, position, x, force);
             for (std::size_t b = begin; b < end;) {
                 const Real duration = elements.schedule.duration(b);
                 const std::size_t after = end_of_run(elements, b, end, touched);
