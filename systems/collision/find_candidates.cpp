@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
@@ -17,7 +18,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t trees_per_block = 4;  // a refit takes microseconds
+constexpr std::size_t trees_per_block = 4, bounds_per_block = 32;  // a refit takes microseconds, a box and sphere less
 // A block of either takes some microseconds.
 constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256;
 
@@ -99,6 +100,12 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     pairs.closing[p] = memory.body_reach[a] + memory.body_reach[b];
 }
 
+/// Of those that are marked.
+void list_bodies(SearchMemory& memory) {
+    for (std::size_t b = 0; b < memory.needs_refit.size(); ++b)
+        if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
+}
+
 void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, SearchMemory& memory, PairTable& pairs) {
     pairs.fresh.resize(pairs.size());
     parallel_for(executor, pairs.size(), bounded_pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -115,7 +122,6 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, Sea
         expired += pairs.fresh[p];
     }
     memory.expired.resize(expired);
-    // A tree that several expired pairs share is fitted once.
     memory.refit.clear();
     if (memory.expired.empty()) return;
     memory.needs_refit.assign(inputs.body.slot.size(), 0);
@@ -123,22 +129,23 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, Sea
         if (pairs.kind[p] == PairKind::collider) continue;
         memory.needs_refit[pairs.first[p]] = memory.needs_refit[pairs.second[p]] = 1;
     }
-    for (std::size_t b = 0; b < memory.needs_refit.size(); ++b)
-        if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
+    list_bodies(memory);
 }
 
-void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, std::span<LeafBoxes> leaf_box,
-                 SearchMemory& memory) {
-    parallel_for(executor, memory.refit.size(), trees_per_block, [&](std::size_t begin, std::size_t end) {
+/// Boxes and spheres around bodies of expired pairs, as they are.
+void fit_bounds(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
+    parallel_for(executor, memory.refit.size(), bounds_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index b = memory.refit[i];
             const Range tree = inputs.body.bvh_nodes[b], vertices = inputs.body.vertices[b];
             if (tree.size() == 0) continue;
-            refit_bvh(tree, inputs.bvh_node, inputs.leaf_triangle, inputs.surface.triangles.node, inputs.position, box,
-                      leaf_box);
-            memory.sphere[b] =
-                sphere_around(box[tree.begin], vertices.begin, vertices.end,
-                              [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; });
+            const auto point_of = [&](Index v) -> const Vec3& {
+                return inputs.position[inputs.surface.vertices.node[v]];
+            };
+            Aabb& around = box[tree.begin];
+            around = empty_box();
+            for (Index v = vertices.begin; v < vertices.end; ++v) grow(around, point_of(v));
+            memory.sphere[b] = sphere_around(around, vertices.begin, vertices.end, point_of);
         }
     });
 }
@@ -148,20 +155,62 @@ Real closing(const PairTable& pairs, Index p) {
     return pairs.kind[p] == PairKind::collider ? pairs.closing[p] : pairs.travel_bound[p] - pairs.travel[p];
 }
 
-void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, const BvhBoxes& boxes, Index p,
-                  const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
+/// m, by what is around two bodies: no features of theirs are nearer to each other.
+Real least_distance(const CollisionInputs& inputs, std::span<const Aabb> box, const SearchMemory& memory, Index first,
+                    Index second) {
+    const Range a = inputs.body.bvh_nodes[first], b = inputs.body.bvh_nodes[second];
+    if (a.size() == 0 || b.size() == 0) return 0;
+    return std::max(gap_between(memory.sphere[first], memory.sphere[second]),
+                    std::sqrt(distance_squared(box[a.begin], box[b.begin])));
+}
+
+PairToSearch pair_to_search(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box,
+                            const SearchMemory& memory, const PairTable& pairs, Index p) {
     PairToSearch pair{pairs.kind[p], pairs.first[p], pairs.second[p], {}, 0, 0, 0};
     pair.scale = pair_scale(inputs, pair.kind, pair.first, pair.second);
-    if (pair.kind != PairKind::collider) {
-        // before the search: what is apart is looked for less far
-        if (pairs.state[p] != PairState::apart)
-            pairs.state[p] = surfaces_cross(inputs, pair, boxes) ? PairState::overlapping : PairState::apart;
-        pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
-    }
     pair.travel_base = pair_travel_base(inputs, pairs, p);
     pair.margin = settings.pair_skin * pair.scale.edge + std::max(closing(pairs, p), pairs.longer_motion[p]);
+    if (pair.kind == PairKind::collider) return pair;
+    pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
+    if (pair.kind == PairKind::bodies) pair.apart = least_distance(inputs, box, memory, pair.first, pair.second);
+    return pair;
+}
+
+/// Whether what is around two bodies tells that none of their features is looked for.
+bool is_far(const PairToSearch& pair) {
+    return pair.apart - pair.scale.zone >= pair.margin;
+}
+
+/// A tree that several expired pairs share is fitted once, and none of those that are far apart.
+void list_refits(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box,
+                 SearchMemory& memory, const PairTable& pairs) {
+    memory.refit.clear();
+    memory.needs_refit.assign(inputs.body.slot.size(), 0);
+    for (Index p : memory.expired)
+        if (pairs.kind[p] != PairKind::collider && !is_far(pair_to_search(inputs, settings, box, memory, pairs, p)))
+            memory.needs_refit[pairs.first[p]] = memory.needs_refit[pairs.second[p]] = 1;
+    list_bodies(memory);
+}
+
+void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, std::span<LeafBoxes> leaf_box,
+                 const SearchMemory& memory) {
+    parallel_for(executor, memory.refit.size(), trees_per_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            refit_bvh(inputs.body.bvh_nodes[memory.refit[i]], inputs.bvh_node, inputs.leaf_triangle,
+                      inputs.surface.triangles.node, inputs.position, box, leaf_box);
+    });
+}
+
+void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, const BvhBoxes& boxes, Index p,
+                  const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
+    PairToSearch pair = pair_to_search(inputs, settings, boxes.node, memory, pairs, p);
+    if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
+        // before the search: what is apart is looked for less far
+        const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, boxes);
+        pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
+        pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
+    }
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
-    if (pair.kind == PairKind::bodies) pair.apart = gap_between(memory.sphere[pair.first], memory.sphere[pair.second]);
     pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
     pairs.candidates[p].resize(found.size());
     pairs.asleep_until[p].resize(found.size());
@@ -215,6 +264,8 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     list_expired(executor, inputs, h, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
+    fit_bounds(executor, inputs, box, memory);
+    list_refits(inputs, settings, box, memory, pairs);
     refit_trees(executor, inputs, box, leaf_box, memory);
     const BvhBoxes boxes{box, leaf_box};
     if (memory.found.size() < memory.expired.size()) memory.found.resize(memory.expired.size());

@@ -40,6 +40,7 @@ public:
     Real run(Range range) {
         for_each_awake(range, [&](Index c) { settings_.use_budgets ? wait(c) : wake(c); });
         wake_waiting();
+        for (std::size_t l = 0; l < candidate_lanes; ++l) note_nearest(nearest_lanes_[l]);
         return std::sqrt(nearest_squared_) - scale_.radii;
     }
 
@@ -60,19 +61,21 @@ private:
         const CandidateDistances found = edges_wait_ ? edge_edge_distances(inputs_, candidates_, waiting_)
                                                      : point_triangle_distances(inputs_, candidates_, waiting_);
         const Real zone = edges_wait_ ? scale_.edge_depth : scale_.zone;
-        for (std::size_t i = 0; i < waiting_count_; ++i) {
-            const Real distance = found.distance[i];
-            if (distance - scale_.radii < can_meet_) meeting_.push_back({pair_, waiting_[i], distance});
-            const bool far = !(distance <= std::max(near_, zone));
-            // Of surfaces that are apart nothing has come through the other.
-            const bool out_of_reach = surfaces_ == Surfaces::apart && !within_reach(distance, found.speed[i]);
-            if (!far && !out_of_reach) {
-                wake(waiting_[i]);
-                continue;
-            }
-            nearest_squared_ = std::min(nearest_squared_, distance * distance);
-            asleep_until_[waiting_[i]] = travel_base_ + distance - (far ? zone : scale_.edge_depth);
-        }
+        const Real8 none{}, distance = load(found.distance);
+        const auto near = distance <= none + std::max(near_, zone);
+        // Of surfaces that are apart nothing has come through the other.
+        const auto counts = surfaces_ == Surfaces::apart ? near & within_reach(distance, load(found.speed)) : near;
+        const Real8 until = travel_base_ + distance - (near ? none + scale_.edge_depth : none + zone);
+        const Real8 left = counts ? none + std::numeric_limits<Real>::infinity() : distance * distance;
+        nearest_lanes_ = left < nearest_lanes_ ? left : nearest_lanes_;
+        Lanes<Real, candidate_lanes> asleep;
+        store(until, asleep);
+        for (std::size_t i = 0; i < candidate_lanes; ++i) asleep_until_[waiting_[i]] = asleep[i];
+        const unsigned used = (1U << waiting_count_) - 1;
+        for_each_lane(used & bits_of(distance - scale_.radii < none + can_meet_), [&](std::size_t i) {
+            meeting_.push_back({pair_, waiting_[i], found.distance[i]});
+        });
+        for_each_lane(used & bits_of(counts), [&](std::size_t i) { wake(waiting_[i]); });
         waiting_count_ = 0;
     }
 
@@ -84,6 +87,8 @@ private:
             point_against_triangle(c, candidates_[c]);
     }
 
+    void note_nearest(Real squared) { nearest_squared_ = std::min(nearest_squared_, squared); }
+
     void prepare_surfaces() {
         if (!prepare()) return;
         surfaces_ = is_held_apart(settings_, state_, scale_) ? Surfaces::apart : Surfaces::may_overlap;
@@ -94,7 +99,7 @@ private:
         const Index node = inputs_.surface.vertices.node[candidate.first];
         const PointTriangleContact contact = point_triangle_contact(
             inputs_.surface, inputs_.position, inputs_.position[node], candidate.second, scale_, near_, surfaces_);
-        nearest_squared_ = std::min(nearest_squared_, contact.closest.distance_squared);
+        note_nearest(contact.closest.distance_squared);
         asleep_until_[c] = travel_base_ + contact.sleep;
         const auto& corner = inputs_.surface.triangles.node[candidate.second];
         if (contact.side == Side::none || (is_core(corner) && !core_is_touched(candidate, contact.closest))) return;
@@ -155,7 +160,7 @@ private:
     void edge_against_edge(Index c, const Candidate& candidate) {
         const EdgeEdgeContact contact = edge_edge_contact(inputs_.surface, inputs_.position, candidate.first,
                                                           candidate.second, scale_, near_, surfaces_);
-        nearest_squared_ = std::min(nearest_squared_, contact.closest.distance_squared);
+        note_nearest(contact.closest.distance_squared);
         asleep_until_[c] = travel_base_ + contact.sleep;
         if (!contact.touching) return;
         const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
@@ -177,6 +182,7 @@ private:
     std::size_t waiting_count_ = 0;
     bool edges_wait_ = false;  // or points
     Real nearest_squared_ = std::numeric_limits<Real>::infinity();
+    Real8 nearest_lanes_ = Real8{} + std::numeric_limits<Real>::infinity();  // the same, of what was put to sleep
     Surfaces surfaces_ = Surfaces::may_overlap;
 };
 

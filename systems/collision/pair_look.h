@@ -41,12 +41,13 @@ public:
 protected:
     /// Calls `wake` for each candidate of a range that is awake; without budgets for all.
     void for_each_awake(Range range, auto&& wake) const {
-        for (Index i = range.begin; i < range.end; i += candidates_at_once) {
-            const Index stop = std::min(i + candidates_at_once, range.end);
-            if (settings_.use_budgets && all_asleep(i, stop)) continue;
-            for (Index c = i; c < stop; ++c)
-                if (!settings_.use_budgets || !(travel_bound_ < asleep_until_[c])) wake(c);
+        Index c = range.begin;
+        if (settings_.use_budgets) {
+            for (; c + candidates_at_once <= range.end; c += candidates_at_once)
+                for_each_lane(awake_lanes(c), [&](std::size_t l) { wake(c + static_cast<Index>(l)); });
         }
+        for (; c < range.end; ++c)
+            if (!settings_.use_budgets || !(travel_bound_ < asleep_until_[c])) wake(c);
     }
 
     /// What all candidates of the pair share, once one is awake. Returns whether it was not there yet.
@@ -58,8 +59,10 @@ protected:
         return prepared_ = true;
     }
 
-    bool within_reach(Real distance, Real relative_speed) const {
-        const Real gap = distance - scale_.contact_distance;
+    /// Of one or of eight.
+    template <class T>
+    auto within_reach(const T& distance, const T& relative_speed) const {
+        const T gap = distance - scale_.contact_distance;
         return gap <= reach(h_, relative_speed, settings_.gravity, scale_.shell);
     }
 
@@ -108,14 +111,13 @@ protected:
     SurfaceProperties surface_;
 
 private:
-    bool all_asleep(Index begin, Index end) const {
-        const Real* const until = asleep_until_.data();
-        if (end - begin < candidates_at_once)
-            return std::all_of(until + begin, until + end, [&](Real u) { return travel_bound_ < u; });
+    /// A bit for each of the candidates from `begin` on that are tested together.
+    unsigned awake_lanes(Index begin) const {
         static_assert(candidates_at_once == 2 * element_lanes);
-        const Real8 bound = Real8{} + travel_bound_, first = *reinterpret_cast<const Real8InMemory*>(until + begin),
-                    second = *reinterpret_cast<const Real8InMemory*>(until + begin + element_lanes);
-        return any_bits(~((bound < first) & (bound < second))) == 0;
+        const Real* const until = asleep_until_.data() + begin;
+        const Real8 bound = Real8{} + travel_bound_, first = *reinterpret_cast<const Real8InMemory*>(until),
+                    second = *reinterpret_cast<const Real8InMemory*>(until + element_lanes);
+        return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
     }
 
     bool moves(const Stencil& stencil) const {

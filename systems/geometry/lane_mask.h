@@ -1,6 +1,8 @@
 // What a comparison of eight lanes gives, and what is asked of it.
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "components/lanes.h"
@@ -17,10 +19,20 @@ typedef std::int64_t LaneBits __attribute__((vector_size(sizeof(Real8))));
     return two[0] | two[1];
 }
 
-/// Bit l for lane l.
+/// Bit l for lane l. One instruction where registers are wide enough to have one for it.
 [[gnu::always_inline]] inline unsigned bits_of(const LaneBits& mask) {
+#if defined(__AVX512DQ__)
+    typedef long long Signs __attribute__((vector_size(sizeof(LaneBits))));
+    return static_cast<unsigned char>(__builtin_ia32_cvtq2mask512(__builtin_convertvector(mask, Signs)));
+#else
     constexpr LaneBits bit{1, 2, 4, 8, 16, 32, 64, 128};
     return static_cast<unsigned>(any_bits(mask & bit));
+#endif
+}
+
+/// Calls visit(lane) for each bit, in rising order.
+void for_each_lane(unsigned bits, auto&& visit) {
+    for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
 }  // namespace skerry

@@ -42,8 +42,9 @@ inline constexpr Real slow_fraction = 0.5;
 // trembles.
 inline constexpr Real touching_fraction = 0.1;
 
-/// Largest gap that can close within a step of length h, m.
-inline Real reach(Real h, Real relative_speed, Real gravity, Real contact_distance) {
+/// Largest gap that can close within a step of length h, m, at one relative speed or eight.
+template <class T>
+T reach(Real h, const T& relative_speed, Real gravity, Real contact_distance) {
     return speed_safety * h * (relative_speed + 2 * gravity * h) + touching_fraction * contact_distance;
 }
 

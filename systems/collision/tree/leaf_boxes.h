@@ -1,8 +1,6 @@
 // Eight boxes against one. Boxes that stand numbers which are not finite, as in box.h.
 #pragma once
 
-#include <bit>
-
 #include "systems/collision/tree/box.h"
 #include "systems/geometry/lane_mask.h"
 
@@ -44,11 +42,6 @@ inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
 /// A bit for each lane that is below the limit.
 inline unsigned lanes_below(const Real8& value, Real limit) {
     return bits_of(value < Real8{} + limit);
-}
-
-/// Calls visit(lane) for each bit, in rising order.
-void for_each_lane(unsigned bits, auto&& visit) {
-    for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
 }  // namespace skerry

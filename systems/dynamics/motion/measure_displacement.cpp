@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t bodies_per_job = 64;
 
 // Fraction of the mean edge at which the origins move to the nodes. A list of a pair made at drifts a and b holds for
-// skin - 2 (a + b) of travel (contact_reach.h): at most 4 x 0.0375 = 0.15 of the skin of 0.375 mean edges is lost. A
-// body that trembles by less than this adds nothing to its travel in the long run.
-constexpr Real longest_displacement = 0.0375;
+// skin - 2 (a + b) of travel (contact_reach.h): at most 4 x 0.01 = 0.04 of the skin of 0.375 mean edges is lost, and
+// candidates wake as much too early. A body that trembles by less than this adds nothing to its travel in the long run.
+constexpr Real longest_displacement = 0.01;
 
 void move_on(MovingFrame& frame, Real seconds) {
     const Vec3 way = seconds * frame.velocity;

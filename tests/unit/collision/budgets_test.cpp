@@ -171,15 +171,23 @@ TEST_CASE("what is held apart is looked for less far, and all contacts are found
             contacts += w.contacts.size();
         }
     } held, thorough, deep;
+    std::size_t looked_at = 0;
     thorough.w.settings.use_budgets = false;
     deep.w.settings.continuous = false;
     for (int step = 0; step < 300; ++step) {
         for (Swing* swing : {&held, &thorough, &deep}) swing->step(step);
         REQUIRE(bits(held.w.contacts) == bits(thorough.w.contacts));
+        // what a test for crossings rests on, of what is put to sleep again, too
+        for (std::size_t b = 0; b < held.w.pairs.block_nearest.size(); ++b)
+            for (const NearCandidate& near : held.w.pairs.near[b]) {
+                REQUIRE(held.w.pairs.block_nearest[b] <= near.distance * (1 + 1e-12));
+                ++looked_at;
+            }
         for (const PairState state : held.w.pairs.state) REQUIRE(state == PairState::apart);
         for (Swing* swing : {&held, &thorough, &deep}) swing->w.drift(h);
     }
     CHECK(held.contacts > 100);
+    CHECK(looked_at > held.contacts);
     CHECK(10 * held.candidates < 9 * deep.candidates);
 }
 

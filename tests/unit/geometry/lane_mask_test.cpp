@@ -1,0 +1,22 @@
+#include "systems/geometry/lane_mask.h"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+using namespace skerry;
+
+TEST_CASE("a comparison of eight lanes gives the bit of each, in rising order", "[unit]") {
+    for (unsigned pattern = 0; pattern < 1U << element_lanes; ++pattern) {
+        Real8 value{};
+        std::vector<std::size_t> expected, visited;
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            value[static_cast<int>(l)] = (pattern >> l & 1U) != 0 ? 1 : -1;
+            if ((pattern >> l & 1U) != 0) expected.push_back(l);
+        }
+        const Real8 none{};
+        CHECK(bits_of(value > none) == pattern);
+        CHECK((any_bits(value > none) != 0) == (pattern != 0));
+        for_each_lane(bits_of(value > none), [&](std::size_t l) { visited.push_back(l); });
+        CHECK(visited == expected);
+    }
+}
