@@ -103,6 +103,8 @@ private:
         for (const char* key : {"contact_budgets", "continuous_collision", "certify_warm_start", "skip_separating",
                                 "frictionless_rows", "freeze_contacts", "small_regions_in_lanes"})
             if (random_.chance(0.3)) s[key] = random_.chance(0.5);
+        if (!s.contains("integrator") && of_long_steps_.chance(0.3))
+            s["implicit_step"] = duration_ * of_long_steps_.by_decade(1e-3, 1);
         return s;
     }
 
@@ -332,6 +334,7 @@ private:
     RandomNumbers of_spheres_{~seed_ * 5};
     RandomNumbers of_capsules_{~seed_ * 7};
     RandomNumbers of_cylinders_{~seed_ * 11};
+    RandomNumbers of_long_steps_{~seed_ * 13};
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material
     Real wave_speed_ = 0;               // m/s, of it
