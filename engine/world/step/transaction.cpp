@@ -1,6 +1,7 @@
 #include "engine/world/step/transaction.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/world/step/step.h"
 #include "systems/dynamics/elements/keep_memory.h"
@@ -66,6 +67,13 @@ Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) 
     if (before > growth * plan.stable)
         before = std::min(before, growth * model.settings.step_safety * stable_step(model));
     return (before + plan.h) / 2;
+}
+
+/// 1 where both differ by rounding alone, as steps do that share what is left of a call. 0: the last one is not known.
+Real kick_over_last(Real kick, Real last) {
+    constexpr Real rounding = 1e-12;
+    if (!(last > 0)) return 0;
+    return std::abs(kick - last) <= rounding * last ? 1 : kick / last;
 }
 
 /// Runs the stages, unless they have nothing to do; they leave what they find in world.scratch. Returns false when it
@@ -275,8 +283,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
     scratch.parameters.kick = kick_of_step(world.model, world.clock, plan);
-    scratch.parameters.kick_over_last =
-        world.clock.kick_before > 0 ? scratch.parameters.kick / world.clock.kick_before : 0;
+    scratch.parameters.kick_over_last = kick_over_last(scratch.parameters.kick, world.clock.kick_before);
     scratch.parameters.lag =
         scratch.parameters.integrator == Integrator::forward_euler ? 0 : scratch.parameters.kick - plan.h / 2;
     scratch.parameters.let_invert =

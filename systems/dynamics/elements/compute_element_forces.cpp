@@ -58,6 +58,9 @@ constexpr std::size_t blocks_ahead = 6;
 // their own.
 constexpr std::size_t near_nodes = 512;
 
+/// Whether the kick is known to be as long as that of the step before: what is booked as lost is had for less then.
+enum class Kicks { alike, any };
+
 /// Blocks of a patch, one after the other, that are of one material and due for one time.
 struct Run {
     std::size_t begin, end;
@@ -93,9 +96,6 @@ struct Run {
         ask(elements.gradient.data() + row + 1, elements.gradient.data() + row + rows);
         ask(patches.slot.data() + row, patches.slot.data() + row + rows);
         ask(elements.volume.data() + block, elements.volume.data() + block + 1);
-        if (next.viscous_strain.empty()) return;
-        const auto* const taken = reinterpret_cast<const char*>(next.viscous_strain.data() + block);
-        for (const char* line = taken; line < taken + sizeof(ElementStrain); line += 64) __builtin_prefetch(line, 1);
     }
 
     template <class T>
@@ -105,7 +105,7 @@ struct Run {
 
     /// The dashpots give way for as long as the block is due, then the springs push. Returns the stress, Pa, and writes
     /// what the dashpots have taken and what they dissipated, J.
-    template <class T>
+    template <Kicks kicks, class T>
     [[gnu::always_inline]] LaneMat3<T> relax(const LaneMat3<T>& F, std::size_t block, std::size_t part,
                                              ElementLane& dissipated) const {
         ElementStrain& forgotten_next = next.viscous_strain[block];
@@ -113,35 +113,44 @@ struct Run {
         const LaneSymmetric<T> strain = green_strain(F);
         const ElementStrain& forgotten = elements.viscous_strain[block];
         const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
+        const Real of_now = kick_over_last > 0 ? 1 : 2;  // not known: as if it had been stretched as now
         const Real time = duration * kick;
         const T forgets = time * part_of<T>(elements.relaxation_rate, block, part);
         const T forgets_volume = (time / bulk_time) * part_of<T>(elements.own_frequency, block, part);
         // backward Euler: never more than all; one division for both
         const T kept = 1.0 + forgets, kept_volume = 1.0 + forgets_volume, over_both = 1.0 / (kept * kept_volume);
         const ViscousStretch<T> after{T(over_both * kept_volume) * before.strain, over_both * kept * before.volume};
+        const LaneSymmetric<T> taken = strain - after.strain;
+        const T taken_volume = strain.trace() - after.volume;
         // Springs push, in the mean, as stretched as in the step before and in this one, on what the dashpots take; and
         // they took of the step before what it was stretched, times its rate.
-        const auto took_before = [&](std::size_t i) {
-            return T(load_part<T>(forgotten[i], part) - load_part<T>(forgotten_next[i], part));
+        const auto twice = [&](const T& now, std::size_t i) {
+            const T older = load_part<T>(forgotten_next[i], part);
+            if constexpr (kicks == Kicks::alike) return T(now - older);
+            const T last = load_part<T>(forgotten[i], part);
+            return T(of_now * (now - last) + kick_over_last * (last - older));
         };
-        const LaneSymmetric<T> strain_before{took_before(0), took_before(1), took_before(2),
-                                             took_before(3), took_before(4), took_before(5)};
-        const Real of_now = kick_over_last > 0 ? 1 : 2;  // not known: as if it had been stretched as now
-        const LaneSymmetric<T> taken_twice =
-            T(of_now * forgets) * after.strain + T(T{} + kick_over_last) * strain_before;
-        const T volume_twice = of_now * forgets_volume * after.volume + kick_over_last * took_before(6);
+        const LaneSymmetric<T> taken_twice{twice(taken.xx, 0), twice(taken.yy, 1), twice(taken.zz, 2),
+                                           twice(taken.xy, 3), twice(taken.yz, 4), twice(taken.zx, 5)};
+        const T volume_twice = twice(taken_volume, 6);
+        const LaneSymmetric<T> S = stress(moduli, after);
         const T work =
-            strain_work_density(moduli, after.strain, taken_twice) + moduli.bulk * (after.volume * volume_twice);
+            inner_product(S, taken_twice) + (moduli.bulk * after.volume) * (volume_twice - taken_twice.trace());
         store_part(T(0.5 * part_of<T>(elements.volume, block, part) * work), dissipated, part);
-        const LaneSymmetric<T> taken = strain - after.strain;
         store_part(taken.xx, forgotten_next[0], part);
         store_part(taken.yy, forgotten_next[1], part);
         store_part(taken.zz, forgotten_next[2], part);
         store_part(taken.xy, forgotten_next[3], part);
         store_part(taken.yz, forgotten_next[4], part);
         store_part(taken.zx, forgotten_next[5], part);
-        store_part(T(strain.trace() - after.volume), forgotten_next[6], part);
-        return multiply(F, stress(moduli, after));
+        store_part(taken_volume, forgotten_next[6], part);
+        return multiply(F, S);
+    }
+
+    template <class T>
+    [[gnu::noinline]] LaneMat3<T> relax_unlike(const LaneMat3<T>& F, std::size_t block, std::size_t part,
+                                               ElementLane& dissipated) const {
+        return relax<Kicks::any>(F, block, part, dissipated);
     }
 
     /// Elastic stress, Pa. Frames are extracted from all parts at once: how often their steps are repeated does not
@@ -267,7 +276,8 @@ struct Run {
         ElementLane dissipated{};
         if (material.relaxes() && !next.viscous_strain.empty())
             for (std::size_t part = 0; part < kernel_parts; ++part)
-                P[part] = P[part] + relax(F[part], block, part, dissipated);
+                P[part] = P[part] + (kick_over_last == 1 ? relax<Kicks::alike>(F[part], block, part, dissipated)
+                                                         : relax_unlike(F[part], block, part, dissipated));
         if (!next.relaxed.empty()) next.relaxed[block] = sum_of(dissipated);
         return P;
     }
