@@ -24,10 +24,6 @@ template <class T>
     return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.zx - b.zx};
 }
 template <class T>
-[[gnu::always_inline]] inline LaneSymmetric<T> operator+(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
-    return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
-}
-template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> operator*(const T& s, const LaneSymmetric<T>& a) {
     return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.yz, s * a.zx};
 }
