@@ -71,6 +71,7 @@ public:
     // by number, m/s and rad/s: the motion that is looked for, that which its impulses make, their difference, and a
     // step with the motion before it
     Column<Real> present, answered, change, step, before;
+    Column<Mat3> answer;  // by contact: derivative of the impulse by the one that would stop it, when last asked
 
 private:
     BlockFactor factor_;

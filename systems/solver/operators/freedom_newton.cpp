@@ -90,6 +90,7 @@ void FreedomOperator::list_parts(BodyEquations& equations) const {
 void FreedomOperator::list_pushes(BodyEquations& equations) const {
     Column<BodyEquations::Pushes>& pushes = equations.pushes();
     pushes.resize(static_cast<std::size_t>(size()));
+    equations.answer.resize(static_cast<std::size_t>(size()));
     const auto unknown_of = [&](Index row) -> const Unknown& {
         return equations.unknown()[static_cast<std::size_t>(equations.unknown_of_row()[static_cast<std::size_t>(row)])];
     };
@@ -261,13 +262,41 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
         const Vec3 u = contact(i).offset.head<3>() + equations.velocity(i, equations.present.span());
         const Answer answer = answer_coulomb_at(start[at].head<3>() - u / soft, contact(i).normal.head<3>(), limits(i));
         memory_.impulse[at] = padded(answer.impulse);
-        if (with_matrix && !answer.open) equations.add(i, answer.derivative / soft);
+        if (!with_matrix) continue;
+        equations.answer[at] = answer.derivative;
+        if (!answer.open) equations.add(i, answer.derivative / soft);
     }
+    return compare_motion(equations);
+}
+
+/// Velocities of the region and `answered` become those that its impulses make, the right-hand side K times what that
+/// is off from `present` by. Returns what it is off by, J.
+Real FreedomOperator::compare_motion(BodyEquations& equations) {
     refresh();
     gather(equations, equations.answered);
     for (std::size_t k = 0; k < equations.change.size(); ++k)
         equations.change[k] = equations.answered[k] - equations.present[k];
     return equations.set_right(equations.change.span());
+}
+
+/// The first step of a round whose contacts go on as they were when last asked: what stuck, slid or was open then does
+/// so in the motion that is stepped to. Returns what answer_motion does there, with the matrix, or nothing where the
+/// factor broke down.
+std::optional<Real> FreedomOperator::go_on_as_before(BodyEquations& equations, std::span<const Vec4> start) {
+    equations.start_from_inertia();
+    for (Index i = 0; i < size(); ++i) {
+        if (!(mobility(i) > 0)) continue;
+        const auto at = static_cast<std::size_t>(i);
+        const Mat3 answer = equations.answer[at] / (equations.softness * contact(i).diagonal);
+        const Vec3 u = contact(i).offset.head<3>() + equations.velocity(i, equations.present.span());
+        memory_.impulse[at] = padded(Vec3(start[at].head<3>() - answer * u));
+        equations.add(i, answer);
+    }
+    compare_motion(equations);
+    if (!equations.factor().solve()) return std::nullopt;
+    const std::span<const Real> step = equations.factor().right();
+    for (std::size_t k = 0; k < equations.present.size(); ++k) equations.present[k] += step[k];
+    return answer_motion(equations, start, true);
 }
 
 /// One Newton step from the present motion, as long as it lowers what answer_motion returns: the first of lengths 1,
@@ -301,21 +330,24 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
 namespace {
 
 // Of D, what contacts give way by within a round: the less, the fewer rounds, and the more steps each of them takes.
-// Soft bodies are solved at the first, stiff ones at a hundredth of it, so that it follows how hard rounds are.
-constexpr Real most_softness = 0.3, least_softness = 1e-4;
+// Soft bodies are solved at the first, stiff ones at a hundredth of it, a light one under a heavy one at a small part
+// of their ratio: so that it follows how hard rounds are.
+constexpr Real most_softness = 0.3, least_softness = 1e-9;
 
 /// Of the next round, after one that took so many steps.
 Real softness_after(Index steps, Real softness) {
     constexpr Index few = 4;
-    constexpr Real harder = 0.3;
-    return steps <= few ? std::max(least_softness, harder * softness) : softness;
+    const Real change = steps <= few / 2 ? 0.03 : steps <= few ? 0.3 : 1.0;
+    return std::max(least_softness, change * softness);
 }
 
 }  // namespace
 
 SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
     constexpr Real enough = 0.1;         // of the error at the start of a round, for it to be at its end
+    constexpr Real solved = 1e-3;        // of that, for it to end though the error is no less
     constexpr Index most_in_round = 14;  // a round that takes more finds no end soon
+    constexpr Real softer = 10;          // after such a round
     BodyEquations& equations = newton_memory();
     if (!std::exchange(inertia_is_known_, true)) assemble(equations);
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
@@ -324,28 +356,42 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
     gather(equations, equations.present);
     SolveResult result{0, error, error <= tolerance};
     equations.softness = most_softness;
-    std::optional<Real> lack = answer_motion(equations, start, true);
     Real error_at_start = error;
     Index in_round = 0;
-    while (!result.converged && result.iterations < limit && in_round < most_in_round) {
+    bool goes_on = false;  // with contacts as the round before left them
+    std::optional<Real> lack = answer_motion(equations, start, true);
+    while (!result.converged && result.iterations < limit) {
         ++result.iterations;
         ++in_round;
-        lack = step_motion(equations, start, *lack);
+        lack = goes_on ? go_on_as_before(equations, start) : step_motion(equations, start, *lack);
         if (!lack) break;
+        goes_on = false;
         const Real now = this->error();
         if (now < result.error) {
             result.error = now;
             result.converged = now <= tolerance;
             std::ranges::copy(memory_.impulse, best.begin());
         }
-        if (std::sqrt(*lack) > enough * scale_ * error_at_start || !(now < error_at_start)) continue;
-        equations.softness = softness_after(in_round, equations.softness);
+        const Real asked = enough * scale_ * error_at_start;
+        const Index steps = in_round;
+        const bool ended = std::sqrt(*lack) <= (now < error_at_start ? asked : solved * asked);
+        if (!ended && steps < most_in_round) continue;
         in_round = 0;
-        // the next round: from these impulses, and the motion that they make
-        error_at_start = now;
-        std::ranges::copy(memory_.impulse, start.begin());
+        // the next round: from these impulses, and the motion that they make; or this one anew
+        if (ended) {
+            equations.softness = softness_after(steps, equations.softness);
+            error_at_start = now;
+            std::ranges::copy(memory_.impulse, start.begin());
+        } else {
+            if (!(equations.softness < most_softness)) break;
+            equations.softness = std::min(most_softness, softer * equations.softness);
+            std::ranges::copy(start, memory_.impulse.begin());
+            refresh();
+            gather(equations, equations.answered);
+        }
         std::ranges::copy(equations.answered, equations.present.begin());
-        lack = answer_motion(equations, start, true);
+        goes_on = ended;
+        if (!goes_on) lack = answer_motion(equations, start, true);
     }
     std::ranges::copy(best, memory_.impulse.begin());
     refresh();

@@ -110,6 +110,8 @@ private:
     /// What impulses do to the unknowns, from the velocities of the region.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
     Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix);
+    Real compare_motion(BodyEquations& equations);
+    std::optional<Real> go_on_as_before(BodyEquations& equations, std::span<const Vec4> start);
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
     void list_unknowns(BodyEquations& equations) const;
     void list_parts(BodyEquations& equations) const;

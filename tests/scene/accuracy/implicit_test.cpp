@@ -53,7 +53,7 @@ TEST_CASE("an implicit block on an incline obeys Coulomb's law at any stiffness 
         Real modulus;
         const char* name;
     };
-    for (const Case& of : {Case{1e7, "1e7"}, Case{1e9, "1e9"}, Case{2e11, "2e11"}})
+    for (const Case& of : {Case{1e6, "1e6"}, Case{1e7, "1e7"}, Case{1e9, "1e9"}, Case{2e11, "2e11"}})
         for (const Real h : {1.0 / 60, 1.0 / 1000}) {
             const std::string with = std::string(", E = ") + of.name + (h < 0.01 ? ", h = 1/1000 s" : ", h = 1/60 s");
             accuracy::check({.item = 47,
