@@ -147,10 +147,12 @@ struct Run {
         return multiply(F, S);
     }
 
+    /// Out of line, as all that is rare: by value, so that what it is given need not be in memory when it is not
+    /// called.
     template <class T>
-    [[gnu::noinline]] LaneMat3<T> relax_unlike(const LaneMat3<T>& F, std::size_t block, std::size_t part,
-                                               ElementLane& dissipated) const {
-        return relax<Kicks::any>(F, block, part, dissipated);
+    [[gnu::noinline]] static LaneMat3<T> relax_unlike(Run run, LaneMat3<T> F, std::size_t block, std::size_t part,
+                                                      ElementLane& dissipated) {
+        return run.relax<Kicks::any>(F, block, part, dissipated);
     }
 
     /// Elastic stress, Pa. Frames are extracted from all parts at once: how often their steps are repeated does not
@@ -237,8 +239,8 @@ struct Run {
     }
 
     /// Adds the stress of the strain rate where there is one, and keeps its impulse.
-    [[gnu::noinline]] void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
-                                              Parts<LaneMat3<KernelReal>>& P) const {
+    void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
+                            Parts<LaneMat3<KernelReal>>& P) const {
         const bool implicit = has_implicit(block);
         Parts<KernelReal> viscosity;
         const bool acts = !implicit || viscosity_of_implicit(block, F, viscosity);
@@ -252,6 +254,13 @@ struct Run {
             if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, block, part);
             P[part] = P[part] + of_rate;
         }
+    }
+
+    [[gnu::noinline]] static Parts<LaneMat3<KernelReal>> with_viscous_stress(Run run, std::size_t block,
+                                                                             Parts<LaneMat3<KernelReal>> F,
+                                                                             Parts<LaneMat3<KernelReal>> P) {
+        run.add_viscous_stress(block, F, P);
+        return P;
     }
 
     void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t block, std::size_t part) const {
@@ -271,13 +280,19 @@ struct Run {
             if (rests_easy(block, F))
                 note(block, false, false);
             else
-                add_viscous_stress(block, F, P);
+                P = with_viscous_stress(*this, block, F, P);
         }
         ElementLane dissipated{};
         if (material.relaxes() && !next.viscous_strain.empty())
-            for (std::size_t part = 0; part < kernel_parts; ++part)
-                P[part] = P[part] + (kick_over_last == 1 ? relax<Kicks::alike>(F[part], block, part, dissipated)
-                                                         : relax_unlike(F[part], block, part, dissipated));
+            for (std::size_t part = 0; part < kernel_parts; ++part) {
+                if (kick_over_last == 1) {
+                    P[part] = P[part] + relax<Kicks::alike>(F[part], block, part, dissipated);
+                } else {
+                    ElementLane unlike;
+                    P[part] = P[part] + relax_unlike(*this, F[part], block, part, unlike);
+                    store_part(load_part<KernelReal>(unlike, part), dissipated, part);
+                }
+            }
         if (!next.relaxed.empty()) next.relaxed[block] = sum_of(dissipated);
         return P;
     }
