@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <type_traits>
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
@@ -83,19 +84,28 @@ struct Run {
     }
 
     /// Asks for the rows of a block that is to come, of the next patch, too: what is fetched beside them, and in which
-    /// order, keeps processors from seeing that they lie one after the other.
+    /// order, keeps processors from seeing that they lie one after the other. `known_rows`: of a block, without loops
+    /// then; 0: blocks tell.
+    template <int known_rows>
     [[gnu::always_inline]] void ask_for_one_ahead_of(std::size_t current) const {
         const std::size_t block = current + blocks_ahead;
         if (block >= elements.blocks()) return;
         const auto row = static_cast<std::size_t>(elements.first[block]);
-        const auto rows = static_cast<std::size_t>(elements.count[block]);
-        const auto ask = [](const auto* from, const auto* to) {
-            const auto *line = reinterpret_cast<const char*>(from), *last = reinterpret_cast<const char*>(to);
-            for (; line < last; line += 64) __builtin_prefetch(line);
+        const int rows = known_rows > 0 ? known_rows : elements.count[block];
+        const auto ask = [](const auto* first, int count) {
+            const auto* const line = reinterpret_cast<const char*>(first);
+            const int lines = count * static_cast<int>(sizeof *first) / 64;
+#pragma GCC unroll 16
+            for (int i = 0; i < lines; ++i) __builtin_prefetch(line + 64 * i);
         };
-        ask(elements.gradient.data() + row + 1, elements.gradient.data() + row + rows);
-        ask(patches.slot.data() + row, patches.slot.data() + row + rows);
-        ask(elements.volume.data() + block, elements.volume.data() + block + 1);
+        ask(elements.gradient.data() + row + 1, rows - 1);
+        ask(patches.slot.data() + row, rows);
+        ask(elements.volume.data() + block, 1);
+        if (!material.relaxes() || next.viscous_strain.empty()) return;
+        ask(elements.viscous_strain.data() + block, 1);
+        ask(next.viscous_strain.data() + block, 1);
+        ask(elements.relaxation_rate.data() + block, 1);
+        ask(elements.own_frequency.data() + block, 1);
     }
 
     template <class T>
@@ -312,6 +322,7 @@ struct Run {
 
 /// How elements of any number of nodes fetch positions and add forces.
 struct AnyElements {
+    static constexpr int rows = 0;  // of a block; 0: each has its own number
     const Run& run;
 
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
@@ -332,6 +343,7 @@ struct AnyElements {
 
 /// How those of four nodes do, in fans (element_fans.h): a node is fetched and has a force added once in a fan.
 struct Fans {
+    static constexpr int rows = 4;  // of a block
     const Run& run;
     // what a block leaves to the one that goes on with its fan
     Parts<Corner> corner0 = {};
@@ -393,7 +405,7 @@ template <class Elements>
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = elements.fetch(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
-            run.ask_for_one_ahead_of(block);
+            run.ask_for_one_ahead_of<std::remove_cvref_t<Elements>::rows>(block);
             const Parts<LaneMat3<KernelReal>> P = run.stress_of(law, block, F);
             if (ahead && block + 1 < run.end) F = elements.fetch(block + 1);
             elements.add(block, P);
