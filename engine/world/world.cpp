@@ -80,6 +80,7 @@ void WorldState::draw(bool resting) {
 void WorldState::settle() {
     draw();
     if (!edits.places.empty()) edits.places.wake_near(model);
+    model.known_steps.clear();
     if (!edits.rows) return;
     if (edits.elements) {
         model.clusters.clear();  // of rows that have moved

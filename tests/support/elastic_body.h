@@ -56,10 +56,11 @@ struct ElasticBody {
             tetrahedron_mass.push_back(density.back() * six_volumes(mesh.tetrahedra[t], mesh.nodes) / 6);
         }
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
-        list = elements_of({mesh.tetrahedra, mesh.nodes, rotation}, zones);
+        list = elements_of({mesh.tetrahedra, mesh.nodes}, zones);
         const AppendedElements appended =
             append_elements(list, mesh.nodes, {}, BlockOrder::fans, 0, 0, elements, element_nodes);
         blocks = appended.blocks;
+        turn_elements(rotation, blocks, elements, element_nodes);
         element_at = appended.element;
         start_mass_shares(inputs(), blocks, elements.mass_share);
         add_lumped_mass(mesh.tetrahedra, mesh.nodes, density, mass);

@@ -38,14 +38,15 @@ Real bar_speed(const Model& model, const NewBody& body, std::span<const Material
 }
 
 /// How the elements of a body relax, whose stable step would be `step` (s) if they did not. `speed`: bar_speed.
-void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Vec3> position,
-                    std::span<const Real> stiffness_sum, Real speed, Real step) {
+void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real speed,
+                    Real step) {
     ElementBlockTable& elements = model.elements;
+    const std::span<const Vec3> position = model.nodes.rest_position;
     const Real lowest = lowest_frequency_estimate(
         position.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size())),
         rows_of(model.nodes.mass, nodes), speed);
-    find_relaxation(model.all_elements(), blocks, model.nodes.rest_position, position, model.nodes.mass, stiffness_sum,
-                    lowest, step_times_frequency / step,
+    find_relaxation(model.all_elements(), blocks, position, position, model.nodes.mass, stiffness_sum, lowest,
+                    step_times_frequency / step,
                     {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
                      rows_of(elements.relaxing_share, blocks)});
 }
@@ -96,7 +97,8 @@ void set_masses(Model& model, const NewBody& body, Range range) {
         nodes.inverse_mass[n] = nodes.mass[n] > 0 ? 1 / nodes.mass[n] : 0;
 }
 
-void choose_mass_forms(Model& model, Index row, std::span<const Vec3> position, std::span<Real> stiffness_sum) {
+void choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
+    const std::span<const Vec3> position = model.nodes.rest_position;
     const Range blocks = model.bodies.blocks[static_cast<std::size_t>(row)];
     const auto step = [&] {
         return kernels().stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
@@ -127,10 +129,11 @@ void forget_mass_forms(Model& model, Range blocks) {
 }
 
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
-                std::span<const Vec3> position, Column<Real>& stiffness_sum) {
+                Column<Real>& stiffness_sum) {
     const auto b = static_cast<std::size_t>(row);
     BodyTable& bodies = model.bodies;
     const Range blocks = bodies.blocks[b];
+    const std::span<const Vec3> position = model.nodes.rest_position;
     const auto step = [&] {
         return kernels().stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
     };
@@ -140,16 +143,56 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
         return model.materials.constants[static_cast<std::size_t>(zone.material)].relaxes();
     };
     if (std::any_of(zones.begin(), zones.end(), relaxes))
-        set_relaxation(model, bodies.nodes[b], blocks, position, stiffness_sum, bar_speed(model, body, zones),
+        set_relaxation(model, bodies.nodes[b], blocks, stiffness_sum, bar_speed(model, body, zones),
                        bodies.rest_step[b]);
     // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
     const auto& levels = bodies.level_count[b];
     if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; })) {
         kernels().find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
                                    rows_of(model.elements.mass_share, blocks));
-        choose_mass_forms(model, row, position, stiffness_sum);
+        choose_mass_forms(model, row, stiffness_sum);
     }
     bodies.rest_step[b] = bodies.stable_step[b] = step();
+}
+
+void find_steps_once(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
+                     Column<Real>& stiffness_sum) {
+    const auto b = static_cast<std::size_t>(row);
+    const Range blocks = model.bodies.blocks[b];
+    const auto& levels = model.bodies.level_count[b];
+    if (body.kind != BodyKind::deformable || zones.empty() ||
+        std::any_of(levels.begin() + 1, levels.end(), [](Index count) { return count > 0; })) {
+        find_steps(model, row, body, zones, stiffness_sum);
+        return;
+    }
+    const auto has_material = [&](const KnownSteps& known) {
+        for (std::size_t t = 0; t < known.material.size(); ++t)
+            if (known.material[t] != body.material_of(t)) return false;
+        return true;
+    };
+    for (KnownSteps& known : model.known_steps) {
+        if (known.element != body.element || !std::ranges::equal(known.nodes, body.nodes) ||
+            !std::ranges::equal(known.tetrahedra, body.tetrahedra) || !has_material(known))
+            continue;
+        known.for_each_column(model.elements, [&](const auto& of_mesh, auto& column) {
+            std::ranges::copy(of_mesh, rows_of(column, blocks).begin());
+        });
+        model.bodies.rest_step[b] = model.bodies.stable_step[b] = known.rest_step;
+        return;
+    }
+    find_steps(model, row, body, zones, stiffness_sum);
+    constexpr std::size_t most_known = 64;  // a mesh that comes is compared with so many
+    if (model.known_steps.size() == most_known) model.known_steps.erase(model.known_steps.begin());
+    KnownSteps& known = model.known_steps.emplace_back();
+    known.nodes.assign(body.nodes.begin(), body.nodes.end());
+    known.tetrahedra.assign(body.tetrahedra.begin(), body.tetrahedra.end());
+    for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) known.material.push_back(body.material_of(t));
+    known.element = body.element;
+    known.for_each_column(model.elements, [&](auto& of_mesh, const auto& column) {
+        of_mesh.resize(static_cast<std::size_t>(blocks.size()));
+        std::ranges::copy(rows_of(column, blocks), of_mesh.begin());
+    });
+    known.rest_step = model.bodies.rest_step[b];
 }
 
 void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum) {
@@ -173,7 +216,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     std::ranges::fill(rows_of(elements.relaxing_share, blocks), Real(0));
     stiffness_sum.resize(model.nodes.position.size());
     find_steps(model, row, body, model.has_frame(b) ? std::vector<MaterialZone>() : zones_of(model, body),
-               model.nodes.rest_position, stiffness_sum);
+               stiffness_sum);
     if (model.has_frame(b)) weigh_rigid_body(model, b, body);
     if (model.dynamics_of(b) == BodyDynamics::implicit_elastic) {
         model.stiffen(b);

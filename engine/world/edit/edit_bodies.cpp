@@ -187,8 +187,8 @@ void sort_by_level(Model& model, const NewBody& body, const ElementList& list, s
     std::vector<std::uint8_t> at_place(rows.elements.element.size()), level(list.size());
     const ElementInputs elements = model.all_elements();
     const Real step =
-        kernels().stable_step(elements, blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
-    find_element_levels(elements, blocks, model.nodes.position, model.nodes.mass, step, stiffness_sum, at_place);
+        kernels().stable_step(elements, blocks, model.nodes.rest_position, model.nodes.mass, stiffness_sum).step;
+    find_element_levels(elements, blocks, model.nodes.rest_position, model.nodes.mass, step, stiffness_sum, at_place);
     for (std::size_t place = 0; place < at_place.size(); ++place)
         if (const Index e = rows.elements.element[place]; e != no_index)
             level[static_cast<std::size_t>(e)] = at_place[place];
@@ -240,7 +240,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
     // what moves as rigid bodies do has tetrahedra, and no elements
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
-    const ElementList list = elements_of({body.tetrahedra, body.nodes, body.rotation}, zones);
+    // As they lie in the mesh, until all that does not depend on it is known: bodies of one mesh have the same then.
+    const ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     rows.elements = append_elements_of(model, list, {}, rows);
     if (may_have_levels(model, zones)) sort_by_level(model, body, list, stiffness_sum, rows);
     const Range blocks = rows.elements.blocks;
@@ -285,7 +286,11 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.contact_distance[b] =
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);
-    find_steps(model, row, body, zones, model.nodes.position, stiffness_sum);
+    find_steps_once(model, row, body, zones, stiffness_sum);
+    turn_elements(body.rotation, blocks, model.elements, model.element_nodes);
+    // to the last bit what a look finds that comes before the body has moved
+    bodies.stable_step[b] =
+        kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     return row;
 }
 

@@ -75,14 +75,18 @@ RoundMass round_mass(const Model& model, const NewBody& body);
 /// Adds the masses of the tetrahedra to those of the nodes, which are free then.
 void set_masses(Model& model, const NewBody& body, Range nodes);
 /// Finds the mass forms of a body of one level, whose masses are shared, and of linear elements the masses in its frame
-/// (mass_forms.h, frame_masses.h), and leaves those out that do not make its step at `position` longer.
-void choose_mass_forms(Model& model, Index row, std::span<const Vec3> position, std::span<Real> stiffness_sum);
+/// (mass_forms.h, frame_masses.h), and leaves those out that do not make its step at rest longer.
+void choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum);
 /// Takes both away.
 void forget_mass_forms(Model& model, Range blocks);
-/// How the elements of a body relax, how they share its masses and which step they stand, at rest at `position` (m, by
-/// node of the world). Its elements are as new.
+/// How the elements of a body relax, how they share its masses and which step they stand at rest. Its elements are as
+/// new.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
-                std::span<const Vec3> position, Column<Real>& stiffness_sum);
+                Column<Real>& stiffness_sum);
+/// The same of a new body whose elements lie as its mesh does: of bodies of one mesh and material that come one after
+/// the other once.
+void find_steps_once(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
+                     Column<Real>& stiffness_sum);
 /// The same after its materials have changed, all that follows from the old ones forgotten. Not for elements of several
 /// levels.
 void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum);

@@ -26,6 +26,7 @@
 #include "components/rigid_body_table.h"
 #include "components/step_watch.h"
 #include "components/surface_table.h"
+#include "engine/world/state/known_steps.h"
 #include "skerry/mesh.h"
 #include "skerry/settings.h"
 #include "skerry/world.h"
@@ -93,6 +94,7 @@ struct Model {
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
+    std::vector<KnownSteps> known_steps;           // of the bodies that came since the world was settled
 
     Column<Real> body_mass;  // kg, of all nodes of a body, held ones, too; derived: extend_derived
     // bodies, colliders or settings have changed since it was last decided which elements are implicit

@@ -181,7 +181,7 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     note_implicit(model, b);
     kernels().find_mass_shares(model.all_elements(), blocks, model.nodes.rest_position, model.nodes.mass, stiffness_sum,
                                share);
-    choose_mass_forms(model, static_cast<Index>(b), model.nodes.rest_position, stiffness_sum);
+    choose_mass_forms(model, static_cast<Index>(b), stiffness_sum);
     model.bodies.rest_step[b] = step_of(model, b, model.nodes.rest_position, stiffness_sum);
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }
@@ -246,7 +246,7 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
 /// Gives a body implicit elements and the masses that the others share then. Returns the step that these stand, s.
 Real take_over(Model& model, const PlannedBody& planned, std::span<Real> stiffness_sum) {
     planned.elements.put_back(model, planned.row);
-    choose_mass_forms(model, static_cast<Index>(planned.row), model.nodes.rest_position, stiffness_sum);
+    choose_mass_forms(model, static_cast<Index>(planned.row), stiffness_sum);
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
 

@@ -214,6 +214,29 @@ AppendedElements append_elements(const ElementList& list, std::span<const Vec3> 
     return appended;
 }
 
+void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, ElementNodeTable& nodes) {
+    if (rotation == Mat3::Identity()) return;
+    for (auto b = static_cast<std::size_t>(rows.begin); b < static_cast<std::size_t>(rows.end); ++b) {
+        const auto first = static_cast<std::size_t>(blocks.first[b]), count = static_cast<std::size_t>(blocks.count[b]);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            Vec3 others = Vec3::Zero();
+            for (std::size_t k = 1; k < count; ++k) {
+                ElementGradient& g = nodes.gradient[first + k];
+                const Vec3 turned = rotation * Vec3(g[0][l], g[1][l], g[2][l]);
+                for (std::size_t i = 0; i < 3; ++i) g[i][l] = turned[static_cast<Eigen::Index>(i)];
+                others += turned;
+            }
+            for (std::size_t i = 0; i < 3; ++i) nodes.gradient[first][i][l] = 0 - others[static_cast<Eigen::Index>(i)];
+            ElementForm& q = blocks.mass_form[b];
+            Mat3 form;
+            form << q[0][l], q[3][l], q[5][l], q[3][l], q[1][l], q[4][l], q[5][l], q[4][l], q[2][l];
+            form = rotation * form * rotation.transpose();
+            const std::array<Real, 6> turned{form(0, 0), form(1, 1), form(2, 2), form(0, 1), form(1, 2), form(2, 0)};
+            for (std::size_t i = 0; i < turned.size(); ++i) q[i][l] = turned[i];
+        }
+    }
+}
+
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass) {
     SKERRY_CHECK(density.size() == tetrahedra.size());

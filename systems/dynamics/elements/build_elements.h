@@ -48,6 +48,9 @@ AppendedElements append_elements(const ElementList& list, std::span<const Vec3> 
                                  std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);
 
+/// Turns the rest shape of elements: their gradients, and the mass forms that they have.
+void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, ElementNodeTable& nodes);
+
 /// Adds rho V / 4 of each tetrahedron to its nodes; `density` by tetrahedron, kg/m^3.
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass);

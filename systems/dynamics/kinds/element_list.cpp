@@ -58,8 +58,7 @@ ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zone
     for (const MaterialZone& zone : zones) {
         tetrahedra.clear();
         for (const Index t : zone.tetrahedra) tetrahedra.push_back(mesh.tetrahedra[static_cast<std::size_t>(t)]);
-        append(elements_of({tetrahedra, mesh.position, mesh.rotation}, zone.kind, zone.material), zone.tetrahedra,
-               list);
+        append(elements_of({tetrahedra, mesh.position}, zone.kind, zone.material), zone.tetrahedra, list);
     }
     return list;
 }

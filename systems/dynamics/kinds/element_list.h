@@ -36,15 +36,14 @@ struct TetrahedronGradients {
 /// m^3, at rest.
 Real six_volumes(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position);
 
-/// Of a tetrahedron with positive volume whose rest shape is turned by `rotation`.
-TetrahedronGradients tetrahedron_gradients(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position,
-                                           const Mat3& rotation);
+/// Of a tetrahedron with positive volume.
+TetrahedronGradients tetrahedron_gradients(const std::array<Index, 4>& tetrahedron,
+                                           std::span<const Vec3> rest_position);
 
 /// What elements are made from.
 struct RestMesh {
     std::span<const std::array<Index, 4>> tetrahedra;
     std::span<const Vec3> position;  // m
-    Mat3 rotation = Mat3::Identity();
 };
 
 /// The elements of a kind, all of one material; `smoothed` has been resolved to one of the two that it stands for.

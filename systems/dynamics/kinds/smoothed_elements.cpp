@@ -45,8 +45,7 @@ struct Gradients {
 void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share, ElementPart part, ElementList& list) {
     std::vector<TetrahedronGradients> rest;
     rest.reserve(mesh.tetrahedra.size());
-    for (const auto& tetrahedron : mesh.tetrahedra)
-        rest.push_back(tetrahedron_gradients(tetrahedron, mesh.position, mesh.rotation));
+    for (const auto& tetrahedron : mesh.tetrahedra) rest.push_back(tetrahedron_gradients(tetrahedron, mesh.position));
     Gradients element;
     for (const Group& group : groups) {
         Real volume = 0;

@@ -21,9 +21,9 @@ Real six_volumes(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> 
     return rest_edges(tetrahedron, rest_position).determinant();
 }
 
-TetrahedronGradients tetrahedron_gradients(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position,
-                                           const Mat3& rotation) {
-    const Mat3 Dm = rotation * rest_edges(tetrahedron, rest_position);
+TetrahedronGradients tetrahedron_gradients(const std::array<Index, 4>& tetrahedron,
+                                           std::span<const Vec3> rest_position) {
+    const Mat3 Dm = rest_edges(tetrahedron, rest_position);
     const Real determinant = Dm.determinant();
     SKERRY_CHECK(determinant > 0);
     const Mat3 B = Dm.inverse();
@@ -36,7 +36,7 @@ TetrahedronGradients tetrahedron_gradients(const std::array<Index, 4>& tetrahedr
 
 void add_tetrahedron_elements(const RestMesh& mesh, ElementList& list) {
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const TetrahedronGradients rest = tetrahedron_gradients(mesh.tetrahedra[t], mesh.position, mesh.rotation);
+        const TetrahedronGradients rest = tetrahedron_gradients(mesh.tetrahedra[t], mesh.position);
         list.node.insert(list.node.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
         list.gradient.insert(list.gradient.end(), rest.g.begin(), rest.g.end());
         list.first_node.push_back(list.node.size());

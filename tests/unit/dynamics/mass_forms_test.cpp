@@ -1,6 +1,7 @@
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -181,4 +182,23 @@ TEST_CASE("a body without elements has no mass forms, one that is not finite has
     find_forms(body);
     body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();
     CHECK(test::stable_step_of(body) == 0);
+}
+
+TEST_CASE("mass forms turn with the elements that they are of", "[unit]") {
+    const Mat3 rotation = Eigen::AngleAxis<Real>(2, Vec3(3, 1, -2).normalized()).toRotationMatrix();
+    for (const ElementKind kind : test::element_kinds)
+        for (const MaterialModel model : test::material_models) {
+            const test::TetMesh mesh = jittered_box({4, 3, 3}, 0.1, 0.3, 11, 0.02);
+            const MaterialConstants material = material_constants(model, 1e5, 0.3, 1000);
+            ElasticBody body(mesh, material, Mat3::Identity(), kind);
+            find_forms(body);
+            const Real step = test::stable_step_of(body), taken = part_of_mass_taken(body);
+            turn_elements(rotation, body.blocks, body.elements, body.element_nodes);
+            for (Vec3& x : body.position) x = rotation * x;
+            INFO(name_of(kind) << ", " << name_of(model));
+            CHECK(test::stable_step_of(body) == Approx(step).epsilon(1e-9));
+            CHECK(part_of_mass_taken(body) == Approx(taken).epsilon(1e-9));
+            for (std::size_t e = 0; e < body.elements.volume.size() * element_lanes; ++e)
+                if (body.volume(e) > 0) CHECK((body.deformation(e) - Mat3::Identity()).norm() < 1e-12);
+        }
 }
