@@ -7,6 +7,7 @@
 
 #include "components/lanes.h"
 #include "components/types.h"
+#include "systems/geometry/lane_mask.h"
 #include "systems/geometry/lane_vec3.h"
 
 namespace skerry {
@@ -24,6 +25,9 @@ inline Real8 log_of_one_plus(const Real8& x) {
 /// Whether a comparison holds in all lanes.
 inline bool all(bool mask) {
     return mask;
+}
+[[gnu::always_inline]] inline bool all(const LaneBits& mask) {
+    return bits_of(mask) == (1U << element_lanes) - 1;
 }
 template <class Mask>
 bool all(const Mask& mask) {

@@ -1,5 +1,6 @@
 #include "systems/dynamics/checks/check_state.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>

@@ -7,6 +7,7 @@
 #include "components/check.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
+#include "systems/geometry/lane_mask.h"
 
 namespace skerry {
 
@@ -118,11 +119,11 @@ private:
         LaneMat3<Real8> motion = edges(inputs.tetrahedron_node[b], inputs.velocity_next);
         if (!inputs.push_out.empty()) motion = motion + edges(inputs.tetrahedron_node[b], inputs.push_out);
         const Real8 before = determinant(now), after = determinant(now + h * motion);
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            if (!(inputs.tetrahedron_volume[b][l] > 0) || !(before[l] > 0) || after[l] > 0) continue;
+        const unsigned turned = bits_of((load(inputs.tetrahedron_volume[b]) > 0.0) & (before > 0.0) & ~(after > 0.0));
+        for_each_lane(turned, [&](std::size_t l) {
             part.judged |= is_judged(b, l);
             if (part.count++ == 0) part.tetrahedron = static_cast<Index>(b * element_lanes + l);
-        }
+        });
     }
 };
 

@@ -1,6 +1,9 @@
 #include "systems/dynamics/clusters/kick_clusters.h"
 
 #include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
 
 #include "components/lanes.h"
 #include "jobs/parallel_for.h"
@@ -9,7 +12,10 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t rows_at_once = 4;  // what is loaded of kicks and sums serves all of them
+// Rows whose sums stand in registers: what is loaded of kicks and column sums serves all of them. A row adds to a
+// column sum after the rows before it, however many go together.
+constexpr std::size_t rows_at_once = kernel_parts == 1 ? 8 : 2;
+constexpr std::size_t tile = element_lanes;  // rows and columns that are not taken by themselves
 
 Real8 lanes_at(const Real* from) {
     return *reinterpret_cast<const Real8InMemory*>(from);
@@ -18,62 +24,142 @@ void store_at(const Real8& from, Real* to) {
     *reinterpret_cast<Real8InMemory*>(to) = from;
 }
 Real sum_of_lanes(const Real8& of) {
-    return ((of[0] + of[4]) + (of[2] + of[6])) + ((of[1] + of[5]) + (of[3] + of[7]));
+    return ((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7]));
 }
 
-/// A vector of a cluster, by component and place.
+/// A vector of a cluster, by component and place. Components begin a register apart, so that what is read together
+/// lies in one line of the cache.
 struct ByComponent {
     Real* component[3];
 
-    ByComponent(Real* first, std::size_t count) : component{first, first + count, first + 2 * count} {}
+    ByComponent(Real* first, std::size_t stride) : component{first, first + stride, first + 2 * stride} {}
     Vec3 at(std::size_t place) const { return {component[0][place], component[1][place], component[2][place]}; }
 };
 
-/// Adds to sum[.. place + Rows) what rows place .. place + Rows of a symmetric matrix give up to their diagonals, and
-/// those columns above: only one triangle is read, since large matrices do not fit into the caches.
+/// Sums of some rows of a matrix, by component, lanes side by side.
 template <std::size_t Rows>
-void add_rows_and_columns(const Real* matrix, std::size_t count, std::size_t place, const ByComponent& kick,
-                          const ByComponent& sum) {
-    const Real* const row = matrix + place * count;
-    Real8 lanes[Rows][3]{};
-    Real rest[Rows][3]{};
-    std::size_t k = 0;
-    for (; k + element_lanes <= place; k += element_lanes) {
-        const Real8 kick_x = lanes_at(kick.component[0] + k), kick_y = lanes_at(kick.component[1] + k),
-                    kick_z = lanes_at(kick.component[2] + k);
-        Real8 sum_x = lanes_at(sum.component[0] + k), sum_y = lanes_at(sum.component[1] + k),
-              sum_z = lanes_at(sum.component[2] + k);
-        for (std::size_t r = 0; r < Rows; ++r) {
-            const Real8 entries = lanes_at(row + r * count + k);
-            lanes[r][0] += entries * kick_x;
-            lanes[r][1] += entries * kick_y;
-            lanes[r][2] += entries * kick_z;
-            sum_x += entries * kick.component[0][place + r];
-            sum_y += entries * kick.component[1][place + r];
-            sum_z += entries * kick.component[2][place + r];
-        }
-        store_at(sum_x, sum.component[0] + k);
-        store_at(sum_y, sum.component[1] + k);
-        store_at(sum_z, sum.component[2] + k);
+struct RowSums {
+    std::array<Real8, Rows> x{}, y{}, z{};
+};
+
+template <std::size_t Rows, class Visit>
+[[gnu::always_inline]] inline void for_each_row(Visit&& visit) {
+    [&]<std::size_t... r>(std::index_sequence<r...>) {
+        (visit(std::integral_constant<std::size_t, r>()), ...);
     }
-    for (std::size_t r = 0; r < Rows; ++r)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const Real* const entries = row + r * count;
-            for (std::size_t j = k; j < place; ++j) {
-                rest[r][c] += entries[j] * kick.component[c][j];
-                sum.component[c][j] += entries[j] * kick.component[c][place + r];
-            }
-            for (std::size_t j = place; j < place + Rows; ++j) rest[r][c] += entries[j] * kick.component[c][j];
-            sum.component[c][place + r] = sum_of_lanes(lanes[r][c]) + rest[r][c];
+    (std::make_index_sequence<Rows>());
+}
+
+/// Of `Rows` rows from `place` on, columns 0 .. width, a multiple of the tile: what they give their rows, and, since
+/// the matrix is symmetric, what they give those columns. So only one triangle is read: large matrices do not fit into
+/// the caches.
+template <std::size_t Rows>
+[[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
+                                                                 std::size_t place, std::size_t width,
+                                                                 const ByComponent& kick, const ByComponent& sum) {
+    const Real* const row = matrix + place * count;
+    const auto [kick_x, kick_y, kick_z] = kick.component;
+    const auto [sum_x, sum_y, sum_z] = sum.component;
+    Real own_x[Rows], own_y[Rows], own_z[Rows];  // side by side: one address for all
+    std::copy_n(kick_x + place, Rows, own_x);
+    std::copy_n(kick_y + place, Rows, own_y);
+    std::copy_n(kick_z + place, Rows, own_z);
+    RowSums<Rows> rows;
+    for (std::size_t k = 0; k < width; k += tile) {
+        const Real8 x = lanes_at(kick_x + k), y = lanes_at(kick_y + k), z = lanes_at(kick_z + k);
+        Real8 to_x = lanes_at(sum_x + k), to_y = lanes_at(sum_y + k), to_z = lanes_at(sum_z + k);
+        for_each_row<Rows>([&](auto r) __attribute__((always_inline)) {
+            const Real8 entries = lanes_at(row + r * count + k);
+            rows.x[r] += entries * x;
+            rows.y[r] += entries * y;
+            rows.z[r] += entries * z;
+            to_x += entries * own_x[r];
+            to_y += entries * own_y[r];
+            to_z += entries * own_z[r];
+        });
+        store_at(to_x, sum_x + k);
+        store_at(to_y, sum_y + k);
+        store_at(to_z, sum_z + k);
+    }
+    return rows;
+}
+
+/// The sums of the lanes of each, one after the other.
+template <std::size_t Rows>
+[[gnu::always_inline]] inline void store_sums(const std::array<Real8, Rows>& of, Real* to) {
+    for_each_row<Rows>([&](auto r) __attribute__((always_inline)) { to[r] = sum_of_lanes(of[r]); });
+}
+[[gnu::always_inline]] inline void store_sums(const std::array<Real8, tile>& of, Real* to) {
+    const auto pairs = [](const Real8& a, const Real8& b) __attribute__((always_inline)) {
+        return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+               __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    };
+    const auto fours = [](const Real8& a, const Real8& b) __attribute__((always_inline)) {
+        return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
+               __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+    };
+    const Real8 low = fours(pairs(of[0], of[1]), pairs(of[2], of[3])),
+                high = fours(pairs(of[4], of[5]), pairs(of[6], of[7]));
+    store_at(__builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11) +
+                 __builtin_shufflevector(low, high, 4, 5, 6, 7, 12, 13, 14, 15),
+             to);
+}
+
+/// Rows place .. place + Rows of a tile that begins at `first`; all of the tile's columns are read.
+template <std::size_t Rows>
+void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
+                      const ByComponent& kick, const ByComponent& sum) {
+    RowSums<Rows> rows = add_rows_and_columns<Rows>(matrix, count, place, first, kick, sum);
+    const Real8 x = lanes_at(kick.component[0] + first), y = lanes_at(kick.component[1] + first),
+                z = lanes_at(kick.component[2] + first);
+    for_each_row<Rows>([&](auto r) __attribute__((always_inline)) {
+        const Real8 entries = lanes_at(matrix + (place + r) * count + first);
+        rows.x[r] += entries * x;
+        rows.y[r] += entries * y;
+        rows.z[r] += entries * z;
+    });
+    store_sums(rows.x, sum.component[0] + place);
+    store_sums(rows.y, sum.component[1] + place);
+    store_sums(rows.z, sum.component[2] + place);
+}
+
+/// The same of a tile that the matrix ends in.
+template <std::size_t Rows>
+void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
+                     const ByComponent& kick, const ByComponent& sum) {
+    const RowSums<Rows> rows = add_rows_and_columns<Rows>(matrix, count, place, first, kick, sum);
+    for_each_row<Rows>([&](auto r) __attribute__((always_inline)) {
+        const Real* const entry = matrix + (place + r) * count;
+        Real x = sum_of_lanes(rows.x[r]), y = sum_of_lanes(rows.y[r]), z = sum_of_lanes(rows.z[r]);
+        for (std::size_t k = first; k < count; ++k) {
+            x += entry[k] * kick.component[0][k];
+            y += entry[k] * kick.component[1][k];
+            z += entry[k] * kick.component[2][k];
         }
+        sum.component[0][place + r] = x;
+        sum.component[1][place + r] = y;
+        sum.component[2][place + r] = z;
+    });
 }
 
 /// sum = matrix kick.
 void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, const ByComponent& sum) {
-    std::size_t place = 0;
-    for (; place + rows_at_once <= count; place += rows_at_once)
-        add_rows_and_columns<rows_at_once>(matrix, count, place, kick, sum);
-    for (; place < count; ++place) add_rows_and_columns<1>(matrix, count, place, kick, sum);
+    std::size_t first = 0;
+    for (; first + tile <= count; first += tile)
+        for (std::size_t place = first; place < first + tile; place += rows_at_once)
+            add_rows_of_tile<rows_at_once>(matrix, count, first, place, kick, sum);
+    std::size_t place = first;
+    for (; place + 2 <= count; place += 2) add_rows_at_end<2>(matrix, count, first, place, kick, sum);
+    if (place < count) add_rows_at_end<1>(matrix, count, first, place, kick, sum);
+}
+
+/// Of the components of cluster c, whose nodes begin at `begin` of all, in working memory; the first of what follows
+/// them, too, since (begin + 7 c)/8, rounded down, is no more than begin/8 + c.
+std::size_t tile_of(std::size_t begin, std::size_t c) {
+    return begin / tile + c;
+}
+std::size_t padded(std::size_t count) {
+    return (count + tile - 1) / tile * tile;
 }
 
 }  // namespace
@@ -83,14 +169,15 @@ bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::spa
     const NodeClusters& clusters = inputs.clusters;
     if (clusters.empty()) return false;
     kick.resize(clusters.nodes.item.size());
-    work.resize(6 * clusters.nodes.item.size());
+    work.resize(6 * tile * tile_of(clusters.nodes.item.size(), clusters.size()));
     parallel_for(executor, clusters.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t c = first; c < last; ++c) {
             if (!inputs.body_asleep.empty() && inputs.body_asleep[static_cast<std::size_t>(clusters.body[c])]) continue;
             const std::span<const Index> nodes = clusters.nodes[c];
             const std::size_t count = nodes.size();
             const auto begin = static_cast<std::size_t>(clusters.nodes.offset[c]);
-            const ByComponent kicks(work.data() + 6 * begin, count), sums(work.data() + 6 * begin + 3 * count, count);
+            Real* const memory = work.data() + 6 * tile * tile_of(begin, c);
+            const ByComponent kicks(memory, padded(count)), sums(memory + 3 * padded(count), padded(count));
             if (!known) {
                 for (std::size_t k = 0; k < count; ++k) {
                     const auto n = static_cast<std::size_t>(nodes[k]);

@@ -1,8 +1,11 @@
 #include "systems/dynamics/elements/build_elements.h"
 
 #include <catch2/catch.hpp>
+#include <random>
+#include <vector>
 
 #include "components/check.h"
+#include "systems/dynamics/elements/element_block.h"
 #include "tests/support/elastic_body.h"
 #include "tests/support/sliver_box.h"
 
@@ -206,4 +209,26 @@ TEST_CASE("patches of bodies that come one after the other, and go again, are th
     CHECK(grown.slots_of_node.size() == 0);
     build_patches(blocks, static_cast<std::size_t>(node_count), nodes, grown);
     check_same(grown, after.back());
+}
+
+TEST_CASE("a block is clear of the end if, and only if, no lane of its rows has the last node", "[unit]") {
+    constexpr std::size_t rows = 5, node_count = 60;
+    const std::vector<Vec3> position(node_count);
+    std::vector<NodeLane> node(rows);
+    std::mt19937 random(3);
+    for (std::size_t place = 0; place <= rows * element_lanes; ++place) {
+        for (NodeLane& row : node)
+            for (Index& of_lane : row.lane) of_lane = static_cast<Index>(random() % (node_count - 1));
+        const bool has_last = place < rows * element_lanes;
+        if (has_last) node[place / element_lanes][place % element_lanes] = node_count - 1;
+        CHECK(clear_of_end(node.data(), rows, position) == !has_last);
+    }
+}
+
+TEST_CASE("a comparison holds in all lanes, or not", "[unit]") {
+    for (unsigned pattern = 0; pattern < 1U << element_lanes; ++pattern) {
+        Real8 value{};
+        for (int l = 0; l < element_lanes; ++l) value[l] = (pattern >> l & 1U) != 0 ? 1 : -1;
+        CHECK(all(value > 0.0) == (pattern == (1U << element_lanes) - 1));
+    }
 }

@@ -1,6 +1,7 @@
 // Implicit elements and their matrices against dense ones made by the textbook (docs/methods/clusters.md 2, 3).
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
