@@ -28,6 +28,7 @@ struct Options {
     double cap = 120;  // CPU s a run
     double once = 5;   // CPU s: longer runs are not repeated
     int repeat = 3;
+    int finer = 1;
 };
 
 std::vector<Real> moduli_of(const std::string& scene) {
@@ -57,7 +58,7 @@ void write(Real modulus, const Timed& one, std::ofstream& table) {
 }
 
 void study(const std::string& name, Real modulus, const Options& options, std::ofstream& table) {
-    const PrecisionScene scene = make_stiff_scene(name, modulus);
+    const PrecisionScene scene = make_stiff_scene(name, modulus, options.finer);
     std::vector<Timed> all;
     for (const Runner& runner : make_runners(scene, options.mujoco, options.drake))
         if (std::ranges::count(options.engines, runner.engine) > 0) all.push_back({runner, runner.prepared(scene)});
@@ -92,6 +93,9 @@ int main(int argc, char** argv) {
     app.add_option("--drake", options.drake, "Python that may have Drake")->capture_default_str();
     app.add_option("--cap", options.cap, "CPU seconds of the longest run")->capture_default_str();
     app.add_option("--repeat", options.repeat, "Runs of which the median time counts, where they are short")
+        ->capture_default_str();
+    app.add_option("--finer", options.finer, "Into how many parts each edge of the meshes is cut")
+        ->check(CLI::Range(1, 8))
         ->capture_default_str();
     app.add_flag("--quick", quick, "Each run once and for 10 CPU seconds at most");
     CLI11_PARSE(app, argc, argv);

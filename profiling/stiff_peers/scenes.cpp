@@ -1,6 +1,7 @@
 #include "profiling/stiff_peers/scenes.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -28,18 +29,24 @@ void last_for(PrecisionScene& scene, Real seconds, Real interval = sample) {
     scene.seconds = scene.samples * interval;
 }
 
+/// A body's mesh: a box of that size, and so many cells along its axes, each of them in `finer` parts.
+Mesh box_of(const Vec3& size, std::array<int, 3> cells, int finer) {
+    for (int& count : cells) count *= finer;
+    return mesh::box(size, cells);
+}
+
 /// On the plane from the start, at the distance that it keeps.
-void add_incline(PrecisionScene& scene, Real degrees) {
+void add_incline(PrecisionScene& scene, Real degrees, int finer) {
     const Real angle = std::atan(incline_friction) + degrees * std::numbers::pi / 180;
     scene.material.friction = incline_friction;
     scene.gravity = {{.time = 0, .gravity = g * Vec3(std::sin(angle), 0, -std::cos(angle))}};
     scene.planes.push_back({});
-    scene.bodies.push_back(body_of(mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), {0, 0, 0.05 + scene.contact_distance}));
+    scene.bodies.push_back(body_of(box_of({0.2, 0.2, 0.1}, {4, 4, 2}, finer), {0, 0, 0.05 + scene.contact_distance}));
     last_for(scene, 1);
 }
 
-void add_cantilever(PrecisionScene& scene) {
-    PrecisionBody body = body_of(mesh::box({1, 0.1, 0.1}, {20, 2, 2}), {0, 0, 0});
+void add_cantilever(PrecisionScene& scene, int finer) {
+    PrecisionBody body = body_of(box_of({1, 0.1, 0.1}, {20, 2, 2}, finer), {0, 0, 0});
     for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n)
         if (body.mesh.nodes[n].x() < -0.5 + 1e-9) body.fixed.push_back(static_cast<Index>(n));
     scene.bodies.push_back(std::move(body));
@@ -48,30 +55,30 @@ void add_cantilever(PrecisionScene& scene) {
     last_for(scene, 3.25 * slower, sample * slower);
 }
 
-void add_stack(PrecisionScene& scene) {
+void add_stack(PrecisionScene& scene, int finer) {
     scene.planes.push_back({});
-    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
+    const Mesh block = box_of({0.2, 0.2, 0.1}, {4, 4, 2}, finer);
     for (int k = 0; k < 8; ++k) scene.bodies.push_back(body_of(block, {0, 0, 0.06 + 0.11 * k}));
     last_for(scene, 1);
 }
 
-void add_ball_on_block(PrecisionScene& scene) {
+void add_ball_on_block(PrecisionScene& scene, int finer) {
     constexpr Real radius = 0.1, fall = 0.3, height = 0.3;  // m
     scene.planes.push_back({});
     scene.bodies.push_back(
-        body_of(mesh::box({1, 1, height}, {10, 10, 3}), {0, 0, height / 2 + scene.contact_distance}));
+        body_of(box_of({1, 1, height}, {10, 10, 3}, finer), {0, 0, height / 2 + scene.contact_distance}));
     scene.bodies.push_back(
         body_of(mesh::sphere_picture(radius), {0, 0, scene.contact_distance + height + fall + radius}));
     scene.bodies.back().sphere = radius;
     last_for(scene, 0.5);
 }
 
-void add_pile(PrecisionScene& scene) {
+void add_pile(PrecisionScene& scene, int finer) {
     scene.planes.push_back({});
     for (const Vec3& inward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
         scene.planes.push_back({.normal = inward, .point = -0.22 * inward});
     for (const PiledCube& cube : piled_cubes())
-        scene.bodies.push_back(body_of(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), cube.position, cube.rotation));
+        scene.bodies.push_back(body_of(box_of({0.1, 0.1, 0.1}, {2, 2, 2}, finer), cube.position, cube.rotation));
     last_for(scene, 1);
 }
 
@@ -87,7 +94,7 @@ void set_sphere_masses(PrecisionScene& scene) {
 
 }  // namespace
 
-PrecisionScene make_stiff_scene(std::string_view name, Real young_modulus) {
+PrecisionScene make_stiff_scene(std::string_view name, Real young_modulus, int finer) {
     PrecisionScene scene;
     scene.name = name;
     // without losses: what is left of motion is then what steps and contacts have left of it
@@ -98,17 +105,17 @@ PrecisionScene make_stiff_scene(std::string_view name, Real young_modulus) {
                       .loss_factor = 0,
                       .bulk_viscosity = 0};
     if (name == "holds")
-        add_incline(scene, incline_below);
+        add_incline(scene, incline_below, finer);
     else if (name == "slides")
-        add_incline(scene, incline_above);
+        add_incline(scene, incline_above, finer);
     else if (name == "cantilever")
-        add_cantilever(scene);
+        add_cantilever(scene, finer);
     else if (name == "stack")
-        add_stack(scene);
+        add_stack(scene, finer);
     else if (name == "ball on block")
-        add_ball_on_block(scene);
+        add_ball_on_block(scene, finer);
     else if (name == "pile")
-        add_pile(scene);
+        add_pile(scene, finer);
     else
         throw std::invalid_argument("No scene of stiff bodies: " + std::string(name));
     set_masses(scene);

@@ -13,8 +13,8 @@ inline constexpr Real incline_below = -0.5, incline_above = 2;  // degrees from 
 
 /// "holds" and "slides": a block on an incline below and above that angle; "cantilever", which is let go under gravity;
 /// "stack" of eight blocks, 1 cm apart; "ball on block": a rigid sphere that falls on a soft block; "pile" of 27 cubes
-/// in a box. Throws std::invalid_argument for other names.
-PrecisionScene make_stiff_scene(std::string_view name, Real young_modulus);
+/// in a box. Throws std::invalid_argument for other names. Edges are as long as in profile_stiff divided by `finer`.
+PrecisionScene make_stiff_scene(std::string_view name, Real young_modulus, int finer = 1);
 
 /// For Drake, which keeps no distance: what stood this far from a plane lies on it, as deep in it as its contacts give
 /// way under the weight of a block. From a height of nothing at all the block of 1e6 Pa hops and never slides.
