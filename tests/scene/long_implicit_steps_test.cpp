@@ -319,3 +319,21 @@ TEST_CASE("steps of implicit bodies are refused where they have no meaning", "[s
     settings.integrator = Integrator::leapfrog;
     CHECK_THROWS_WITH(World(settings), Catch::Contains("implicit_step") && Catch::Contains("symplectic_euler"));
 }
+
+TEST_CASE("a fine stiff cube that lands in long steps is solved to the tolerance", "[scene][implicit]") {
+    constexpr Real length = 1.0 / 120;
+    constexpr int short_steps = 12, long_steps = 4;
+    Settings settings;
+    settings.step_size = length / short_steps;
+    settings.implicit_step = length;
+    World world(settings);
+    const auto stiff =
+        world.add_material({.young_modulus = 1e9, .poisson_ratio = 0.3, .density = 1000, .friction = 0.5});
+    world.add_collider(Plane{});
+    world.add_body(mesh::box({0.4, 0.4, 0.4}, {10, 10, 10}),
+                   {.material = stiff, .position = {0, 0, 0.2}, .dynamics = BodyDynamics::implicit_elastic});
+    const StepReport report = world.advance(long_steps * length);
+    REQUIRE(report.ok());
+    CHECK(world.contacts().size() >= 121);
+    CHECK(report.unconverged == 0);
+}

@@ -59,9 +59,9 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
         return NewtonSteps<Op>(op, op.newton_memory()).run(error, tolerance, limit);
 }
 
-/// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again
-/// by the pace of the last stretch, the steps are tried from the present impulse; if they do not finish, sweeps go on,
-/// for three times as long as before.
+/// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again,
+/// or within what sweeps are left, by the pace of the last stretch, the steps are tried from the present impulse; if
+/// they do not finish, sweeps go on, for three times as long as before.
 template <ContactOperator Op>
 requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // the steps are those of the exact cone
@@ -76,7 +76,13 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
     Index iteration_before = 0, newton_steps = 0;
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
-        sweeps.run_to(static_cast<Index>(next));
+        bool ended = false;
+        if (looks_later && trial > 0) {  // the pace is that of the later half: at first all sweeps are fast
+            ended = sweeps.run_to((sweeps.iterations() + static_cast<Index>(next)) / 2);
+            error_before = test.result().error;
+            iteration_before = sweeps.iterations();
+        }
+        if (!ended) sweeps.run_to(static_cast<Index>(next));
         const SolveResult result = test.result();
         if (result.converged || !std::isfinite(result.error))
             return {result.iterations + newton_steps, result.error, result.converged};
@@ -96,7 +102,8 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
             std::log(error_before / result.error) / static_cast<Real>(result.iterations - iteration_before);
         error_before = result.error;
         iteration_before = result.iterations;
-        if (pace * trial > std::log(result.error / limits.tolerance)) continue;
+        const Real left = limits.max_iterations - result.iterations - newton_steps;
+        if (pace * std::min(trial, left) > std::log(result.error / limits.tolerance)) continue;
         // those that finish take up to 14 (docs/decisions/0004); those of rounds, which see themselves where they fail
         constexpr Index most_steps = HasNewtonSteps<Op> ? 40 : 20;
         const SolveResult newton =
