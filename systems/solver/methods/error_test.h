@@ -16,6 +16,9 @@ struct SolveLimits {
     Real relaxation = 1;
 };
 
+/// Error of a start that is compared with zero, which has one of about 1.
+inline constexpr Real suspicious_start = 0.5;
+
 /// The next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ..., then every 8th part more. A measure
 /// costs half a sweep; a solution is noticed at most an eighth of its iterations, and five, late.
 inline Index next_check(Index iteration) {
@@ -55,6 +58,12 @@ public:
         keep_impulse(op_);
     }
 
+    bool known() const { return known_; }
+    /// The present impulse, not measured before; an error that is not finite is none of the best.
+    void offer_last(Real error) {
+        if (std::isfinite(error)) offer(error);
+    }
+
     /// Puts the best impulse back and returns its error.
     Real restore() {
         if (!known_) return op_.error();
@@ -68,7 +77,7 @@ private:
     Real error_ = 0;
 };
 
-/// The test that all methods share. With a fixed count it measures nothing before the end.
+/// The test that all methods share. With a fixed count sweeps measure nothing before the end.
 template <SweptOperator Op>
 class ErrorTest {
 public:
@@ -79,11 +88,13 @@ public:
     /// Makes it due at this iteration.
     void expect(Index iteration) { check_ = iteration; }
 
-    /// Measures the present impulse. True when it ends the method: within the tolerance, or not finite.
+    /// Measures the present impulse. True when it ends the method: not finite, or within the tolerance where the count
+    /// is not fixed.
     bool ends(Index iteration) {
         iteration_ = iteration;
         error_ = op_.error();
-        if (error_ <= limits_.tolerance || !std::isfinite(error_)) return true;
+        if (!std::isfinite(error_)) return true;
+        if (error_ <= limits_.tolerance && !limits_.fixed_iterations) return true;
         best_.offer(error_);
         if (due(iteration)) check_ = next_check(iteration);
         return false;
@@ -95,14 +106,16 @@ public:
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }
 
+    /// Leaves the best impulse seen.
+    void go_back() { best_.restore(); }
     /// The present impulse, that another method found.
     void offer(Real error) { best_.offer(error); }
     /// Of the last measure.
     SolveResult result() const { return {iteration_, error_, error_ <= limits_.tolerance}; }
-    /// When the iterations are used up: leaves the best impulse seen, or the last one where the count is fixed.
+    /// When the iterations are used up: leaves the best impulse seen, the last one where none was measured.
     SolveResult give_up(Index iterations) {
-        if (!limits_.fixed_iterations) return {iterations, best_.restore(), false};
-        const Real error = op_.error();
+        if (limits_.fixed_iterations && best_.known()) best_.offer_last(op_.error());
+        const Real error = best_.restore();
         return {iterations, error, error <= limits_.tolerance};
     }
 

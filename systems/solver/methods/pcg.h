@@ -81,12 +81,20 @@ struct ConjugateLimits {
     Real tolerance;    // (20), (21), of the largest impulse and of the first residual; 0: they end nothing
 };
 
-/// The phase from the present impulse. Leaves the impulse that converged, else the best one, or with fixed iterations
-/// the last one; the result's error is that of the impulse left.
+/// The phase from the present impulse. Leaves the impulse that converged, else the best one, its start included:
+/// nothing keeps these steps from going uphill, to overflow in the end, so that a fixed count is measured by the
+/// schedule, too. The result's error is that of the impulse left.
 template <ContactOperator Op>
 SolveResult run_conjugate_gradients(Op& op, const SolveLimits& limits, const ConjugateLimits& phase,
                                     ConjugateBeta formula, ErrorTest<Op>& test) {
-    if (!limits.fixed_iterations && test.ends(0)) return test.result();
+    if (test.ends(0)) return test.result();
+    if (limits.fixed_iterations && test.result().error > suspicious_start) {
+        // nobody has asked whether zero is nearer
+        std::ranges::fill(op.impulse(), Vec4::Zero());
+        op.refresh();
+        if (test.ends(0)) return test.result();
+        test.go_back();
+    }
     start_conjugate_gradients(op);
     const Real first_residual = largest_entry(op.workspace(1));
     Index iteration = 0;
@@ -95,19 +103,20 @@ SolveResult run_conjugate_gradients(Op& op, const SolveLimits& limits, const Con
         ++iteration;
         const ConjugateChange change = advance_conjugate_gradients(op, formula);
         ended = change.used_up;
-        if (limits.fixed_iterations) continue;
-        ended |= change.impulse < phase.tolerance * largest_entry(op.impulse()) ||
-                 change.residual < phase.tolerance * first_residual;
+        if (!limits.fixed_iterations)
+            ended |= change.impulse < phase.tolerance * largest_entry(op.impulse()) ||
+                     change.residual < phase.tolerance * first_residual;
         if (!ended && !test.due(iteration) && iteration < phase.iterations) continue;
         op.refresh();
-        if (test.ends(iteration)) return test.result();
+        if (!test.ends(iteration)) continue;
+        if (!limits.fixed_iterations) return test.result();
+        break;
     }
-    if (limits.fixed_iterations) op.refresh();
     return test.give_up(iteration);
 }
 
 /// The first phase alone, from the operator's present impulse: ends after as many iterations as there are rows. Leaves
-/// the last impulse when it converged or the count is fixed, else the best one.
+/// the last impulse when it converged, else the best one.
 template <ContactOperator Op>
 SolveResult solve_pcg(Op& op, const SolveLimits& limits, ConjugateBeta formula) {
     ErrorTest<Op> test(op, limits);

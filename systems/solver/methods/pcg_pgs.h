@@ -10,8 +10,7 @@ namespace skerry {
 /// Both phases from the operator's present impulse, at most max_iterations together. The first ends by (20) or (21), by
 /// its error, after as many iterations as the system has rows, or when half of the iterations are used; the second by
 /// its error, which replaces (20) and (21) there so that a tolerance means the same for all methods
-/// (docs/methods/contact.md 5.7). Leaves the last impulse when it converged or the count is fixed, else the best one of
-/// both phases.
+/// (docs/methods/contact.md 5.7). Leaves the last impulse when it converged, else the best one of both phases.
 template <ContactOperator Op>
 SolveResult solve_pcg_pgs(Op& op, const SolveLimits& limits, ConjugateBeta formula = ConjugateBeta::polak_ribiere) {
     // the first phase is asked for less than the second: eps_cg > eps_gs, delta_cg > delta_gs

@@ -133,8 +133,7 @@ bool start_from_warm_impulse(Op& op, const SolverSettings& settings, Real tolera
         outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
         return true;
     }
-    constexpr Real suspicious = 0.5;  // a start from zero has an error of about 1
-    if (error <= suspicious) return false;
+    if (error <= suspicious_start) return false;
     // workspace 0 keeps the warm start while zero is looked at
     BestIterate<Op> better(op);
     better.offer(error);

@@ -231,6 +231,36 @@ TEST_CASE("no method takes more iterations than allowed, and none is worse than 
         }
 }
 
+// Found by random scenes: projected conjugate gradients went uphill for as long as they were told to, to errors of 1e6.
+TEST_CASE("with a fixed count none is worse than a start from zero, nor conjugate gradients than any start",
+          "[unit][solver]") {
+    constexpr int contacts = 8;
+    for (const auto& [method, name] : EnumNames<SolverMethod>::table)
+        for (const Friction friction : {Friction::cone, Friction::pyramid, Friction::cone_convex})
+            for (unsigned seed = 0; seed < 30; ++seed)
+                for (const Index limit : {1, 5, 47}) {
+                    INFO(name << " " << name_of(friction) << " seed " << seed << " limit " << limit);
+                    const Real mu = needs_frictionless(method) ? 0 : 0.2 + 0.05 * seed;
+                    const DenseProblem problem(contacts, seed % 2 == 0 ? 14 : 40, mu, seed);
+                    const BlockSystem system = problem.view();
+                    BlockMemory memory;
+                    memory.prepare(system, problem.all, friction);
+                    BlockOperator op(memory, 0, contacts, friction, 0);
+                    const SolveLimits limits{1e-8, limit, true, 1};
+                    const Real zero = op.error();
+                    CHECK(run_method(method, op, limits).error <= zero);
+                    if (!stagnates(method) && method != SolverMethod::pcg_pgs) continue;
+                    std::ranges::fill(op.impulse(), Vec4::Zero());
+                    op.refresh();
+                    run_method(SolverMethod::ags, op, {1e-2, 3000, false, 1});
+                    const Real start = op.error();
+                    const SolveResult result = run_method(method, op, limits);
+                    CHECK(result.error <= start);
+                    CHECK(result.error == op.error());
+                    CHECK(result.iterations == limit);
+                }
+}
+
 TEST_CASE("the error that a method reports is that of the impulses it leaves", "[unit][solver]") {
     for (const auto& [method, name] : EnumNames<SolverMethod>::table)
         for (const Index limit : {3, 30, 100000}) {
