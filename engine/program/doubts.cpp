@@ -68,6 +68,7 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     if (arose && result.mean_edge > 0 && r.max_penetration > visible_share * result.mean_edge)
         doubts.push_back("surfaces came to overlap by " + percent(r.max_penetration / result.mean_edge) +
                          " of the mean edge: " + shorter);
+    if (r.collider_turn > visible_turn) doubts.push_back(turning_text(r));
     doubt_elements(r, doubts);
     return doubts;
 }

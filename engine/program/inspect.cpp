@@ -283,7 +283,7 @@ struct SceneCost {
     Real overlap = 0;               // m, at the start
     Real into_shell = 0;            // m, pressed into the contact distance at the start
     Index contacts = 0;             // at the start
-    std::string failure{};
+    std::string failure{}, turning{};
 };
 
 /// `overlap`: m, the deepest that was found before.
@@ -295,6 +295,8 @@ SceneCost try_steps(World& world, Real overlap) {
     cost.into_shell = first.max_gap_violation - first.max_penetration;
     cost.contacts = first.contacts;
     if (!first.ok()) cost.failure = first.message();
+    if (const WorldReport report = world.report(); report.collider_turn > visible_turn)
+        cost.turning = turning_text(report);
     const Stopwatch watch;
     const Real duration = timed_steps * world.stable_step();
     const StepReport steps = world.advance(duration);
@@ -327,6 +329,7 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
         problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " in the first step");
     Real shortest_edge = std::numeric_limits<Real>::infinity();
     for (const BodyKindReport& kind : kinds) shortest_edge = std::min(shortest_edge, kind.mesh.mean_edge);
+    if (!cost.turning.empty()) problems.push_back(cost.turning);
     if (cost.into_shell > visible_share * shortest_edge) problems.push_back(into_shell_text(cost.into_shell));
     if (!cost.failure.empty()) problems.push_back("the first steps fail: " + cost.failure);
     return problems;

@@ -30,6 +30,15 @@ inline std::string into_shell_text(Real depth) {
            " too deep in each other's contact distance: start further apart, or lower contact_distance";
 }
 
+/// Rad, in a step: a surface is then 3 % of its arm beside where contacts take it to go.
+inline constexpr Real visible_turn = 0.25;
+
+inline std::string turning_text(const WorldReport& report) {
+    return "collider \"" + report.turning_collider + "\" turns by " + short_number(report.collider_turn) +
+           " rad in a step, for which contacts take its surface to move straight on: shorten the step (--step) to " +
+           short_number(visible_turn / report.collider_turn) + " of that";
+}
+
 /// "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm"
 inline std::string moves_text(const WorldReport& report) {
     const StartMove* furthest = nullptr;

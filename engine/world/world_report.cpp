@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -10,6 +11,7 @@
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/checks/volume_ratios.h"
+#include "systems/dynamics/motion/move_colliders.h"
 
 namespace skerry {
 
@@ -151,6 +153,22 @@ Energy World::energy() const {
     return energy_of(state_->model, state_->record.counters.dissipated);
 }
 
+namespace {
+
+void note_fastest_turn(const Model& model, WorldReport& report) {
+    const ColliderTable& colliders = model.colliders;
+    const Real step = trusted_step(model);
+    if (!std::isfinite(step)) return;  // nothing moves
+    for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
+        const Real turn = step * fastest_turn(colliders.script[c], colliders.keyframe);
+        if (!(turn > report.collider_turn)) continue;
+        report.collider_turn = turn;
+        report.turning_collider = model.collider_records[c].name;
+    }
+}
+
+}  // namespace
+
 WorldReport World::report() const {
     state_->settle();
     const WorldState& world = *state_;
@@ -175,6 +193,7 @@ WorldReport World::report() const {
         if (const BodyRecord& record = world.model.body_records[b]; record.choice.reason != DynamicsReason::given)
             report.dynamics_choices.push_back({world.model.body_map.handle_of_slot(world.model.bodies.slot[b]),
                                                record.name, world.model.dynamics_of(b), record.choice});
+    note_fastest_turn(world.model, report);
     report.start_overlaps = world.record.start_overlaps;
     report.start_moves = world.record.start_moves;
     report.step_limits = world.record.limits.report();

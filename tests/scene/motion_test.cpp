@@ -2,7 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
+#include <numbers>
 
+#include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
@@ -33,6 +35,32 @@ TEST_CASE("two bodies that collide keep their common momentum", "[scene]") {
     const Real scale = world.mass(world.bodies()[0]) * 2;  // sum of m |v| at speed 1 m/s
     CHECK((after.momentum - before.momentum).norm() <= 1e-13 * scale * static_cast<Real>(after.steps));
     CHECK(after.energy.kinetic + after.energy.elastic < before.energy.kinetic + before.energy.elastic);
+}
+
+TEST_CASE("a report names the collider that turns fastest, and by how much in a step", "[scene]") {
+    World world(Settings{.step_size = 0.01});
+    world.add_collider(Plane{}, {.position = {0, 0, -1}});
+    CHECK(world.report().collider_turn == 0);
+    world.add_body(Sphere{0.1}, {.material = world.add_material({}), .dynamics = BodyDynamics::rigid});
+    CHECK(world.report().collider_turn == 0);
+    world.add_collider(Plane{}, {.position = {0, 0, -9}, .motion = {.angular_velocity = {0, 3, 4}}, .name = "mill"});
+    CHECK(world.report().collider_turn == Approx(0.05).epsilon(1e-12));
+    CHECK(world.report().turning_collider == "mill");
+    // 3 rad in a tenth of a second, then the shorter way round: a quarter of a turn about another axis
+    const Vec3 along(0, 0, 3);
+    const Vec3 across = rotation_vector(rotation_matrix({0.5 * std::numbers::pi, 0, 0}) * rotation_matrix(along));
+    world.add_collider(Plane{}, {.position = {0, 0, -9},
+                                 .motion = {.keys = {{0, {0, 0, -9}, Vec3::Zero()},
+                                                     {0.1, {0, 0, -9}, along},
+                                                     {0.6, {0, 0, -9}, across},
+                                                     {0.61, {0, 0, -9}, across}}},
+                                 .name = "whisk"});
+    CHECK(world.report().collider_turn == Approx(0.3).epsilon(1e-12));
+    CHECK(world.report().turning_collider == "whisk");
+    world.add_collider(Plane{}, {.position = {0, 0, -9},
+                                 .motion = {.keys = {{0, {0, 0, -9}, along}, {0.01, {0, 0, -9}, across}}},
+                                 .name = "turn"});
+    CHECK(world.report().collider_turn == Approx(0.5 * std::numbers::pi).epsilon(1e-12));
 }
 
 TEST_CASE("pinned nodes stay where they are", "[scene]") {

@@ -272,6 +272,10 @@ struct WorldReport : RunCounters {
     std::string folded_body;
     Index folded_element = -1;
     Index inverted = 0;  // elements whose det F is below 0
+    // rad, of the collider that turns fastest, in a step as long as may be taken now: contacts take its surface to move
+    // straight on meanwhile, off by half of the square of that, of its arm
+    Real collider_turn = 0;
+    std::string turning_collider;
 };
 
 }  // namespace skerry

@@ -9,17 +9,34 @@ namespace skerry {
 
 namespace {
 
-/// The rotation a fraction s of the way from key a to key b, about a fixed axis. Rotations about one axis may be many
-/// turns apart; between different axes the shorter way is taken.
-Mat3 rotation_between(const Vec3& a, const Vec3& b, Real s) {
+bool are_parallel(const Vec3& a, const Vec3& b) {
     constexpr Real parallel = 1e-12;  // sine of the angle between the axes
-    if (a.cross(b).squaredNorm() <= parallel * parallel * a.squaredNorm() * b.squaredNorm())
-        return rotation_matrix(a + s * (b - a));
-    const Mat3 from = rotation_matrix(a);
-    return rotation_matrix(s * rotation_vector(rotation_matrix(b) * from.transpose())) * from;
+    return a.cross(b).squaredNorm() <= parallel * parallel * a.squaredNorm() * b.squaredNorm();
+}
+
+/// rad, about a fixed axis from key a to key b. Rotations about one axis may be many turns apart; between different
+/// axes the shorter way is taken.
+Vec3 turn_between(const Vec3& a, const Vec3& b) {
+    return are_parallel(a, b) ? Vec3(b - a) : rotation_vector(rotation_matrix(b) * rotation_matrix(a).transpose());
+}
+
+/// The rotation a fraction s of the way from key a to key b.
+Mat3 rotation_between(const Vec3& a, const Vec3& b, Real s) {
+    if (are_parallel(a, b)) return rotation_matrix(a + s * (b - a));
+    return rotation_matrix(s * turn_between(a, b)) * rotation_matrix(a);
 }
 
 }  // namespace
+
+Real fastest_turn(const MotionScript& script, std::span<const Keyframe> keyframe) {
+    if (script.key_begin == script.key_end) return script.angular_velocity.norm();
+    Real fastest = 0;
+    for (auto k = static_cast<std::size_t>(script.key_begin) + 1; k < static_cast<std::size_t>(script.key_end); ++k) {
+        const Keyframe &a = keyframe[k - 1], &b = keyframe[k];
+        fastest = std::max(fastest, turn_between(a.rotation, b.rotation).norm() / (b.time - a.time));
+    }
+    return fastest;
+}
 
 RigidPose pose_at(const MotionScript& script, std::span<const Keyframe> keyframe, const RigidMotion& initial, Real t) {
     const std::span<const Keyframe> keys = keyframe.subspan(

@@ -22,6 +22,9 @@ RigidPose pose_at(const MotionScript& script, std::span<const Keyframe> keyframe
 RigidMotion motion_of_step(const MotionScript& script, std::span<const Keyframe> keyframe, const RigidMotion& initial,
                            Real t, Real h);
 
+/// rad/s, of the fastest turn of a script.
+Real fastest_turn(const MotionScript& script, std::span<const Keyframe> keyframe);
+
 struct ColliderMotionInputs {
     std::span<const MotionScript> script;
     std::span<const Keyframe> keyframe;

@@ -72,6 +72,18 @@ class ProgramStartTest(ProgramCase):
         self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0 joins parts", said)
         self.assertIn("not a closed manifold", self.skerry("inspect", scene).stdout)
 
+    def test_a_collider_that_turns_by_much_in_a_step_is_named(self):
+        mill = {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "settings": {"gravity": [0, 0, 0]},
+                "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 0.05}}, "dynamics": "rigid",
+                            "material": "rubber"}],
+                "colliders": [{"name": "mill", "shape": {"plane": {}}, "position": [0, 0, -1],
+                               "motion": {"velocity": [0, 0, -1], "angular_velocity": [0, 0, 1200]}}]}
+        said = "collider \"mill\" turns by 10 rad in a step"
+        self.assertIn(said, self.skerry("run", self.write("mill.json", mill)).stdout)
+        problems = json.loads(self.skerry("inspect", self.folder / "mill.json", "--json").stdout)["problems"]
+        self.assertTrue(any(said in problem for problem in problems), problems)
+        self.assertNotIn("DOUBT", self.skerry("run", self.folder / "mill.json", "--step", 1e-4).stdout)
+
     def test_advice_names_an_option_that_there_is(self):
         stack = json.loads(json.dumps(SCENE))
         stack["settings"] = {"tolerance": 1e-10}
