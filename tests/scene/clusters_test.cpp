@@ -211,7 +211,9 @@ TEST_CASE("a spinning body with clusters keeps energy, momentum and angular mome
 }
 
 TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
-    World world(weightless(true));
+    Settings settings = weightless(true);
+    settings.step_safety = 0.3;  // velocities that no step follows: 0.04 of the energy at the whole step, 3e-4 here
+    World world(settings);
     MaterialSettings rubber = lossless_rubber();
     rubber.damping = 30;
     const auto body = world.add_body(sliver_box(0.2, 8, 0.01, 0.005),
@@ -226,6 +228,8 @@ TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
     REQUIRE(world.advance(0.1).ok());
     const WorldReport end = world.report();
     CHECK(end.energy.dissipated > 0.1 * start.energy.kinetic);
+    // what stiffens brings nothing in: with velocities that it kept 8.6 J were dissipated of 1.2 J
+    CHECK(end.energy.dissipated + end.energy.kinetic + end.energy.elastic < 1.5 * start.energy.kinetic);
     CHECK(end.energy_error_share < 1e-2);  // booked by the masses of the nodes: 0.13
 }
 

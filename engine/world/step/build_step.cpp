@@ -70,7 +70,8 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
                         outputs<ElementMemory>(e), outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
     g.stage_with_result("dynamics/stiffen_clusters", w.scratch.findings.stiffened, stiffen_clusters,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b), inputs<StiffenInputs>(b, n),
-                        write(m.patches.stiffening), outputs<StiffenOutputs>(e, m.clusters), if_unknown);
+                        value(p.kick), outputs<PatchForces>(m.patches, m.element_nodes),
+                        outputs<StiffenOutputs>(e, m.clusters), if_unknown);
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
             inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.kick),
             write(n.force), write(n.velocity_next));

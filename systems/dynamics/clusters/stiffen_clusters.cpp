@@ -78,9 +78,51 @@ void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<
 
 namespace {
 
-/// Looks at the implicit elements of one block. Returns what it adds to the kinetic energy, J.
+/// The column of lane l.
+Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
+    return {v.x[l], v.y[l], v.z[l]};
+}
+
+/// The impulse -weight F' g_k on the nodes of an element that has become so much heavier, among what it does to them in
+/// this step: what deforms it keeps the momentum that it had, not the velocity.
+void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,
+                   Real weight, Real kick, const PatchForces& patches) {
+    const auto after = std::ranges::upper_bound(patches.blocks, static_cast<Index>(b), {}, &Range::begin);
+    const Range slots = patches.slots[static_cast<std::size_t>(after - patches.blocks.begin()) - 1];
+    const std::span<PaddedVec3> force =
+        patches.force.subspan(static_cast<std::size_t>(slots.begin), static_cast<std::size_t>(slots.size()));
+    const NodeLane* const slot = patches.slot.data() + elements.first[b];
+    Mat3 impulse;
+    impulse << lane_of(rate.c0, l), lane_of(rate.c1, l), lane_of(rate.c2, l);
+    impulse *= weight;
+    const auto add = [&](Index k, const Vec3& f) {
+        for (std::size_t i = 0; i < 3; ++i)
+            force[static_cast<std::size_t>(slot[k][l])].lane[i] += f[static_cast<Eigen::Index>(i)];
+    };
+    const BlockNodes nodes = elements.nodes_of(b);
+    Vec3 sum = Vec3::Zero();
+    for (Index k = 1; k < nodes.count; ++k) {
+        const Vec3 g(nodes.gradient[k][0][l], nodes.gradient[k][1][l], nodes.gradient[k][2][l]);
+        const Vec3 f = -(impulse * g) / kick;
+        add(k, f);
+        sum += f;
+    }
+    add(0, -sum);
+    if (patches.viscous_impulse.empty()) return;
+    if (!std::exchange(patches.viscous[b], std::uint8_t{1})) patches.viscous_impulse[b] = {};
+    for (std::size_t i = 0; i < 9; ++i) patches.viscous_impulse[b][i][l] += impulse.data()[i];
+}
+
+/// What the elements do to their nodes in the step that begins.
+struct StepForces {
+    Real kick;
+    const PatchForces& patches;
+};
+
+/// Looks at the implicit elements of one block. Returns what it adds to the kinetic energy, J. `forces`: null between
+/// steps.
 Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, Real beta, std::size_t b,
-                   const StiffenOutputs& out) {
+                   const StepForces* forces, const StiffenOutputs& out) {
     const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);
     if (all(taken <= 0.0)) return 0;
     const LaneMat3<Real8> F = deformation_of(elements, b, bodies.position);
@@ -99,35 +141,38 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
         add_to_inverse(elements.nodes_of(b), l, weight, bodies.inverse_mass, out.clusters, out.clusters.inverse.span());
         const LaneMat3<Real8> rate = deformation_of(elements, b, bodies.velocity);
         energy += weight * inner_product(rate, rate)[l] / 2;
+        if (forces != nullptr) keep_momentum(elements, rate, b, l, weight, forces->kick, forces->patches);
     }
     return energy;
 }
 
 /// Of the blocks with which `is_due` goes along.
 template <class IsDue>
-Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out, IsDue&& is_due) {
+Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const StepForces* forces,
+             const StiffenOutputs& out, IsDue&& is_due) {
     Real energy = 0;
     for (std::size_t body = 0; body < bodies.body_blocks.size(); ++body) {
         if (!(bodies.body_cluster_step[body] > 0) || bodies.body_asleep[body]) continue;
         const Real beta = inertia_of_stiffness(bodies.body_cluster_step[body]);
         const Range blocks = bodies.body_blocks[body];
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
-            if (is_due(b)) energy += stiffen_block(elements, bodies, beta, b, out);
+            if (is_due(b)) energy += stiffen_block(elements, bodies, beta, b, forces, out);
     }
     return energy;
 }
 
 }  // namespace
 
-Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, std::span<std::uint8_t> stiffening,
+Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out) {
-    if (stiffening.empty()) return 0;
-    return stiffen(elements, bodies, out,
-                   [&](std::size_t b) { return std::exchange(stiffening[b], std::uint8_t{0}) != 0; });
+    if (patches.stiffening.empty()) return 0;
+    const StepForces forces{kick, patches};
+    return stiffen(elements, bodies, &forces, out,
+                   [&](std::size_t b) { return std::exchange(patches.stiffening[b], std::uint8_t{0}) != 0; });
 }
 
 Real stiffen_all_clusters(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out) {
-    return stiffen(elements, bodies, out, [](std::size_t) { return true; });
+    return stiffen(elements, bodies, nullptr, out, [](std::size_t) { return true; });
 }
 
 }  // namespace skerry

@@ -45,13 +45,15 @@ struct StiffenOutputs {
 };
 
 /// Implicit elements that are about to become stiffer than they are taken to be are taken to be twice as stiff as they
-/// are, and the matrices of their clusters follow. Returns what that adds to the kinetic energy, J. Looks where
-/// `stiffening` says so (compute_element_forces, of the same positions), and takes that back. Sequential, in element
-/// order.
-Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, std::span<std::uint8_t> stiffening,
+/// are, and the matrices of their clusters follow. Returns what that adds to the kinetic energy, J, while velocities
+/// stay; that an element is deformed with the momentum that it had and not with its velocity is an impulse of the step
+/// (docs/methods/clusters.md 6), which comes to what elements do to their nodes for `kick` seconds, and to what is
+/// viscous. Looks where `patches.stiffening` says so (compute_element_forces, of the same positions), and takes that
+/// back. Sequential, in element order.
+Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out);
 
-/// The same, found by looking at every implicit element.
+/// The same between steps, found by looking at every implicit element: velocities stay.
 Real stiffen_all_clusters(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out);
 
 }  // namespace skerry
