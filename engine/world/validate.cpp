@@ -295,6 +295,9 @@ void validate(const Motion& motion, const std::string& object) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
+        constexpr Real most = 1e6;  // rad: it is known to a ten billionth then
+        require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
+                "a turn of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,
                 "ascending times (s)");
     }

@@ -63,6 +63,48 @@ TEST_CASE("a report names the collider that turns fastest, and by how much in a 
     CHECK(world.report().collider_turn == Approx(0.5 * std::numbers::pi).epsilon(1e-12));
 }
 
+TEST_CASE("colliders turn by whole turns between keys, whatever their shape", "[scene]") {
+    constexpr Real pi = std::numbers::pi;
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({})});
+    ColliderSettings collider;
+    collider.collision_mask = 0;
+    // three turns, then across half a turn
+    collider.motion.keys = {{0, {5, 0, 0}, {0, 0, 0}},
+                            {1, {5, 0, 0}, {6 * pi, 0, 0}},
+                            {2, {5, 0, 0}, {0.9 * pi, 0, 0}},
+                            {3, {5, 0, 0}, {1.1 * pi, 0, 0}}};
+    const Vec3 tilted = Vec3(1, 2, 2) / 3;
+    struct Case {
+        ColliderHandle collider;
+        Mat3 frame;  // its own, unturned
+    };
+    std::vector<Case> cases;
+    for (const Shape& shape :
+         {Shape(Box{}), Shape(Cylinder{}), Shape(Plane{}), Shape(Plane{.normal = {0, 1, 0}}),
+          Shape(Plane{.normal = tilted}), Shape(Plane{.normal = {0, -1, 0}, .point = {0, 0, -1}})}) {
+        ColliderSettings still;
+        still.position = {5, 0, 0};
+        const auto at_rest = world.add_collider(shape, still);
+        const Mat3 frame = rotation_matrix(world.pose(at_rest).rotation);
+        world.remove(at_rest);
+        cases.push_back({world.add_collider(shape, collider), frame});
+    }
+    Real worst = 0;
+    for (int k = 1; k <= 60; ++k) {
+        REQUIRE(world.advance(0.05).ok());
+        const Real t = world.time();
+        const Real angle = t < 1 ? 6 * pi * t : t < 2 ? 6 * pi + (t - 1) * (0.9 - 6) * pi : (0.9 + 0.2 * (t - 2)) * pi;
+        for (const Case& of : cases) {
+            const Mat3 expected = rotation_matrix({angle, 0, 0}) * of.frame;
+            worst = std::max(worst, (rotation_matrix(world.pose(of.collider).rotation) - expected).norm());
+        }
+    }
+    CHECK(worst < 1e-9);
+}
+
 TEST_CASE("pinned nodes stay where they are", "[scene]") {
     World world;
     const auto material = world.add_material({.young_modulus = 1e5, .damping = 40});

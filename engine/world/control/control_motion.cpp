@@ -72,19 +72,6 @@ bool is_at(const RigidPose& pose, const Pose& target) {
            (rotation_vector(pose.rotation) == target.rotation || pose.rotation == rotation_matrix(target.rotation));
 }
 
-/// Of the vectors of a rotation the one nearest to another: keys turn by their difference where both have one axis.
-Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
-    const Real angle = rotation.norm();
-    if (angle == 0) {
-        const Real length = to.norm();  // no turn, or whole ones about the other's axis
-        return length > std::numbers::pi ? Vec3(2 * std::numbers::pi / length * to) : rotation;
-    }
-    const Vec3 axis = rotation / angle;
-    constexpr Real turn = 2 * std::numbers::pi;
-    return (angle + turn * std::round((axis.dot(to) - angle) / turn)) * axis;
-}
-
-/// Returns false where that is how it moves already.
 template <class Table>
 bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const Vec3& angular_velocity, Real now) {
     const MotionScript& script = scripted.script();
@@ -108,6 +95,7 @@ void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, R
         is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, pose))
         return;
     const Vec3 rotation = rotation_vector(from.rotation);
+    // keys turn by their difference where both have one axis
     scripted.start_keys({now, from.position, rotation}, {end, pose.position, nearest_turn(pose.rotation, rotation)});
 }
 

@@ -59,14 +59,31 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// The same motion for the shape's own frame.
-Motion motion_of_shape(Motion motion, const RigidPose& frame) {
-    for (MotionKey& key : motion.keys) {
-        const RigidPose pose = compose({key.position, rotation_matrix(key.rotation)}, frame);
-        key.position = pose.position;
-        key.rotation = rotation_vector(pose.rotation);
+/// Appends the same motion for the shape's own frame, whose turns are not about the axes of the motion's: rotations of
+/// it are known but for whole turns, so there are more keys where those of the motion are far apart.
+MotionScript append_script_of_shape(const Motion& motion, const RigidPose& frame, Column<Keyframe>& keyframe) {
+    if (frame.position.isZero(0) && frame.rotation == Mat3::Identity()) return append_script(motion, keyframe);
+    constexpr Real most = 2;  // rad, between keys
+    Column<Keyframe> keys;
+    const MotionScript script = append_script(motion, keys);
+    Motion of_shape = motion;
+    of_shape.keys.clear();
+    const auto add = [&](Real time) {
+        const RigidPose pose = compose(pose_at(script, keys, {}, time), frame);
+        const Vec3 rotation = rotation_vector(pose.rotation);
+        of_shape.keys.push_back(
+            {time, pose.position,
+             of_shape.keys.empty() ? rotation : nearest_turn(rotation, of_shape.keys.back().rotation)});
+    };
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        if (k > 0) {
+            const Keyframe &a = keys[k - 1], &b = keys[k];
+            const int pieces = static_cast<int>(turn_between(a.rotation, b.rotation).norm() / most) + 1;
+            for (int i = 1; i < pieces; ++i) add(a.time + static_cast<Real>(i) / pieces * (b.time - a.time));
+        }
+        add(keys[k].time);
     }
-    return motion;
+    return append_script(of_shape, keyframe);
 }
 
 }  // namespace
@@ -139,7 +156,7 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
     const RigidPose frame = shape_frame(shape);
     const RigidPose placed = compose({settings.position, rotation_matrix(settings.rotation)}, frame);
     table.initial[row] = initial_of(placed, settings.motion, now);
-    table.script[row] = append_script(motion_of_shape(settings.motion, frame), table.keyframe);
+    table.script[row] = append_script_of_shape(settings.motion, frame, table.keyframe);
     const RigidPose present = pose_at(table.script[row], table.keyframe, table.initial[row], now);
     table.motion[row] = {present.position, present.rotation, Vec3::Zero(), Vec3::Zero()};
     table.surface[row] = surface_properties(

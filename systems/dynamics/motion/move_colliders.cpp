@@ -14,12 +14,6 @@ bool are_parallel(const Vec3& a, const Vec3& b) {
     return a.cross(b).squaredNorm() <= parallel * parallel * a.squaredNorm() * b.squaredNorm();
 }
 
-/// rad, about a fixed axis from key a to key b. Rotations about one axis may be many turns apart; between different
-/// axes the shorter way is taken.
-Vec3 turn_between(const Vec3& a, const Vec3& b) {
-    return are_parallel(a, b) ? Vec3(b - a) : rotation_vector(rotation_matrix(b) * rotation_matrix(a).transpose());
-}
-
 /// The rotation a fraction s of the way from key a to key b.
 Mat3 rotation_between(const Vec3& a, const Vec3& b, Real s) {
     if (are_parallel(a, b)) return rotation_matrix(a + s * (b - a));
@@ -27,6 +21,10 @@ Mat3 rotation_between(const Vec3& a, const Vec3& b, Real s) {
 }
 
 }  // namespace
+
+Vec3 turn_between(const Vec3& a, const Vec3& b) {
+    return are_parallel(a, b) ? Vec3(b - a) : rotation_vector(rotation_matrix(b) * rotation_matrix(a).transpose());
+}
 
 Real fastest_turn(const MotionScript& script, std::span<const Keyframe> keyframe) {
     if (script.key_begin == script.key_end) return script.angular_velocity.norm();

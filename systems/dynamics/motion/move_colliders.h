@@ -22,6 +22,10 @@ RigidPose pose_at(const MotionScript& script, std::span<const Keyframe> keyframe
 RigidMotion motion_of_step(const MotionScript& script, std::span<const Keyframe> keyframe, const RigidMotion& initial,
                            Real t, Real h);
 
+/// rad, about a fixed axis, from one key's rotation to another's: by their difference where they are about one axis,
+/// and so by whole turns, too; the shorter way else.
+Vec3 turn_between(const Vec3& a, const Vec3& b);
+
 /// rad/s, of the fastest turn of a script.
 Real fastest_turn(const MotionScript& script, std::span<const Keyframe> keyframe);
 
