@@ -137,7 +137,7 @@ TEST_CASE("long steps keep momenta, gain no energy, and nothing overlaps", "[sce
     CHECK(scene.world.report().mean_contacts > 0);
 }
 
-TEST_CASE("what lies on a light implicit body gains no energy by its long steps", "[scene][implicit]") {
+TEST_CASE("what lies on a light implicit body gains no energy by its long steps", "[scene][implicit][slow]") {
     const Real density = GENERATE(1000.0, 30.0);
     const int short_steps = GENERATE(16, 40);
     CAPTURE(density, short_steps);
