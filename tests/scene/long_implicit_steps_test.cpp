@@ -320,7 +320,7 @@ TEST_CASE("steps of implicit bodies are refused where they have no meaning", "[s
     CHECK_THROWS_WITH(World(settings), Catch::Contains("implicit_step") && Catch::Contains("symplectic_euler"));
 }
 
-TEST_CASE("a fine stiff cube that lands in long steps is solved to the tolerance", "[scene][implicit]") {
+TEST_CASE("a fine stiff cube that lands in long steps is solved to the tolerance", "[scene][implicit][slow]") {
     constexpr Real length = 1.0 / 120;
     constexpr int short_steps = 12, long_steps = 4;
     Settings settings;
