@@ -72,6 +72,7 @@ bool is_at(const RigidPose& pose, const Pose& target) {
            (rotation_vector(pose.rotation) == target.rotation || pose.rotation == rotation_matrix(target.rotation));
 }
 
+/// Returns false where that is how it moves already.
 template <class Table>
 bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const Vec3& angular_velocity, Real now) {
     const MotionScript& script = scripted.script();
