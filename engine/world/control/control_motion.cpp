@@ -1,6 +1,4 @@
 // How colliders and attachments move from now on. Both have a script: constant velocities since a time, or keys.
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "engine/world/control/control.h"
