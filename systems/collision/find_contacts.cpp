@@ -1,10 +1,13 @@
 #include "systems/collision/find_contacts.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
+#include "systems/collision/cylinders/cylinder_row.h"
+#include "systems/collision/look_at_awake.h"
 #include "systems/collision/look_at_candidates.h"
 
 namespace skerry {
@@ -16,6 +19,7 @@ constexpr Index candidates_per_block = 2048;
 constexpr Index candidates_worth_of_a_pair = 16;
 
 constexpr std::size_t rows_per_block = 256;
+constexpr Index pairs_ahead = 3;                      // lists are asked for, before they are looked at
 constexpr std::size_t counted_pairs_per_block = 512;  // of which it is looked up what is to be looked at
 
 bool collider_stands_still(const CollisionInputs& inputs, Index collider) {
@@ -68,6 +72,20 @@ Index cut_blocks(PairTable& pairs) {
     return blocks;
 }
 
+/// Has the beginning of a pair's list fetched, the rest follows by itself: each lies elsewhere, and waiting for them
+/// was a good part of the stage.
+void ask_for_list(const PairTable& pairs, Index p) {
+    constexpr std::size_t begin = 256, line = 64;  // bytes
+    if (p >= static_cast<Index>(pairs.size())) return;
+    const auto* const list = reinterpret_cast<const std::byte*>(pairs.asleep_until[p].data());
+    for (std::size_t i = 0; i < begin; i += line) __builtin_prefetch(list + i);
+}
+
+/// Whether features of two surfaces are held against each other, as they are of most pairs.
+bool is_of_surfaces(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
+    return pairs.kind[p] != PairKind::collider && !has_cylinder(inputs, pairs, p);
+}
+
 void look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b,
                    PairTable& pairs) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
@@ -76,13 +94,21 @@ void look_at_block(const CollisionInputs& inputs, const CollisionSettings& setti
     found.clear();
     near.clear();
     Real nearest = std::numeric_limits<Real>::infinity();
+    AwakeCandidates awake(inputs, settings, h, pairs, found, near);
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        if (from < to && !pairs.idle[p])
-            nearest = std::min(nearest, look_at_candidates(inputs, settings, h, p, {from, to}, pairs, found, near));
+        ask_for_list(pairs, p + pairs_ahead);
+        if (from >= to || pairs.idle[p]) continue;
+        if (settings.use_budgets && is_of_surfaces(inputs, pairs, p)) {
+            awake.add(p, {from, to});
+            continue;
+        }
+        awake.look();  // contacts are in the order of their pairs
+        nearest = std::min(nearest, look_at_candidates(inputs, settings, h, p, {from, to}, pairs, found));
     }
-    pairs.block_nearest[b] = nearest;
+    awake.look();
+    pairs.block_nearest[b] = std::min(nearest, awake.least_distance());
 }
 
 void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTable& contacts) {

@@ -69,9 +69,9 @@ public:
 private:
     /// Candidates of a kind are tested together, in their order.
     std::uint64_t wait(const NearCandidate& at) {
-        const bool edges = is_edge_edge(candidates_[at.candidate].feature);
-        const std::uint64_t tested = waiting_count_ == waiting_.size() || edges != edges_wait_ ? test_waiting() : 0;
-        edges_wait_ = edges;
+        const FeaturePair kind = features_of(candidates_[at.candidate]);
+        const std::uint64_t tested = waiting_count_ == waiting_.size() || kind != waiting_kind_ ? test_waiting() : 0;
+        waiting_kind_ = kind;
         distance_[waiting_count_] = at.distance;
         waiting_[waiting_count_++] = at.candidate;
         return tested;
@@ -79,9 +79,10 @@ private:
 
     std::uint64_t test_waiting() {
         if (waiting_count_ == 0) return 0;
-        std::fill(waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_count_), waiting_.end(), waiting_[0]);
-        const auto approach = edges_wait_ ? edge_edge_approaches(inputs_, motion_, candidates_, waiting_)
-                                          : point_triangle_approaches(inputs_, motion_, candidates_, waiting_);
+        CandidateNodeLanes node;
+        for (std::size_t i = 0; i < candidate_lanes; ++i)
+            set_lane(node, i, nodes_of(inputs_.surface, candidates_[waiting_[i < waiting_count_ ? i : 0]]));
+        const auto approach = approaches(waiting_kind_, motion_, node);
         std::uint64_t tested = 0;
         for (std::size_t i = 0; i < waiting_count_; ++i) {
             const Real least = (1 - lane_rounding) * distance_[i] - scale_.radii;
@@ -93,9 +94,8 @@ private:
 
     /// `least`: m, no distance of what they are the middles or parts of is below it.
     bool test(const Candidate& candidate, Real least) {
-        const bool edges = is_edge_edge(candidate.feature);
-        const FeaturePair kind = edges ? FeaturePair::edge_edge : FeaturePair::point_triangle;
-        const std::array<Index, 4> node = edges ? nodes_of_edges(candidate) : nodes_of_point(candidate);
+        const FeaturePair kind = features_of(candidate);
+        const CandidateNodes node = nodes_of(inputs_.surface, candidate);
         FourPoints x, displacement;
         for (std::size_t i = 0; i < 4; ++i) displacement[i] = motion_.of(node[i]);
         const Real approach = greatest_approach(kind, displacement);
@@ -106,33 +106,25 @@ private:
         const KeptApart kept = apart > scale_.radii ? kept_of_radii(scale_) : KeptApart{};
         if (!(approach > slow_fraction * (apart - kept.distance))) return false;
         const std::optional<Real> time = time_of_contact(kind, x, displacement, kept);
-        if (!time || is_own_piece(edges, node)) return true;
+        if (!time || is_own_piece(kind, node)) return true;
         FourPoints met;
         for (std::size_t i = 0; i < 4; ++i) met[i] = x[i] + *time * displacement[i];
         add(candidate, kind, nearest(kind, node, met));
         return true;
     }
 
-    std::array<Index, 4> nodes_of_point(const Candidate& candidate) const {
-        const auto& corner = inputs_.surface.triangles.node[candidate.second];
-        return {inputs_.surface.vertices.node[candidate.first], corner[0], corner[1], corner[2]};
-    }
-    std::array<Index, 4> nodes_of_edges(const Candidate& candidate) const {
-        const auto &a = inputs_.surface.edges.node[candidate.first], &b = inputs_.surface.edges.node[candidate.second];
-        return {a[0], a[1], b[0], b[1]};
-    }
-
-    bool can_move(const std::array<Index, 4>& node) const {
+    bool can_move(const CandidateNodes& node) const {
         return std::any_of(node.begin(), node.end(), [&](Index n) { return inputs_.inverse_mass[n] > 0; });
     }
 
-    bool is_own_piece(bool edges, const std::array<Index, 4>& node) const {
+    bool is_own_piece(FeaturePair kind, const CandidateNodes& node) const {
         if (kind_ != PairKind::self) return false;
-        return edges ? !was_far_at_rest(inputs_, scale_, std::array{node[0], node[1]}, std::array{node[2], node[3]})
-                     : !was_far_at_rest(inputs_, scale_, node[0], std::array{node[1], node[2], node[3]});
+        return kind == FeaturePair::edge_edge
+                   ? !was_far_at_rest(inputs_, scale_, std::array{node[0], node[1]}, std::array{node[2], node[3]})
+                   : !was_far_at_rest(inputs_, scale_, node[0], std::array{node[1], node[2], node[3]});
     }
 
-    static Nearest nearest(FeaturePair kind, const std::array<Index, 4>& node, const FourPoints& x) {
+    static Nearest nearest(FeaturePair kind, const CandidateNodes& node, const FourPoints& x) {
         if (kind == FeaturePair::edge_edge) {
             const SegmentSegment c = closest_points_of_segments(x[0], x[1], x[2], x[3]);
             return {stencil_of_edges(node, c), c.on_first - c.on_second, c.on_second};
@@ -166,10 +158,10 @@ private:
     std::span<const Real> asleep_until_;
     Column<ContactRow>& found_;
     const PairScale scale_;
-    CandidateRows waiting_;
+    std::array<Index, candidate_lanes> waiting_;
     std::array<Real, candidate_lanes> distance_;
     std::size_t waiting_count_ = 0;
-    bool edges_wait_ = false;  // or points
+    FeaturePair waiting_kind_ = FeaturePair::point_triangle;
 };
 
 /// How far a pair can come in this step, m.

@@ -11,7 +11,6 @@
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/look_at_collider.h"
 #include "systems/collision/look_at_cylinder.h"
-#include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/edge_edge_contact.h"
 #include "systems/collision/narrow/point_triangle_contact.h"
 #include "systems/collision/narrow/rest_distance.h"
@@ -25,60 +24,23 @@ namespace {
 // Faces around a place may seem to lie before it by rounding.
 constexpr Real sight_slack = 1e-6;
 
-/// Looks at a range of the candidates of two bodies.
+/// Looks at candidates of two bodies, one by one.
 class PairContacts : PairLook {
 public:
     PairContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs, Index p,
-                 Column<ContactRow>& found, Column<NearCandidate>& near)
-        : PairLook(inputs, settings, h, pairs, p, found),
-          state_(pairs.state[p]),
-          pair_(p),
-          can_meet_((pairs.travel_bound[p] - pairs.travel[p]) / slow_fraction),
-          meeting_(near) {}
+                 Column<ContactRow>& found)
+        : PairLook(inputs, settings, h, pairs, p, found), state_(pairs.state[p]) {}
 
     /// Returns the least distance of what was looked at, m.
     Real run(Range range) {
-        for_each_awake(range, [&](Index c) { settings_.use_budgets ? wait(c) : wake(c); });
-        wake_waiting();
-        for (std::size_t l = 0; l < candidate_lanes; ++l) note_nearest(nearest_lanes_[l]);
+        for_each_awake(range, [&](Index c) { wake(c); });
         return std::sqrt(nearest_squared_) - scale_.radii;
+    }
+    void run(std::span<const Index> rows) {
+        for (const Index c : rows) wake(c);
     }
 
 private:
-    /// Candidates of a kind are looked at together, in their order.
-    void wait(Index c) {
-        const bool edges = is_edge_edge(candidates_[c].feature);
-        if (waiting_count_ == waiting_.size() || edges != edges_wait_) wake_waiting();
-        edges_wait_ = edges;
-        waiting_[waiting_count_++] = c;
-    }
-
-    /// Puts those to sleep again that are too far or too slow to be contacts of this step, and wakes the others.
-    void wake_waiting() {
-        if (waiting_count_ == 0) return;
-        prepare_surfaces();
-        std::fill(waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_count_), waiting_.end(), waiting_[0]);
-        const CandidateDistances found = edges_wait_ ? edge_edge_distances(inputs_, candidates_, waiting_)
-                                                     : point_triangle_distances(inputs_, candidates_, waiting_);
-        const Real zone = edges_wait_ ? scale_.edge_depth : scale_.zone;
-        const Real8 none{}, distance = load(found.distance);
-        const auto near = distance <= none + std::max(near_, zone);
-        // Of surfaces that are apart nothing has come through the other.
-        const auto counts = surfaces_ == Surfaces::apart ? near & within_reach(distance, load(found.speed)) : near;
-        const Real8 until = travel_base_ + distance - (near ? none + scale_.edge_depth : none + zone);
-        const Real8 left = counts ? none + std::numeric_limits<Real>::infinity() : distance * distance;
-        nearest_lanes_ = left < nearest_lanes_ ? left : nearest_lanes_;
-        Lanes<Real, candidate_lanes> asleep;
-        store(until, asleep);
-        for (std::size_t i = 0; i < candidate_lanes; ++i) asleep_until_[waiting_[i]] = asleep[i];
-        const unsigned used = (1U << waiting_count_) - 1;
-        for_each_lane(used & bits_of(distance - scale_.radii < none + can_meet_), [&](std::size_t i) {
-            meeting_.push_back({pair_, waiting_[i], found.distance[i]});
-        });
-        for_each_lane(used & bits_of(counts), [&](std::size_t i) { wake(waiting_[i]); });
-        waiting_count_ = 0;
-    }
-
     void wake(Index c) {
         prepare_surfaces();
         if (is_edge_edge(candidates_[c].feature))
@@ -175,24 +137,22 @@ private:
     }
 
     const PairState state_;
-    const Index pair_;
-    const Real can_meet_;  // m
-    Column<NearCandidate>& meeting_;
-    CandidateRows waiting_;
-    std::size_t waiting_count_ = 0;
-    bool edges_wait_ = false;  // or points
     Real nearest_squared_ = std::numeric_limits<Real>::infinity();
-    Real8 nearest_lanes_ = Real8{} + std::numeric_limits<Real>::infinity();  // the same, of what was put to sleep
     Surfaces surfaces_ = Surfaces::may_overlap;
 };
 
 }  // namespace
 
 Real look_at_candidates(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
-                        PairTable& pairs, Column<ContactRow>& found, Column<NearCandidate>& near) {
+                        PairTable& pairs, Column<ContactRow>& found) {
     if (has_cylinder(inputs, pairs, p)) return look_at_cylinder(inputs, settings, h, p, range, pairs, found);
     if (pairs.kind[p] == PairKind::collider) return look_at_collider(inputs, settings, h, p, range, pairs, found);
-    return PairContacts(inputs, settings, h, pairs, p, found, near).run(range);
+    return PairContacts(inputs, settings, h, pairs, p, found).run(range);
+}
+
+void look_at_candidates(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
+                        std::span<const Index> rows, PairTable& pairs, Column<ContactRow>& found) {
+    PairContacts(inputs, settings, h, pairs, p, found).run(rows);
 }
 
 }  // namespace skerry

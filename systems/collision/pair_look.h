@@ -19,6 +19,30 @@ inline constexpr Index candidates_at_once = 16;
 // Another triangle is nearer to a point only if it is by more than rounding.
 inline constexpr Real nearer_fraction = 1e-9;
 
+/// A bit for each of the candidates from `begin` on that are tested together.
+inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Real travel_bound) {
+    static_assert(candidates_at_once == 2 * element_lanes);
+    const Real* const until = asleep_until.data() + begin;
+    const Real8 bound = Real8{} + travel_bound, first = *reinterpret_cast<const Real8InMemory*>(until),
+                second = *reinterpret_cast<const Real8InMemory*>(until + element_lanes);
+    return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
+}
+
+/// Calls `wake` for each candidate of a range that is awake, in order.
+void for_each_awake(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& wake) {
+    Index c = range.begin;
+    for (; c + candidates_at_once <= range.end; c += candidates_at_once)
+        for_each_lane(awake_lanes(asleep_until, c, travel_bound),
+                      [&](std::size_t l) { wake(c + static_cast<Index>(l)); });
+    for (; c < range.end; ++c)
+        if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) wake(c);
+}
+
+/// m, how far apart features of a pair may be that are looked at closely: it closes by `closing` in this step.
+inline Real nearness(const PairScale& scale, Real closing) {
+    return scale.contact_distance + (closing >= 0 ? closing : 0);
+}
+
 /// One pair in one step; contacts are appended to a list.
 class PairLook {
 public:
@@ -41,13 +65,11 @@ public:
 protected:
     /// Calls `wake` for each candidate of a range that is awake; without budgets for all.
     void for_each_awake(Range range, auto&& wake) const {
-        Index c = range.begin;
         if (settings_.use_budgets) {
-            for (; c + candidates_at_once <= range.end; c += candidates_at_once)
-                for_each_lane(awake_lanes(c), [&](std::size_t l) { wake(c + static_cast<Index>(l)); });
+            skerry::for_each_awake(asleep_until_, range, travel_bound_, wake);
+            return;
         }
-        for (; c < range.end; ++c)
-            if (!settings_.use_budgets || !(travel_bound_ < asleep_until_[c])) wake(c);
+        for (Index c = range.begin; c < range.end; ++c) wake(c);
     }
 
     /// What all candidates of the pair share, once one is awake. Returns whether it was not there yet.
@@ -55,14 +77,12 @@ protected:
         if (prepared_) return false;
         scale_ = pair_scale(inputs_, kind_, first_, second_);
         surface_ = pair_surface(inputs_, kind_, first_, second_);
-        near_ = scale_.contact_distance + (closing_ >= 0 ? closing_ : 0);
+        near_ = nearness(scale_, closing_);
         return prepared_ = true;
     }
 
-    /// Of one or of eight.
-    template <class T>
-    auto within_reach(const T& distance, const T& relative_speed) const {
-        const T gap = distance - scale_.contact_distance;
+    bool within_reach(Real distance, Real relative_speed) const {
+        const Real gap = distance - scale_.contact_distance;
         return gap <= reach(h_, relative_speed, settings_.gravity, scale_.shell);
     }
 
@@ -111,15 +131,6 @@ protected:
     SurfaceProperties surface_;
 
 private:
-    /// A bit for each of the candidates from `begin` on that are tested together.
-    unsigned awake_lanes(Index begin) const {
-        static_assert(candidates_at_once == 2 * element_lanes);
-        const Real* const until = asleep_until_.data() + begin;
-        const Real8 bound = Real8{} + travel_bound_, first = *reinterpret_cast<const Real8InMemory*>(until),
-                    second = *reinterpret_cast<const Real8InMemory*>(until + element_lanes);
-        return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
-    }
-
     bool moves(const Stencil& stencil) const {
         for (std::size_t a = 0; a < 4; ++a)
             if (stencil.weight[a] != 0 && inputs_.inverse_mass[stencil.node[a]] > 0) return true;

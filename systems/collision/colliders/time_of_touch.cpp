@@ -21,7 +21,7 @@ constexpr Real advance = 0.9;
 constexpr int most_rounds = 4096;
 
 // The least distance along an edge is found to this fraction of it.
-constexpr Real place_tolerance = 1e-12;
+constexpr Real least_place_tolerance = 1e-12;
 
 Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3>& weight) {
     return {distance, weight, on.point, on.normal};
@@ -37,7 +37,7 @@ Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Node
     SurfacePoint last = at(1);
     if (!(first.normal.dot(edge) < 0)) return of_surface(first, first.distance, {1, 0, 0});
     if (!(last.normal.dot(edge) > 0)) return of_surface(last, last.distance, {0, 1, 0});
-    while (high - low > place_tolerance) {
+    while (high - low > least_place_tolerance) {
         const Real middle = 0.5 * (low + high);
         const SurfacePoint there = at(middle);
         if (there.normal.dot(edge) < 0) {
