@@ -7,6 +7,7 @@
 // turns, one engine after the other.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 
@@ -29,6 +30,7 @@ struct Options {
     double once = 5;   // CPU s: longer runs are not repeated
     int repeat = 3;
     int finer = 1;
+    std::string setting;  // part of a name
 };
 
 std::vector<Real> moduli_of(const std::string& scene) {
@@ -57,11 +59,20 @@ void write(Real modulus, const Timed& one, std::ofstream& table) {
           << std::flush;
 }
 
+/// "implicit, tolerance 1e-03, 10 ms"
+std::string name_of(const Runner& runner) {
+    std::array<char, 32> step;
+    std::snprintf(step.data(), step.size(), ", %g ms", 1e3 * runner.step);
+    return runner.setting + step.data();
+}
+
 void study(const std::string& name, Real modulus, const Options& options, std::ofstream& table) {
     const PrecisionScene scene = make_stiff_scene(name, modulus, options.finer);
     std::vector<Timed> all;
     for (const Runner& runner : make_runners(scene, options.mujoco, options.drake))
-        if (std::ranges::count(options.engines, runner.engine) > 0) all.push_back({runner, runner.prepared(scene)});
+        if (std::ranges::count(options.engines, runner.engine) > 0 &&
+            name_of(runner).find(options.setting) != std::string::npos)
+            all.push_back({runner, runner.prepared(scene)});
     for (int r = 0; r < options.repeat; ++r)
         for (Timed& one : all) {
             if (r > 0 && (!one.first.finished || one.seconds[0] > options.once)) continue;
@@ -97,6 +108,7 @@ int main(int argc, char** argv) {
     app.add_option("--finer", options.finer, "Into how many parts each edge of the meshes is cut")
         ->check(CLI::Range(1, 8))
         ->capture_default_str();
+    app.add_option("--setting", options.setting, "Only runs in whose setting and step this is: '1e-03, 10 ms'");
     app.add_flag("--quick", quick, "Each run once and for 10 CPU seconds at most");
     CLI11_PARSE(app, argc, argv);
     if (quick) {

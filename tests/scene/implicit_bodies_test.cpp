@@ -252,6 +252,35 @@ TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not
     CHECK(unconverged(SolverMethod::ags) > 0);
 }
 
+TEST_CASE("stiff implicit blocks that land on each other are solved as if they moved as wholes first",
+          "[scene][implicit]") {
+    // few iterations, of which sweeps and Newton steps alone leave 32 regions of the stack, and 3 of two blocks on one
+    // that is held; 3, too, if that moved as a whole
+    const auto unconverged = [](int count, Index most, bool held) {
+        Settings settings;
+        settings.step_size = 0.01;
+        settings.sleep = false;
+        settings.max_iterations = most;
+        World world(settings);
+        const auto stiff = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .friction = 0.5});
+        world.add_collider(Plane{});
+        const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
+        for (int k = 0; k < count; ++k)
+            world.add_body(
+                block,
+                {.material = stiff, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = BodyDynamics::implicit_elastic});
+        std::vector<Index> lowest;
+        for (std::size_t n = 0; n < block.nodes.size(); ++n)
+            if (block.nodes[n].z() < -0.049) lowest.push_back(static_cast<Index>(n));
+        if (held) world.attach(world.bodies()[0], lowest);
+        const StepReport report = world.advance(0.4);
+        REQUIRE(report.ok());
+        return report.unconverged;
+    };
+    CHECK(unconverged(8, 40, false) < 20);
+    CHECK(unconverged(3, 24, true) < 2);
+}
+
 TEST_CASE("a stack at rest whose contacts come and go by the last bits goes on from their impulses",
           "[scene][implicit]") {
     Settings settings;

@@ -66,7 +66,9 @@ public:
     /// The right-hand side: K x. Returns x K x.
     Real set_right(std::span<const Real> x);
 
-    Real softness = 0;  // of D, what contacts give way by in a round
+    Real softness = 0;    // of D, what contacts give way by in a round
+    bool wholes = false;  // bodies that deform move as wholes
+    Column<Vec3> offset;  // m/s, by contact: of its velocity, what is not that of the motion
 
     // by number, m/s and rad/s: the motion that is looked for, that which its impulses make, their difference, and a
     // step with the motion before it
@@ -81,6 +83,11 @@ private:
     Column<Real> square_, inertia_;
     Column<Index> pivot_;
     Real cost_ = 0;
+};
+
+/// Of Newton steps: bodies as they are, and all of them as wholes.
+struct NewtonEquations {
+    BodyEquations own, wholes;
 };
 
 }  // namespace skerry

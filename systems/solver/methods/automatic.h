@@ -1,6 +1,7 @@
 // The default: accelerated sweeps, and Newton steps where a region goes on for longer than they would take.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "systems/solver/methods/ags.h"
@@ -32,6 +33,9 @@ concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;
     { op.newton_step_cost() } -> std::same_as<Real>;
     { op.sweep_cost() } -> std::same_as<Real>;
+    { op.take_rounds_of_wholes(number, number, limit) } -> std::same_as<SolveResult>;
+    { op.moves_wholes() } -> std::same_as<bool>;
+    { op.step_of_wholes_cost() } -> std::same_as<Real>;
 };
 template <class Op>
 concept TakesNewtonSteps = KeepsNewtonMemory<Op> || HasNewtonSteps<Op>;
@@ -59,6 +63,38 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
         return NewtonSteps<Op>(op, op.newton_memory()).run(error, tolerance, limit);
 }
 
+/// A few sweeps at a time, and rounds of bodies that move as wholes after them where sweeps would not be through for
+/// the cost of these, by their pace. `steps`: those that were taken.
+template <HasNewtonSteps Op>
+SolveResult move_wholes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps, const SolveLimits& limits,
+                        Index& steps) {
+    constexpr Index looks = 8, few = 2;  // sweeps from measure to measure, two of which make a look
+    constexpr Real usual_steps = 8, gain = 0.5;
+    const auto result = [&](const SolveResult& of) {
+        return SolveResult{sweeps.iterations() + steps, of.error, of.converged};
+    };
+    const auto sweep = [&] {
+        return sweeps.run_to(std::min(sweeps.iterations() + few, limits.max_iterations - steps));
+    };
+    const Real worth = usual_steps * op.step_of_wholes_cost() / op.sweep_cost();  // sweeps
+    for (Index look = 0; look < looks; ++look) {
+        if (sweep()) return result(test.result());
+        const Real before = test.result().error;
+        if (sweep()) return result(test.result());
+        const Real error = test.result().error;
+        if (worth * std::log(before / error) / few > std::log(error / limits.tolerance)) continue;
+        const Index left = limits.max_iterations - sweeps.iterations() - steps;
+        if (left <= 0) break;
+        const SolveResult rounds = op.take_rounds_of_wholes(error, limits.tolerance, left);
+        steps += rounds.iterations;
+        if (rounds.converged) return result(rounds);
+        test.offer(rounds.error);
+        sweeps.start_anew();
+        if (rounds.error > gain * error) break;
+    }
+    return result(test.result());
+}
+
 /// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again,
 /// or within what sweeps are left, by the pace of the last stretch, the steps are tried from the present impulse; if
 /// they do not finish, sweeps go on, for three times as long as before.
@@ -74,6 +110,11 @@ requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLim
     Real pause = std::max(trial, least_sweeps);
     Real error_before = 1;
     Index iteration_before = 0, newton_steps = 0;
+    if constexpr (HasNewtonSteps<Op>)
+        if (op.moves_wholes()) {
+            const SolveResult result = move_wholes(op, test, sweeps, limits, newton_steps);
+            if (result.converged || !std::isfinite(result.error)) return result;
+        }
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
         bool ended = false;

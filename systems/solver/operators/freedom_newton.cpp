@@ -45,13 +45,15 @@ void FreedomOperator::list_unknowns(BodyEquations& equations) const {
         };
         const auto partner = [&](Index body) { return name[0] == body ? name[1] : name[0]; };
         for (const RigidTerm& term : part(i).terms())
-            if (!walk_.deforms(term.row)) add(term.slot);
+            if (is_whole(equations, term)) add(term.slot);
         const LumpedContact& of = contact(i);
-        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) add(name_of_node(of.node[a]));
+        for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a)
+            if (is_unknown(equations, of.node[a])) add(name_of_node(of.node[a]));
         for (const RigidTerm& term : part(i).terms())
-            if (!walk_.deforms(term.row))
+            if (is_whole(equations, term))
                 list({.body = term.slot, .partner = no_index, .row = term.slot, .rigid = term.row});
         for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) {
+            if (!is_unknown(equations, of.node[a])) continue;
             const Index body = name_of_node(of.node[a]);
             Unknown node{.body = body, .partner = partner(body), .row = of.node[a]};
             node.mass = of.weight[a] / of.step[a];
@@ -98,11 +100,12 @@ void FreedomOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            if (walk_.deforms(term.row)) continue;  // its nodes move as a whole, too
+            if (!is_whole(equations, term)) continue;  // its nodes move as a whole, too
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
         }
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact(i).node_count); ++a) {
+            if (!is_unknown(equations, contact(i).node[a])) continue;
             const Unknown& node = unknown_of(contact(i).node[a]);
             of.add({.part = node.part, .place = node.place, .weight = contact(i).weight[a]});
         }
@@ -137,9 +140,11 @@ bool FreedomOperator::deforms(const Unknown& unknown) const {
 }
 
 BodyEquations& FreedomOperator::newton_memory() {
-    if (newton_) return *newton_;
-    newton_ = pool_->lease();
-    BodyEquations& equations = *newton_;
+    if (!newton_) newton_ = pool_->lease();
+    return std::exchange(own_are_listed_, true) ? newton_->own : list_equations(newton_->own);
+}
+
+BodyEquations& FreedomOperator::list_equations(BodyEquations& equations) {
     equations.set_cost(std::numeric_limits<Real>::infinity());
     if (touches_clusters()) return equations;  // K is known of nodes and of whole bodies only
     list_unknowns(equations);
@@ -259,20 +264,23 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
         if (!(mobility(i) > 0)) continue;
         const auto at = static_cast<std::size_t>(i);
         const Real soft = equations.softness * contact(i).diagonal;
-        const Vec3 u = contact(i).offset.head<3>() + equations.velocity(i, equations.present.span());
+        const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
         const Answer answer = answer_coulomb_at(start[at].head<3>() - u / soft, contact(i).normal.head<3>(), limits(i));
         memory_.impulse[at] = padded(answer.impulse);
         if (!with_matrix) continue;
         equations.answer[at] = answer.derivative;
         if (!answer.open) equations.add(i, answer.derivative / soft);
     }
-    return compare_motion(equations);
+    return compare_motion(equations, start);
 }
 
 /// Velocities of the region and `answered` become those that its impulses make, the right-hand side K times what that
 /// is off from `present` by. Returns what it is off by, J.
-Real FreedomOperator::compare_motion(BodyEquations& equations) {
-    refresh();
+Real FreedomOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
+    if (equations.wholes)
+        push_wholes(start);
+    else
+        refresh();
     gather(equations, equations.answered);
     for (std::size_t k = 0; k < equations.change.size(); ++k)
         equations.change[k] = equations.answered[k] - equations.present[k];
@@ -288,11 +296,11 @@ std::optional<Real> FreedomOperator::go_on_as_before(BodyEquations& equations, s
         if (!(mobility(i) > 0)) continue;
         const auto at = static_cast<std::size_t>(i);
         const Mat3 answer = equations.answer[at] / (equations.softness * contact(i).diagonal);
-        const Vec3 u = contact(i).offset.head<3>() + equations.velocity(i, equations.present.span());
+        const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
         memory_.impulse[at] = padded(Vec3(start[at].head<3>() - answer * u));
         equations.add(i, answer);
     }
-    compare_motion(equations);
+    compare_motion(equations, start);
     if (!equations.factor().solve()) return std::nullopt;
     const std::span<const Real> step = equations.factor().right();
     for (std::size_t k = 0; k < equations.present.size(); ++k) equations.present[k] += step[k];
@@ -354,6 +362,8 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
     std::ranges::copy(memory_.impulse, start.begin());
     std::ranges::copy(memory_.impulse, best.begin());
     gather(equations, equations.present);
+    equations.offset.resize(static_cast<std::size_t>(size()));
+    for (Index i = 0; i < size(); ++i) equations.offset[static_cast<std::size_t>(i)] = contact(i).offset.head<3>();
     SolveResult result{0, error, error <= tolerance};
     equations.softness = most_softness;
     Real error_at_start = error;

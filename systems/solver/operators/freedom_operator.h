@@ -31,7 +31,7 @@ struct FreedomMemory {
     std::array<std::span<Vec4>, workspace_limit> workspace;
 };
 
-using NewtonPool = Pool<BodyEquations>;
+using NewtonPool = Pool<NewtonEquations>;
 using RunPool = Pool<ContactRuns>;
 
 class FreedomOperator {
@@ -83,7 +83,12 @@ public:
     /// impulse stays. They take three vectors of the workspace, and memory when it is asked for first.
     SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
     Real newton_step_cost() { return newton_memory().cost(); }  // ns, of the order of
-    Real sweep_cost() const;                                    // ns, of the order of
+    /// The same as if bodies moved as wholes (5.10), where that is another thing, and known of all of them. Steps stop
+    /// where they gain little.
+    SolveResult take_rounds_of_wholes(Real error, Real tolerance, Index limit);
+    bool moves_wholes() const;
+    Real step_of_wholes_cost() const { return 500 * static_cast<Real>(size()); }  // ns, of the order of
+    Real sweep_cost() const;                                                      // ns, of the order of
 
     /// The split impulse of a contact (push_contact.h): along its normal.
     [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
@@ -110,7 +115,14 @@ private:
     /// What impulses do to the unknowns, from the velocities of the region.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
     Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix);
-    Real compare_motion(BodyEquations& equations);
+    Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
+    BodyEquations& list_equations(BodyEquations& equations);
+    /// Whether a term of a contact is all of its body, and whether a node moves by itself.
+    bool is_whole(const BodyEquations& equations, const RigidTerm& term) const;
+    bool is_unknown(const BodyEquations& equations, Index node) const;
+    BodyEquations* wholes_memory();
+    void start_round_of_wholes(BodyEquations& equations);
+    void push_wholes(std::span<const Vec4> start);
     std::optional<Real> go_on_as_before(BodyEquations& equations, std::span<const Vec4> start);
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
     void list_unknowns(BodyEquations& equations) const;
@@ -144,7 +156,8 @@ private:
     ThroughGroups walk_;
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
-    RunPool::Lease runs_;            // where something deforms
+    RunPool::Lease runs_;  // where something deforms
+    bool own_are_listed_ = false, wholes_are_listed_ = false;
     bool inertia_is_known_ = false;  // to the equations, from the first steps on
 };
 

@@ -97,7 +97,7 @@ struct RegionMemory {
     Column<RegionTask> task;
     LargeRegions large;
     // of regions that touch rigid bodies
-    Pool<BodyEquations> newton;
+    Pool<NewtonEquations> newton;
     Pool<ContactRuns> runs;
     std::atomic<bool> pushed = false;  // some region wrote push_out in this step
 
