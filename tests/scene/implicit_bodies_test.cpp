@@ -254,8 +254,8 @@ TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not
 
 TEST_CASE("stiff implicit blocks that land on each other are solved as if they moved as wholes first",
           "[scene][implicit]") {
-    // few iterations, of which sweeps and Newton steps alone leave 32 regions of the stack, and 3 of two blocks on one
-    // that is held; 3, too, if that moved as a whole
+    // few iterations: sweeps and Newton steps alone leave 32 regions of the stack; of the one whose lowest block is
+    // held 35 are left where that moves as a whole, too
     const auto unconverged = [](int count, Index most, bool held) {
         Settings settings;
         settings.step_size = 0.01;
@@ -278,7 +278,7 @@ TEST_CASE("stiff implicit blocks that land on each other are solved as if they m
         return report.unconverged;
     };
     CHECK(unconverged(8, 40, false) < 20);
-    CHECK(unconverged(3, 24, true) < 2);
+    CHECK(unconverged(6, 20, true) < 18);
 }
 
 TEST_CASE("a stack at rest whose contacts come and go by the last bits goes on from their impulses",

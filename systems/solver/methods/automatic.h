@@ -35,7 +35,6 @@ concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.sweep_cost() } -> std::same_as<Real>;
     { op.take_rounds_of_wholes(number, number, limit) } -> std::same_as<SolveResult>;
     { op.moves_wholes() } -> std::same_as<bool>;
-    { op.step_of_wholes_cost() } -> std::same_as<Real>;
 };
 template <class Op>
 concept TakesNewtonSteps = KeepsNewtonMemory<Op> || HasNewtonSteps<Op>;
@@ -63,29 +62,22 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
         return NewtonSteps<Op>(op, op.newton_memory()).run(error, tolerance, limit);
 }
 
-/// A few sweeps at a time, and rounds of bodies that move as wholes after them where sweeps would not be through for
-/// the cost of these, by their pace. `steps`: those that were taken.
+/// A few sweeps at a time, and rounds of bodies that move as wholes after them, as long as these gain. `steps`: those
+/// that were taken.
 template <HasNewtonSteps Op>
 SolveResult move_wholes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps, const SolveLimits& limits,
                         Index& steps) {
-    constexpr Index looks = 8, few = 2;  // sweeps from measure to measure, two of which make a look
-    constexpr Real usual_steps = 8, gain = 0.5;
+    constexpr Index most_times = 8, few = 4;
+    constexpr Real gain = 0.5;
     const auto result = [&](const SolveResult& of) {
         return SolveResult{sweeps.iterations() + steps, of.error, of.converged};
     };
-    const auto sweep = [&] {
-        return sweeps.run_to(std::min(sweeps.iterations() + few, limits.max_iterations - steps));
-    };
-    const Real worth = usual_steps * op.step_of_wholes_cost() / op.sweep_cost();  // sweeps
-    for (Index look = 0; look < looks; ++look) {
-        if (sweep()) return result(test.result());
-        const Real before = test.result().error;
-        if (sweep()) return result(test.result());
+    for (Index time = 0; time < most_times; ++time) {
+        const Index left = limits.max_iterations - steps;
+        if (sweeps.run_to(std::min(sweeps.iterations() + few, left))) break;
+        if (sweeps.iterations() >= left) break;
         const Real error = test.result().error;
-        if (worth * std::log(before / error) / few > std::log(error / limits.tolerance)) continue;
-        const Index left = limits.max_iterations - sweeps.iterations() - steps;
-        if (left <= 0) break;
-        const SolveResult rounds = op.take_rounds_of_wholes(error, limits.tolerance, left);
+        const SolveResult rounds = op.take_rounds_of_wholes(error, limits.tolerance, left - sweeps.iterations());
         steps += rounds.iterations;
         if (rounds.converged) return result(rounds);
         test.offer(rounds.error);

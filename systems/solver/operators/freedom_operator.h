@@ -87,8 +87,7 @@ public:
     /// where they gain little.
     SolveResult take_rounds_of_wholes(Real error, Real tolerance, Index limit);
     bool moves_wholes() const;
-    Real step_of_wholes_cost() const { return 500 * static_cast<Real>(size()); }  // ns, of the order of
-    Real sweep_cost() const;                                                      // ns, of the order of
+    Real sweep_cost() const;  // ns, of the order of
 
     /// The split impulse of a contact (push_contact.h): along its normal.
     [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
