@@ -26,8 +26,9 @@ struct Hit {
     World world;
     BodyHandle stiff, soft;
 
-    explicit Hit(const Settings& settings, Real density = 1000, const Vec3& spin = {1, 2, 3}) : world(settings) {
-        const auto steel = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .density = density});
+    explicit Hit(const Settings& settings, Real density = 1000, const Vec3& spin = {1, 2, 3}, Real modulus = 1e8)
+        : world(settings) {
+        const auto steel = world.add_material({.young_modulus = modulus, .poisson_ratio = 0.3, .density = density});
         const auto rubber = world.add_material({.young_modulus = 1e5, .loss_factor = 0, .bulk_viscosity = 0});
         stiff = world.add_body(
             cube, {.material = steel, .angular_velocity = spin, .dynamics = BodyDynamics::implicit_elastic});
@@ -121,19 +122,21 @@ TEST_CASE("a long step ends as one implicit step with the sum of all impulses do
 TEST_CASE("long steps keep momenta, gain no energy, and nothing overlaps", "[scene][implicit]") {
     const Real density = GENERATE(3000.0, 300.0, 30.0);
     const int short_steps = GENERATE(1, 7, 40);
-    CAPTURE(density, short_steps);
-    Hit scene(settings_of(h, short_steps * h, Vec3::Zero()), density, Vec3::Zero());
+    const Real modulus = GENERATE(1e8, 1e6);
+    CAPTURE(density, short_steps, modulus);
+    Hit scene(settings_of(h, short_steps * h, Vec3::Zero()), density, Vec3::Zero(), modulus);
     const WorldReport before = scene.world.report();
-    Real deepest = 0;
+    Real deepest = 0;  // m, in the distance that is kept
     for (int k = 0; k < 30; ++k) {
         const StepReport report = scene.world.advance(40 * h);
         REQUIRE(report.ok());
-        deepest = std::max(deepest, report.max_penetration);
+        deepest = std::max(deepest, report.max_gap_violation);
         const WorldReport now = scene.world.report();
         REQUIRE((now.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
         REQUIRE(now.energy.kinetic + now.energy.elastic < before.energy.kinetic * (1 + 1e-3));
     }
-    CHECK(deepest == 0);
+    // a step goes 0.2 mm: pressed in is half of one in short steps, too, where contacts are new
+    CHECK(deepest < 1.5e-4);
     CHECK(scene.world.report().mean_contacts > 0);
 }
 
