@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "components/column.h"
@@ -37,6 +38,22 @@ struct LeafBoxes {
     std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
 };
 
+/// The features that the triangles of a leaf own: a search has them in one place, not by way of rows of TriangleTable.
+struct LeafFeatures {
+    static constexpr std::size_t most = 3 * leaf_lanes;
+    struct Edge {
+        Index row;  // of EdgeTable
+        std::array<Index, 2> node;
+    };
+    struct Point {
+        Index row;  // of VertexTable
+        Index node;
+    };
+    Index edge_count = 0, point_count = 0;
+    std::array<Edge, most> edge{};
+    std::array<Point, most> point{};
+};
+
 /// Derived: Model::rebuild_outlines makes both tables.
 struct BvhTable {
     Column<Aabb> box;      // m, refit when a pair of its body is looked at again
@@ -50,10 +67,12 @@ struct BvhTable {
 
 struct BvhLeafTable {
     Column<LeafTriangles> triangle;
+    Column<LeafFeatures> features;
     Column<LeafBoxes> box;  // refit with those of the nodes
 
     void for_each_column(auto&& visit) {
         visit("triangle", triangle, ColumnRole::derived);
+        visit("features", features, ColumnRole::derived);
         visit("box", box, ColumnRole::scratch);
     }
 };

@@ -42,6 +42,7 @@ struct CollisionWorld {
                 material,
                 bvh.node,
                 bvh_leaves.triangle,
+                bvh_leaves.features,
                 nodes.position,
                 nodes.velocity,
                 nodes.rest_position};
@@ -148,6 +149,7 @@ private:
         body.edges[row] = ranges.edges;
         body.vertices[row] = ranges.vertices;
         const BvhRanges tree = append_bvh(ranges.triangles, surface.triangles.node, nodes.position, bvh, bvh_leaves);
+        append_leaf_features(tree.leaves, surface.triangles, bvh_leaves);
         body.bvh_nodes[row] = tree.nodes;
         body.bvh_leaves[row] = tree.leaves;
         body.contact_distance[row] = contact_distance;

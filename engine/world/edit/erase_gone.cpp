@@ -78,6 +78,18 @@ private:
         }
         for (LeafTriangles& leaf : rows_of(model_.bvh_leaves.triangle, has_.bvh_leaves))
             for (Index& t : leaf) lower(t, down_.triangles);
+        for (LeafFeatures& features : rows_of(model_.bvh_leaves.features, has_.bvh_leaves)) {
+            for (Index i = 0; i < features.edge_count; ++i) {
+                LeafFeatures::Edge& edge = features.edge[static_cast<std::size_t>(i)];
+                lower(edge.row, down_.edges);
+                for (Index& node : edge.node) lower(node, down_.nodes);
+            }
+            for (Index i = 0; i < features.point_count; ++i) {
+                LeafFeatures::Point& point = features.point[static_cast<std::size_t>(i)];
+                lower(point.row, down_.vertices);
+                lower(point.node, down_.nodes);
+            }
+        }
     }
 
     void ranges() const {

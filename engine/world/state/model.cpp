@@ -224,6 +224,7 @@ void Model::append_outline(std::size_t body) {
     bodies.edges[body] = ranges.edges;
     bodies.vertices[body] = ranges.vertices;
     const BvhRanges tree = append_bvh(ranges.triangles, surface.triangles.node, nodes.rest_position, bvh, bvh_leaves);
+    append_leaf_features(tree.leaves, surface.triangles, bvh_leaves);
     bodies.bvh_nodes[body] = tree.nodes;
     bodies.bvh_leaves[body] = tree.leaves;
 }

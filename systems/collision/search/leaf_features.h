@@ -1,7 +1,9 @@
 // The features of a leaf side by side, for comparing one with eight of them.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <span>
 
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/collision/tree/leaf_boxes.h"
@@ -38,43 +40,91 @@ struct LeafCorners {
     }
 };
 
-/// The edges that the triangles of a leaf own.
-struct LeafEdges {
-    static constexpr std::size_t most = 3 * leaf_lanes;
-    Index leaf = no_index;         // row of BvhLeafTable
-    std::array<LeafBoxes, 3> box;  // eight at a time; lanes behind the last edge are empty
-    std::array<std::array<PointLanes, 2>, 3> end;
-    std::array<Index, most> edge;  // row of EdgeTable
-    std::array<std::array<Index, 2>, most> node;
-    std::size_t count = 0;
+/// Eight points of nodes.
+inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::array<Index, leaf_lanes>& node) {
+    PointLanes lanes;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto at = [&](std::size_t l) {
+            return position[static_cast<std::size_t>(node[l])][static_cast<Index>(i)];
+        };
+        store(Real8{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)}, lanes[i]);
+    }
+    return lanes;
+}
+
+/// m^2, by lane, of points and a box, 0 within it.
+inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
+    const Real8 none{};
+    Real8 sum{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Real8 at = load(point[i]), above = at - to.upper[static_cast<Index>(i)],
+                    below = to.lower[static_cast<Index>(i)] - at, nearer = above > below ? above : below,
+                    gap = nearer > none ? nearer : none;
+        sum += gap * gap;
+    }
+    return sum;
+}
+
+/// Groups of eight features, of which the last may be shorter.
+inline std::size_t groups_of(Index count) {
+    return (static_cast<std::size_t>(count) + leaf_lanes - 1) / leaf_lanes;
+}
+inline unsigned used_lanes(Index count, std::size_t group) {
+    const std::size_t left = static_cast<std::size_t>(count) - leaf_lanes * group;
+    return left < leaf_lanes ? (1U << left) - 1 : (1U << leaf_lanes) - 1;
+}
+
+/// The points that the triangles of a leaf own.
+struct LeafPoints {
+    Index leaf = no_index;  // row of BvhLeafTable
+    const LeafFeatures* list = nullptr;
+    std::array<PointLanes, 3> at;  // eight at a time; lanes behind the last repeat it
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
-        count = 0;
-        const TriangleTable& table = inputs.surface.triangles;
-        for (const Index row : inputs.leaf_triangle[static_cast<std::size_t>(leaf)]) {
-            if (row == no_index) break;
-            for (std::size_t k = 0; k < 3; ++k)
-                if (table.owned_edges[row] >> k & 1)
-                    append(inputs, table.edge[row][k], {table.node[row][k], table.node[row][(k + 1) % 3]});
-        }
-        for (std::size_t i = count; i % leaf_lanes != 0; ++i) {
-            set_lane(box[i / leaf_lanes], i % leaf_lanes, empty_box());
-            for (PointLanes& points : end[i / leaf_lanes]) set_lane(points, i % leaf_lanes, Vec3::Zero());
+        list = &inputs.leaf_features[static_cast<std::size_t>(leaf)];
+        for (std::size_t group = 0; group < groups(); ++group) {
+            std::array<Index, leaf_lanes> node;
+            for (std::size_t l = 0; l < leaf_lanes; ++l)
+                node[l] =
+                    list->point[std::min(leaf_lanes * group + l, static_cast<std::size_t>(list->point_count) - 1)].node;
+            at[group] = lanes_of_points(inputs.position, node);
         }
     }
-    std::size_t groups() const { return (count + leaf_lanes - 1) / leaf_lanes; }
+    std::size_t groups() const { return groups_of(list->point_count); }
+    unsigned used(std::size_t group) const { return used_lanes(list->point_count, group); }
+};
 
-private:
-    void append(const CollisionInputs& inputs, Index row, const std::array<Index, 2>& ends) {
-        const Vec3 &a = inputs.position[ends[0]], &b = inputs.position[ends[1]];
-        const std::size_t group = count / leaf_lanes, lane = count % leaf_lanes;
-        set_lane(box[group], lane, {a.cwiseMin(b), a.cwiseMax(b)});
-        set_lane(end[group][0], lane, a);
-        set_lane(end[group][1], lane, b);
-        edge[count] = row;
-        node[count++] = ends;
+/// The edges that the triangles of a leaf own.
+struct LeafEdges {
+    Index leaf = no_index;  // row of BvhLeafTable
+    const LeafFeatures* list = nullptr;
+    std::array<LeafBoxes, 3> box;  // eight at a time; lanes behind the last edge repeat it
+    std::array<std::array<PointLanes, 2>, 3> end;
+
+    void fill(const CollisionInputs& inputs, Index of_leaf) {
+        leaf = of_leaf;
+        list = &inputs.leaf_features[static_cast<std::size_t>(leaf)];
+        for (std::size_t group = 0; group < groups(); ++group) {
+            std::array<std::array<Index, leaf_lanes>, 2> node;
+            for (std::size_t l = 0; l < leaf_lanes; ++l) {
+                const auto& edge =
+                    list->edge[std::min(leaf_lanes * group + l, static_cast<std::size_t>(list->edge_count) - 1)];
+                for (std::size_t k = 0; k < 2; ++k) node[k][l] = edge.node[k];
+            }
+            for (std::size_t k = 0; k < 2; ++k) end[group][k] = lanes_of_points(inputs.position, node[k]);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const Real8 a = load(end[group][0][i]), b = load(end[group][1][i]);
+                store(a < b ? a : b, box[group].lower[i]);
+                store(a < b ? b : a, box[group].upper[i]);
+            }
+        }
     }
+    std::size_t count() const { return static_cast<std::size_t>(list->edge_count); }
+    std::size_t groups() const { return groups_of(list->edge_count); }
+    unsigned used(std::size_t group) const { return used_lanes(list->edge_count, group); }
+    Index row(std::size_t i) const { return list->edge[i].row; }
+    const std::array<Index, 2>& node(std::size_t i) const { return list->edge[i].node; }
 };
 
 }  // namespace skerry

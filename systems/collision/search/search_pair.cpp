@@ -22,6 +22,11 @@ namespace {
 // pairs.
 constexpr std::size_t max_waiting = 192;
 
+// Two bodies that lie on each other do so with some ten leaves.
+constexpr std::size_t kept_leaves = 16;
+template <class Features>
+using KeptLeaves = std::array<Features, kept_leaves>;
+
 constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
 
 template <std::size_t Size>
@@ -98,72 +103,71 @@ private:
     const LeafBoxes& leaf_box(Index a) const { return boxes_.leaf[node(a).leaf]; }
     const LeafTriangles& leaf_triangle(Index a) const { return inputs_.leaf_triangle[node(a).leaf]; }
 
-    /// The lanes of a leaf that are near a box.
-    unsigned lanes_near(Index leaf, const Aabb& box, Real radius_squared) const {
-        return lanes_below(distance_squared(leaf_box(leaf), box), radius_squared);
-    }
-
     void compare_leaves(Index a, Index b) {
-        const Aabb &box_a = boxes_.node[a], &box_b = boxes_.node[b];
-        const unsigned of_a = lanes_near(a, box_b, radius_squared_);
-        if (of_a == 0) return;
-        const unsigned of_b = lanes_near(b, box_a, radius_squared_);
         // A sphere, or the ball around a cylinder, is the point that is held against faces and axes: where a node of
         // them is nearest, that finds it, too, and a node within a flat face holds nothing back. Of two spheres the
         // first is held against the second.
-        if (!second_is_point_ || first_is_point_) compare_points(a, of_a, b, corners_[1], false);
-        if (!first_is_point_) compare_points(b, of_b, a, corners_[0], true);
-        const LeafEdges &own = edges_of(a, edges_[0]), &other = edges_of(b, edges_[1]);
+        if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
+        if (!first_is_point_) compare_points(b, a, true);
+        const LeafEdges &own = features_of(a, edges_[0]), &other = features_of(b, edges_[1]);
         std::array<unsigned, 3> near;
-        if (!any_near(other, box_a, near)) return;
+        if (!any_near(other, boxes_.node[a], near)) return;
         for (std::size_t group = 0; group < own.groups(); ++group)
-            for_each_lane(lanes_below(distance_squared(own.box[group], box_b), edge_radius_squared_),
-                          [&](std::size_t lane) { compare_edge(own, leaf_lanes * group + lane, other, near); });
+            for_each_lane(
+                own.used(group) & lanes_below(distance_squared(own.box[group], boxes_.node[b]), edge_radius_squared_),
+                [&](std::size_t lane) { compare_edge(own, leaf_lanes * group + lane, other, near); });
     }
 
     /// A leaf with itself: points against all triangles, and every pair of edges once.
     void compare_within(Index a) {
-        compare_points(a, (1U << node(a).count) - 1, a, corners_[0], false);
-        const LeafEdges& own = edges_of(a, edges_[0]);
-        for (std::size_t i = 0; i < own.count; ++i) {
+        compare_points(a, a, false);
+        const LeafEdges& own = features_of(a, edges_[0]);
+        for (std::size_t i = 0; i < own.count(); ++i) {
             std::array<unsigned, 3> later;
             for (unsigned group = 0; group < later.size(); ++group) {
                 const unsigned first = leaf_lanes * group;
                 later[group] = i < first ? all_lanes : (all_lanes << (i - first)) << 1;
+                if (group < own.groups()) later[group] &= own.used(group);
             }
             compare_edge(own, i, own, later);
         }
     }
 
-    const LeafEdges& edges_of(Index a, LeafEdges& kept) const {
-        if (kept.leaf != node(a).leaf) kept.fill(inputs_, node(a).leaf);
-        return kept;
+    template <class Features>
+    const Features& features_of(Index a, KeptLeaves<Features>& kept) const {
+        const Index leaf = node(a).leaf;
+        Features& features = kept[static_cast<std::size_t>(leaf) % kept_leaves];
+        if (features.leaf != leaf) features.fill(inputs_, leaf);
+        return features;
     }
 
     /// Which edges are near a box.
     bool any_near(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
         unsigned any = 0;
         for (std::size_t group = 0; group < edges.groups(); ++group)
-            any |= near[group] = lanes_below(distance_squared(edges.box[group], box), edge_radius_squared_);
+            any |= near[group] =
+                edges.used(group) & lanes_below(distance_squared(edges.box[group], box), edge_radius_squared_);
         return any != 0;
     }
 
-    /// The points that the triangles in `lanes` own, with the triangles of the other leaf.
-    void compare_points(Index owner, unsigned lanes, Index other, LeafCorners& corners, bool of_second) {
-        for_each_lane(lanes, [&](std::size_t lane) {
-            const Index row = leaf_triangle(owner)[lane];
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (!(triangle_.owned_vertices[row] >> k & 1)) continue;
-                const Index n = triangle_.node[row][k];
-                const unsigned near = lanes_near(other, {position(n), position(n)}, radius_squared_);
-                if (near != 0) compare_point(n, triangle_.vertex[row][k], near, other, corners, of_second);
-            }
-        });
+    /// The points of one leaf with the triangles of another.
+    void compare_points(Index owner, Index other, bool of_second) {
+        const LeafPoints& points = features_of(owner, points_[of_second]);
+        for (std::size_t group = 0; group < points.groups(); ++group)
+            for_each_lane(
+                points.used(group) &
+                    lanes_below(distance_squared(points.at[group], boxes_.node[other]), radius_squared_),
+                [&](std::size_t lane) {
+                    const LeafFeatures::Point& point = points.list->point[leaf_lanes * group + lane];
+                    const Vec3& at = position(point.node);
+                    const unsigned near = lanes_below(distance_squared(leaf_box(other), {at, at}), radius_squared_);
+                    if (near != 0) compare_point(point.node, point.row, near, other, of_second);
+                });
     }
 
     /// A point with some triangles of a leaf.
-    void compare_point(Index n, Index vertex, unsigned near, Index other, LeafCorners& corners, bool of_second) {
-        if (corners.leaf != node(other).leaf) corners.fill(inputs_, node(other).leaf);
+    void compare_point(Index n, Index vertex, unsigned near, Index other, bool of_second) {
+        const LeafCorners& corners = features_of(other, corners_[!of_second]);
         Lanes<Real, leaf_lanes> squared;
         store(point_triangle_distance(spread(position(n)), load(corners.corner[0]), load(corners.corner[1]),
                                       load(corners.corner[2]))
@@ -182,7 +186,7 @@ private:
     /// Edge i of one leaf with some of another.
     void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& with) {
         const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
-        const LaneVec3<Real8> a0 = spread(position(a.node[i][0])), a1 = spread(position(a.node[i][1]));
+        const LaneVec3<Real8> a0 = spread(position(a.node(i)[0])), a1 = spread(position(a.node(i)[1]));
         for (std::size_t group = 0; group < b.groups(); ++group) {
             unsigned lanes = with[group];
             if (lanes != 0) lanes &= lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
@@ -191,7 +195,7 @@ private:
             store(segment_distance_squared(a0, a1, load(b.end[group][0]), load(b.end[group][1])), squared);
             for_each_lane(lanes & lanes_below(load(squared), edge_radius_squared_), [&](std::size_t lane) {
                 const std::size_t j = leaf_lanes * group + lane;
-                if (!self_ || !excluded_at_rest(a.node[i], b.node[j])) add_edges(a.edge[i], b.edge[j], squared[lane]);
+                if (!self_ || !excluded_at_rest(a.node(i), b.node(j))) add_edges(a.row(i), b.row(j), squared[lane]);
             });
         }
     }
@@ -239,9 +243,10 @@ private:
     const Real edge_radius_squared_;  // edges are looked at less deep
     const bool self_;
     const bool first_is_point_, second_is_point_;  // the core of a sphere or cylinder
-    // of the leaves last at hand, of the first tree and of the second: of two leaves compared often one stays
-    std::array<LeafEdges, 2> edges_;
-    std::array<LeafCorners, 2> corners_;
+    // of the leaves at hand, of the first tree and of the second: each is compared with several of the other
+    std::array<KeptLeaves<LeafPoints>, 2> points_;
+    std::array<KeptLeaves<LeafEdges>, 2> edges_;
+    std::array<KeptLeaves<LeafCorners>, 2> corners_;
     std::array<std::array<Index, 2>, max_waiting> waiting_;
     std::size_t waiting_count_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "components/check.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
 
@@ -118,6 +119,26 @@ BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> tria
                            {first_leaf, static_cast<Index>(leaves.triangle.size())}};
     refit_bvh(ranges.nodes, bvh.node, leaves.triangle, triangle_node, position, bvh.box, leaves.box);
     return ranges;
+}
+
+void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhLeafTable& leaves) {
+    SKERRY_CHECK(leaves.features.size() == static_cast<std::size_t>(bvh_leaves.begin));
+    for (Index leaf = bvh_leaves.begin; leaf < bvh_leaves.end; ++leaf) {
+        LeafFeatures features;
+        for (const Index row : leaves.triangle[leaf]) {
+            if (row == no_index) break;
+            const auto& node = triangles.node[row];
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (triangles.owned_edges[row] >> k & 1)
+                    features.edge[static_cast<std::size_t>(features.edge_count++)] = {triangles.edge[row][k],
+                                                                                      {node[k], node[(k + 1) % 3]}};
+                if (triangles.owned_vertices[row] >> k & 1)
+                    features.point[static_cast<std::size_t>(features.point_count++)] = {triangles.vertex[row][k],
+                                                                                        node[k]};
+            }
+        }
+        leaves.features.push_back(features);
+    }
 }
 
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafTriangles> leaf_triangle,

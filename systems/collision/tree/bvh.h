@@ -20,6 +20,9 @@ struct BvhRanges {
 BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node,
                      std::span<const Vec3> position, BvhTable& bvh, BvhLeafTable& leaves);
 
+/// Lists what the triangles of these leaves own; they are the last rows.
+void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhLeafTable& leaves);
+
 /// Fits the boxes of one tree around the present positions, bottom-up.
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafTriangles> leaf_triangle,
                std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, std::span<Aabb> box,

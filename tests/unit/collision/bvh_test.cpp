@@ -1,5 +1,6 @@
 #include "systems/collision/tree/bvh.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <set>
@@ -52,6 +53,33 @@ TEST_CASE("a tree holds each triangle of its body in one lane of one leaf", "[un
     }
     CHECK(static_cast<Index>(seen.size()) == triangles.size());
     CHECK(world.bvh.node[nodes.begin].skip == nodes.end);
+}
+
+TEST_CASE("the leaves of a tree own each edge and each point of their body once", "[unit]") {
+    test::CollisionWorld world;
+    world.add_solid(test::ball_mesh(1, 3), world.at(Vec3::Zero()), 0);
+    const Index b = world.add_solid(test::ball_mesh(1, 4), world.at({3, 0, 0}), 0);
+    const SurfaceTables& surface = world.surface;
+    std::set<Index> edges, points;
+    const Range leaves = world.body.bvh_leaves[b];
+    for (Index leaf = leaves.begin; leaf < leaves.end; ++leaf) {
+        const LeafFeatures& features = world.bvh_leaves.features[leaf];
+        for (std::size_t i = 0; i < static_cast<std::size_t>(features.edge_count); ++i) {
+            const LeafFeatures::Edge& edge = features.edge[i];
+            CHECK(edges.insert(edge.row).second);
+            const auto& ends = surface.edges.node[edge.row];
+            CHECK(std::is_permutation(ends.begin(), ends.end(), edge.node.begin()));
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(features.point_count); ++i) {
+            const LeafFeatures::Point& point = features.point[i];
+            CHECK(points.insert(point.row).second);
+            CHECK(surface.vertices.node[point.row] == point.node);
+        }
+    }
+    CHECK(static_cast<Index>(edges.size()) == world.body.edges[b].size());
+    CHECK(*edges.begin() == world.body.edges[b].begin);
+    CHECK(static_cast<Index>(points.size()) == world.body.vertices[b].size());
+    CHECK(*points.begin() == world.body.vertices[b].begin);
 }
 
 TEST_CASE("after a refit every box holds all triangles below it, and no more than that", "[unit]") {
