@@ -66,6 +66,7 @@ std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
         }
         zone->tetrahedra.push_back(static_cast<Index>(t));
     }
+    if (body.element == ElementKind::smoothed) part_tiny_tetrahedra({body.tetrahedra, body.nodes}, zones);
     return zones;
 }
 
