@@ -77,6 +77,9 @@ struct BodyTable {
     Column<LevelMask> active;
     // at rest: left out of the step until something touches it
     Column<std::uint8_t> asleep;
+    // 0, or the steps for which it is taken to be as it was made but for a motion without a turn, so that its elements
+    // do nothing, until that is looked at again (find_unstrained.h)
+    Column<std::uint16_t> unstrained;
     // s, for how long the body has been still (update_sleep.h); and, with the engine's own limits, how far a node has
     // come from its still_position, m: in this half of sleep_time, below 0 once it has come nearer again; in the one
     // before
@@ -135,6 +138,7 @@ struct BodyTable {
         visit("has_touched", has_touched, ColumnRole::derived);
         visit("active", active, ColumnRole::scratch);
         visit("asleep", asleep, ColumnRole::state);
+        visit("unstrained", unstrained, ColumnRole::memory);
         visit("still_time", still_time, ColumnRole::state);
         visit("drift", drift, ColumnRole::state);
         visit("drift_before", drift_before, ColumnRole::state);

@@ -44,18 +44,19 @@ struct ElementSchedule {
     std::span<const Index> body = {};               // by block
     std::span<const std::uint8_t> body_level = {};  // by body
     ActiveLevels active = {};
-    std::span<const std::uint8_t> body_asleep = {};  // by body; empty: none
-    std::span<const std::uint8_t> body_cap = {};     // by body: highest level in the world; empty: none is too high
+    std::span<const std::uint8_t> body_asleep = {};       // by body; empty: none
+    std::span<const std::uint16_t> body_unstrained = {};  // BodyTable; empty: elements that do nothing count, too
+    std::span<const std::uint8_t> body_cap = {};  // by body: highest level in the world; empty: none is too high
     // by block: contacts act on its nodes; by body: whether any block is touched; empty: none
     std::span<const std::uint8_t> touched = {}, body_has_touched = {};
 
     Real duration(std::size_t block) const {
-        if (!asleep(block) && !touched.empty() && touched[block]) return 1;
+        if (!left_out(block) && !touched.empty() && touched[block]) return 1;
         return duration_of_level(block);
     }
     /// The same of a block that is not touched.
     Real duration_of_level(std::size_t block) const {
-        if (asleep(block)) return 0;
+        if (left_out(block)) return 0;
         return level.empty() ? 1 : active.duration[level_in_world(block)];
     }
     /// Of a block that is not touched, where blocks have levels.
@@ -72,8 +73,9 @@ struct ElementSchedule {
     }
 
 private:
-    bool asleep(std::size_t block) const {
-        return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[block])];
+    bool left_out(std::size_t block) const {
+        return (!body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[block])]) ||
+               (!body_unstrained.empty() && body_unstrained[static_cast<std::size_t>(body[block])]);
     }
 };
 

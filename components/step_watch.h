@@ -29,7 +29,8 @@ struct StepLook {
 /// The looks go round over all bodies. State, of which the hash needs only the steps: what is done of a look before and
 /// after a try that is given up differs, but is made up for by the next one.
 struct StepWatch {
-    /// Of bodies that rest, whose shape does not change, and of those that somebody else has looked at.
+    /// Of bodies that rest or are unstrained, whose shape does not change, and of those that somebody else has looked
+    /// at.
     static constexpr Real not_looked_at = -1;
 
     std::uint64_t steps = 0;  // of the present round

@@ -141,6 +141,7 @@ Json statistics_of(const RunResult& result) {
           {"candidates", r.candidates},
           {"inline_steps", r.inline_steps},
           {"resting_steps", r.resting_steps},
+          {"unstrained", r.unstrained},
           {"crossing_tests", r.crossing_tests},
           {"crossings_found", r.crossings_found},
           {"crossed", r.crossed}}},

@@ -202,6 +202,7 @@ struct RunCounters {
     std::uint64_t steps = 0;
     std::uint64_t inline_steps = 0;   // too small to pay for threads
     std::uint64_t resting_steps = 0;  // all rested and nothing moved, so that no stage had anything to do
+    std::uint64_t unstrained = 0;     // bodies of all steps that only flew, so that their elements were left out
     std::uint64_t shortened = 0;      // steps tried again at half the length
     std::uint64_t retried = 0;        // steps tried again with what crossed in them as contacts
     std::uint64_t limited = 0;        // steps shorter than step_size of the settings, which a body does not stand

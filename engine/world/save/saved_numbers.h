@@ -244,6 +244,7 @@ struct MembersOf<RunCounters> {
         return std::tuple{Member{"steps", &S::steps},
                           Member{"inline_steps", &S::inline_steps},
                           Member{"resting_steps", &S::resting_steps},
+                          Member{"unstrained", &S::unstrained},
                           Member{"shortened", &S::shortened},
                           Member{"retried", &S::retried},
                           Member{"limited", &S::limited},
@@ -276,7 +277,7 @@ struct MembersOf<RunCounters> {
                           Member{"start_penetration", &S::start_penetration},
                           Member{"start_gap_violation", &S::start_gap_violation}};
     }
-    static_assert(sizeof(RunCounters) == 33 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(RunCounters) == 34 * sizeof(Real), "a member is not saved");
 };
 /// All but step_size, which may be none.
 template <>

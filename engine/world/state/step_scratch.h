@@ -63,9 +63,10 @@ struct StepFindings {
     ExternalWork external;
     TakenByRest rest;
     JointMeasures joints;
-    Real relaxed = 0;  // J, taken out by what relaxes in the elements in this step
-    Real viscous = 0;  // J, by the viscosity of fine elements among coarse in this step
-    Real damped = 0;   // J, taken out by damping in this step
+    Index unstrained = 0;  // bodies whose elements do nothing in this step
+    Real relaxed = 0;      // J, taken out by what relaxes in the elements in this step
+    Real viscous = 0;      // J, by the viscosity of fine elements among coarse in this step
+    Real damped = 0;       // J, taken out by damping in this step
     // J, brought in by clusters that follow what has stiffened before this try
     Real stiffened = 0;
     StrainFindings strained;  // by the implicit steps of bodies

@@ -13,6 +13,7 @@
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
+#include "systems/dynamics/elements/find_unstrained.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/joints/prepare_joints.h"
@@ -64,6 +65,9 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
     NodeBlockTable& k = m.node_blocks;
     const StepParameters& p = w.scratch.parameters;
     const auto if_unknown = only_if([](bool known) { return !known; }, value(p.forces_known));
+    g.stage_with_result("dynamics/find_unstrained", w.scratch.findings.unstrained, find_unstrained,
+                        inputs<UnstrainedInputs>(e, m.element_nodes, m.materials, b, n),
+                        outputs<UnstrainedOutputs>(b, e), if_unknown);
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
                         read(n.position), read(n.velocity), value(p.kick), value(p.kick_over_last), read(e.rotation),

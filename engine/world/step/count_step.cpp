@@ -51,6 +51,7 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
     counters.tangent_factors += findings.strained.newton.factors;
     counters.inline_steps += scratch.ran_inline;
     counters.resting_steps += scratch.left_out;
+    counters.unstrained += static_cast<std::uint64_t>(findings.unstrained);
     counters.dissipated += findings.measures.dissipated + findings.damped + findings.strained.damped +
                            findings.relaxed + findings.viscous + findings.rest.energy;
     counters.max_penetration = std::max(counters.max_penetration, findings.measures.max_penetration);

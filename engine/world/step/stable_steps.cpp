@@ -197,8 +197,9 @@ void keep_shapes(Model& model, std::uint64_t round) {
     for (; watch.kept < rows && (kept < watch.target || pieces_of(watch.kept) == 0); ++watch.kept) {
         const auto b = static_cast<std::size_t>(watch.kept);
         kept += pieces_of(watch.kept);
-        watch.step[b] = bodies.asleep[b] ? StepWatch::not_looked_at : 0;
-        if (bodies.asleep[b]) continue;
+        const bool keeps_its_shape = bodies.asleep[b] || bodies.unstrained[b] > 0;
+        watch.step[b] = keeps_its_shape ? StepWatch::not_looked_at : 0;
+        if (keeps_its_shape) continue;
         std::ranges::copy(rows_of(model.nodes.position, bodies.nodes[b]),
                           rows_of(watch.position, bodies.nodes[b]).begin());
         std::ranges::fill(rows_of(watch.stiffness_sum, bodies.nodes[b]), Real(0));

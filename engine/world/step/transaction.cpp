@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "engine/world/step/step.h"
 #include "systems/dynamics/elements/keep_memory.h"
@@ -81,9 +83,11 @@ Real kick_over_last(Real kick, Real last) {
 bool run_stages(WorldState& world) {
     StepScratch& scratch = world.scratch;
     Model& model = world.model;
-    const Real relaxed = scratch.parameters.forces_known ? scratch.findings.relaxed : 0;
-    scratch.findings = {};
-    scratch.findings.relaxed = relaxed;
+    const StepFindings before = std::exchange(scratch.findings, {});
+    if (scratch.parameters.forces_known) {
+        scratch.findings.relaxed = before.relaxed;
+        scratch.findings.unstrained = before.unstrained;
+    }
     scratch.awake_mass = model.note_rest();
     scratch.left_out = nothing_moves(world);
     if (!scratch.left_out) {
@@ -114,7 +118,7 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Elements remember what they found in this step.
+/// Elements remember what they found in this step. Of those of unstrained bodies both columns are the same.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     const ActiveLevels& levels = world.scratch.parameters.active;
@@ -129,6 +133,11 @@ void keep_frames(WorldState& world) {
     keep_memory(*world.executor, active, elements);
 }
 
+/// Contacts have moved nodes past their velocities.
+void forget_unstrained(BodyTable& bodies) {
+    std::ranges::fill(bodies.unstrained, std::uint16_t{0});
+}
+
 void commit(WorldState& world) {
     StepScratch& scratch = world.scratch;
     const StepParameters& parameters = scratch.parameters;
@@ -137,6 +146,7 @@ void commit(WorldState& world) {
     if (world.record.forces.on()) world.record.forces.add_step(world.model, world.transaction.asleep_before(), scratch);
     if (!scratch.left_out) {
         keep_frames(world);
+        if (scratch.regions.pushed) forget_unstrained(world.model.bodies);
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
     count_step(scratch, world.record.counters);

@@ -158,6 +158,11 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }
+bool move_alike(std::span<const Index> nodes, std::span<const Vec3> velocity) {
+    const Vec3& first = velocity[static_cast<std::size_t>(nodes.front())];
+    return std::ranges::all_of(nodes, [&](Index n) { return velocity[static_cast<std::size_t>(n)] == first; });
+}
+
 std::size_t padded(std::size_t count) {
     return (count + tile - 1) / tile * tile;
 }
@@ -178,6 +183,7 @@ bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::spa
             const auto begin = static_cast<std::size_t>(clusters.nodes.offset[c]);
             Real* const memory = work.data() + 6 * tile * tile_of(begin, c);
             const ByComponent kicks(memory, padded(count)), sums(memory + 3 * padded(count), padded(count));
+            const bool flies = inputs.is_unstrained(c) && move_alike(nodes, velocity_next);
             if (!known) {
                 for (std::size_t k = 0; k < count; ++k) {
                     const auto n = static_cast<std::size_t>(nodes[k]);
@@ -185,8 +191,9 @@ bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::spa
                     kick[begin + k] = impulse;
                     for (std::size_t i = 0; i < 3; ++i) kicks.component[i][k] = impulse[static_cast<Index>(i)];
                 }
-                multiply(clusters.inverse.data() + clusters.first_entry[c], count, kicks, sums);
+                if (!flies) multiply(clusters.inverse.data() + clusters.first_entry[c], count, kicks, sums);
             }
+            if (flies) continue;
             for (std::size_t k = 0; k < count; ++k) {
                 const auto n = static_cast<std::size_t>(nodes[k]);
                 velocity_next[n] = velocity[n] + sums.at(k);

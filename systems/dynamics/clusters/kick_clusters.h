@@ -13,21 +13,28 @@ namespace skerry {
 
 struct ClusterKickInputs {
     const NodeClusters& clusters;
-    std::span<const Real> mass;                 // kg, by node
-    std::span<const std::uint8_t> body_asleep;  // empty: none is
+    std::span<const Real> mass;                           // kg, by node
+    std::span<const std::uint8_t> body_asleep;            // empty: none is
+    std::span<const std::uint16_t> body_unstrained = {};  // empty: none is
 
     static ClusterKickInputs bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                                   const BodyTable& body, const bool& any_asleep) {
         return {.clusters = binder.read(clusters),
                 .mass = binder.read(node.mass),
-                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)};
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
+                .body_unstrained = binder.read(body.unstrained)};
+    }
+
+    bool is_unstrained(std::size_t cluster) const {
+        return !body_unstrained.empty() && body_unstrained[static_cast<std::size_t>(clusters.body[cluster])] != 0;
     }
 };
 
-/// velocity_next = velocity + A^-1 m (velocity_next - velocity), cluster by cluster. `kick`: N s, what forces gave each
-/// node, by item of clusters.nodes; `work`: memory that is kept between steps. `known`: both hold what the call before
-/// left there, of the same clusters, velocities and forces. Parallel over clusters. Returns false where there is none
-/// (skipped).
+/// velocity_next = velocity + A^-1 m (velocity_next - velocity), cluster by cluster; the same where its
+/// body is unstrained and moves on as one, since A then has no more than the masses to move. `kick`: N s, what forces
+/// gave each node, by item of clusters.nodes; `work`: memory that is kept between steps. `known`: both hold what the
+/// call before left there, of the same clusters, velocities and forces. Parallel over clusters. Returns false where
+/// there is none (skipped).
 bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 

@@ -42,20 +42,27 @@ struct ElementInputs {
         return part_of(constants[static_cast<std::size_t>(material[block])], part[block]);
     }
 
-    /// `any_asleep`: some body rests. Without it and `active`: all elements, whether they are active in this step or
-    /// not.
+    /// All elements.
     static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
-                              const MaterialTable& material, const BodyTable& body, const ActiveLevels& active = {},
-                              const bool& any_asleep = false) {
-        ElementInputs elements = bind_explicit(binder, element, nodes, material, body, active, any_asleep);
+                              const MaterialTable& material, const BodyTable& body) {
+        ElementInputs elements = bind_explicit(binder, element, nodes, material, body);
         elements.implicit_modulus = binder.read(element.implicit_modulus);
         return elements;
     }
-    /// The same for who does not ask what implicit elements are taken to have, and need not wait for it.
+    /// Those that have something to do in a step. `any_asleep`: some body rests.
+    static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
+                              const MaterialTable& material, const BodyTable& body, const ActiveLevels& active,
+                              const bool& any_asleep) {
+        ElementInputs elements = bind(binder, element, nodes, material, body);
+        elements.schedule.active = binder.value(active);
+        elements.schedule.body_asleep = binder.read_if(binder.value(any_asleep), body.asleep);
+        elements.schedule.body_unstrained = binder.read(body.unstrained);
+        return elements;
+    }
+    /// All elements, for who does not ask what implicit ones are taken to have, and need not wait for it.
     static ElementInputs bind_explicit(const Binder& binder, const ElementBlockTable& element,
                                        const ElementNodeTable& nodes, const MaterialTable& material,
-                                       const BodyTable& body, const ActiveLevels& active = {},
-                                       const bool& any_asleep = false) {
+                                       const BodyTable& body) {
         return {.first = binder.read(element.first),
                 .count = binder.read(element.count),
                 .node = binder.read(nodes.node),
@@ -74,8 +81,6 @@ struct ElementInputs {
                 .schedule = {.level = binder.read(element.level),
                              .body = binder.read(element.body),
                              .body_level = binder.read(body.level),
-                             .active = binder.value(active),
-                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
                              .body_cap = binder.read(body.level_cap),
                              .touched = binder.read(element.touched),
                              .body_has_touched = binder.read(body.has_touched)},

@@ -18,15 +18,15 @@ Real damping_of(const DampingInputs& bodies, std::size_t body) {
     return material == no_index ? 0 : bodies.material_damping[static_cast<std::size_t>(material)];
 }
 
-bool is_damped(const DampingInputs& bodies, std::size_t body) {
-    const bool has_frame = !bodies.body_rigid.empty() && bodies.body_rigid[body].size() > 0;
-    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0 && !bodies.body_asleep[body] &&
-           !has_frame;
-}
-
 /// A body without pinned nodes keeps its rigid motion.
 bool keeps_rigid_motion(const DampingInputs& bodies, std::size_t body) {
     return bodies.body_pinned_count[body] == 0;
+}
+
+bool is_damped(const DampingInputs& bodies, std::size_t body) {
+    const bool has_frame = !bodies.body_rigid.empty() && bodies.body_rigid[body].size() > 0;
+    return damping_of(bodies, body) > 0 && bodies.body_node_blocks[body].size() > 0 && !bodies.body_asleep[body] &&
+           !has_frame && !(bodies.body_unstrained[body] > 0 && keeps_rigid_motion(bodies, body));
 }
 
 /// The node that a body's sums refer to: far from the world's origin they would cancel.

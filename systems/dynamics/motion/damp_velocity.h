@@ -20,6 +20,7 @@ struct DampingInputs {
     std::span<const Index> body_pinned_count;                   // BodyTable
     std::span<const Range> body_rigid;                          // BodyTable
     std::span<const std::uint8_t> body_asleep;                  // BodyTable
+    std::span<const std::uint16_t> body_unstrained;             // BodyTable
     std::span<const Real> material_damping;                     // 1/s
     std::span<const Vec3> position;
     std::span<const Real> mass, inverse_mass;
@@ -35,6 +36,7 @@ struct DampingInputs {
                 .body_pinned_count = binder.read(body.pinned_count),
                 .body_rigid = binder.read(body.rigid),
                 .body_asleep = binder.read(body.asleep),
+                .body_unstrained = binder.read(body.unstrained),
                 .material_damping = binder.read(material.damping),
                 .position = binder.read(node.position),
                 .mass = binder.read(node.mass),
@@ -44,13 +46,13 @@ struct DampingInputs {
 };
 
 /// Takes (1 - exp(-damping kick)) of the deformation velocity v - v_rigid out of velocity_next, with `kick` (s) the
-/// time between both velocities, for every body with damping > 0 that neither rests nor moves as rigid bodies do.
-/// `velocity` is that at the start of the step, not the predicted one: a body at rest under load must not feel its
-/// damping. v_rigid is the rigid motion, of the places that the nodes had `lag` ago, with the momentum and the angular
-/// momentum of the body; a body with pinned nodes is damped towards rest. With places and velocities of one time a body
-/// that turns at its centrifugal stretch has no deformation velocity, and by taking moments about the places of now
-/// what is taken out has no angular momentum there. `dissipated` (J) is the kinetic energy taken. Returns false when no
-/// body has damping (skipped). Parallel over node blocks; sums in block order.
+/// time between both velocities, for every body with damping > 0 that neither rests, flies unstrained nor moves as
+/// rigid bodies do. `velocity` is that at the start of the step, not the predicted one: a body at rest under load must
+/// not feel its damping. v_rigid is the rigid motion, of the places that the nodes had `lag` ago, with the momentum and
+/// the angular momentum of the body; a body with pinned nodes is damped towards rest. With places and velocities of one
+/// time a body that turns at its centrifugal stretch has no deformation velocity, and by taking moments about the
+/// places of now what is taken out has no angular momentum there. `dissipated` (J) is the kinetic energy taken. Returns
+/// false when no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,
                    std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated);
 

@@ -23,6 +23,10 @@ struct Kick {
                    end = static_cast<std::size_t>(nodes.block_end[b]);
         const auto body = static_cast<std::size_t>(nodes.block_body[b]);
         if (!nodes.body_asleep.empty() && nodes.body_asleep[body]) return;
+        if (!nodes.body_unstrained.empty() && nodes.body_unstrained[body]) {
+            fly(begin, end);
+            return;
+        }
         const unsigned counts = nodes.active.body_active.empty() ? ~0u : nodes.active.body_active[body];
         unsigned around = 0;
         for (const LevelMask levels :
@@ -44,6 +48,16 @@ struct Kick {
 private:
     const Real4& force_of(Index slot) const {
         return *reinterpret_cast<const Real4*>(nodes.patch_force[static_cast<std::size_t>(slot)].lane);
+    }
+
+    /// Where elements do nothing.
+    void fly(std::size_t begin, std::size_t end) const {
+        const Vec3 gained = seconds * nodes.gravity;
+        for (std::size_t n = begin; n < end; ++n)
+            if (nodes.load.empty() && nodes.inverse_mass[n] > 0)
+                velocity_next[n] = velocity[n] + gained;
+            else
+                add(n, Vec3::Zero());
     }
 
     /// In the order of the patches: the same bits whatever the worker count.

@@ -32,6 +32,8 @@ struct KickInputs {
     std::span<const Vec3> load = {};                 // N; empty: none
     std::span<const Index> body_pinned_count = {};   // BodyTable; empty: any node may be without freedom
     std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are passed over; empty: none
+    // BodyTable: of such nodes elements have nothing to say; empty: none
+    std::span<const std::uint16_t> body_unstrained = {};
 
     /// `loaded`: some node has a load. `any_asleep`: some body rests.
     static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const ElementPatches& patches,
@@ -50,15 +52,16 @@ struct KickInputs {
                 .gravity = binder.value(gravity),
                 .load = binder.read_if(binder.value(loaded), node.load),
                 .body_pinned_count = binder.read(body.pinned_count),
-                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)};
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
+                .body_unstrained = binder.read(body.unstrained)};
     }
 };
 
 /// velocity_next = velocity + kick F inverse_mass, `kick` (s) the time for which forces act in this step, with F = sum
 /// of what the patches around the node that are due do to it, in a fixed order, + mass gravity + load. Nodes without
 /// freedom (inverse mass 0) keep their velocity; of them alone F is written to `force`: what holds them is its
-/// opposite. One pass, since F of all nodes, kept and read again, took as long as the kick itself. Parallel over node
-/// blocks.
+/// opposite. One pass, since F of all nodes, kept and read again, took as long as the kick itself. Nodes of an
+/// unstrained body without loads and held nodes stay alike, bit by bit. Parallel over node blocks.
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 

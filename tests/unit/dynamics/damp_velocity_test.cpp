@@ -15,6 +15,7 @@ namespace {
 struct Cloud {
     std::vector<Index> block_begin, block_end, block_body, body_material, pinned;
     std::vector<std::uint8_t> asleep;
+    std::vector<std::uint16_t> unstrained;
     std::vector<Range> node_blocks;
     std::vector<Real> damping{0, 20}, mass, inverse_mass;  // material 1 is damped
     std::vector<Vec3> position, velocity;
@@ -38,6 +39,7 @@ struct Cloud {
         body_material.push_back(material);
         pinned.push_back(0);
         asleep.push_back(0);
+        unstrained.push_back(0);
         sums.resize(block_begin.size());
     }
     bool damp(Executor& executor, Real h) {
@@ -56,6 +58,7 @@ struct Cloud {
                               pinned,
                               {},
                               asleep,
+                              unstrained,
                               damping,
                               position,
                               mass,

@@ -52,7 +52,7 @@ struct LevelledBody : ElasticBody {
     }
     ElementInputs due(unsigned mask, Real duration) const {
         ElementInputs inputs = ElasticBody::inputs();
-        inputs.schedule = {elements.level, of_body, body_level, {}, {}, body_cap, elements.touched, body_touched};
+        inputs.schedule = {elements.level, of_body, body_level, {}, {}, {}, body_cap, elements.touched, body_touched};
         for (std::size_t l = 0; l < step_level_count; ++l)
             inputs.schedule.active.duration[l] = (mask >> l & 1) != 0 ? duration : 0;
         return inputs;

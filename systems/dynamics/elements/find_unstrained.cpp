@@ -1,0 +1,77 @@
+#include "systems/dynamics/elements/find_unstrained.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "jobs/parallel_for.h"
+#include "systems/dynamics/elements/element_block.h"
+
+namespace skerry {
+
+namespace {
+
+constexpr std::size_t bodies_per_job = 16;
+
+template <class T>
+std::span<T> part_of_rows(std::span<T> rows, Range range) {
+    return rows.subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
+}
+
+bool move_alike(std::span<const Vec3> velocity) {
+    const Vec3& first = velocity.front();
+    // the last first: it is far from the first, so that what turns or trembles is found out at once
+    return velocity.back() == first && std::ranges::all_of(velocity, [&](const Vec3& v) { return v == first; });
+}
+
+bool is_zero(const ElementStrain& strain) {
+    return std::ranges::all_of(strain, [](const ElementLane& entry) {
+        return std::ranges::all_of(entry.lane, [](Real value) { return value == 0; });
+    });
+}
+
+/// Of an empty lane nothing is asked. What is no number is strained.
+bool is_unstrained(const LaneMat3<Real8>& F, const ElementLane& volume) {
+    const Real8 strain[9] = {F.c0.x - 1.0, F.c0.y, F.c0.z, F.c1.x, F.c1.y - 1.0, F.c1.z, F.c2.x, F.c2.y, F.c2.z - 1.0};
+    for (std::size_t l = 0; l < element_lanes; ++l)
+        if (volume.lane[l] > 0 &&
+            !std::ranges::all_of(strain, [&](const Real8& entry) { return std::abs(entry[l]) <= unstrained_within; }))
+            return false;
+    return true;
+}
+
+bool is_unstrained(const UnstrainedInputs& inputs, Range blocks) {
+    const ElementInputs& elements = inputs.elements;
+    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        if (!elements.viscous_strain.empty() && !is_zero(elements.viscous_strain[b])) return false;
+        if (!is_unstrained(deformation_gradient(elements.nodes_of(b), inputs.position), elements.volume[b]))
+            return false;
+    }
+    return true;
+}
+
+std::uint16_t steps_unstrained(const UnstrainedInputs& inputs, std::size_t body, std::uint16_t before) {
+    const Range nodes = inputs.body_nodes[body], blocks = inputs.body_blocks[body];
+    if (inputs.body_asleep[body] || blocks.size() == 0 || !move_alike(part_of_rows(inputs.velocity, nodes))) return 0;
+    if (before > 1) return static_cast<std::uint16_t>(before - 1);
+    return is_unstrained(inputs, blocks) ? unstrained_steps : std::uint16_t{0};
+}
+
+}  // namespace
+
+Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out) {
+    parallel_for(executor, out.unstrained.size(), bodies_per_job, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t body = begin; body < end; ++body) {
+            const std::uint16_t before = out.unstrained[body];
+            out.unstrained[body] = steps_unstrained(inputs, body, before);
+            if (before > 0 || out.unstrained[body] == 0) continue;
+            const Range blocks = inputs.body_blocks[body];
+            std::ranges::copy(part_of_rows(inputs.rotation, blocks), part_of_rows(out.rotation_next, blocks).begin());
+            if (!out.viscous_strain_next.empty())
+                std::ranges::fill(part_of_rows(out.viscous_strain_next, blocks), ElementStrain{});
+        }
+    });
+    return static_cast<Index>(std::ranges::count_if(out.unstrained, [](std::uint16_t steps) { return steps > 0; }));
+}
+
+}  // namespace skerry
