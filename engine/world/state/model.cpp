@@ -204,8 +204,6 @@ void Model::derive_all() {
     // What a step leaves where it has nothing to do: nodes at rest, and nodes that no contact pushes.
     std::ranges::fill(nodes.velocity_next, Vec3::Zero());
     std::ranges::fill(nodes.push_out, Vec3::Zero());
-    // And what it leaves of elements that do nothing.
-    std::ranges::copy(elements.rotation, elements.rotation_next.begin());
 }
 
 void Model::rebuild_clusters() {
