@@ -13,8 +13,7 @@ enum class MaterialModel { linear, corotational, stable_neo_hookean };
 /// What carries the stress of a body. linear: its tetrahedra, with constant strain each; they lock: in bending, and
 /// where volume hardly changes. edge_smoothed: its edges, with the mean strain of the tetrahedra around each.
 /// edge_node_smoothed: the same for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a
-/// Poisson ratio of 0.25, edge_node_smoothed above, with tetrahedra so tiny that they would not be seen linear; linear
-/// in a world with multirate (docs/methods/elasticity.md 7).
+/// Poisson ratio of 0.25, edge_node_smoothed above, linear in a world with multirate (docs/methods/elasticity.md 7).
 enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
 /// cone_convex is the associated law: every contact minimises a convex energy over the cone, and what slides also lifts
 /// off at mu times its speed. A solution is found whatever mu is, but it is another model: its Coulomb error is 1e-5 to

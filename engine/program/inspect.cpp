@@ -72,19 +72,7 @@ Json bound_json(const StepBound& bound) {
                          {"dt", t.step}});
     for (const StepWithout& w : bound.without)
         without.push_back({{"share", w.share}, {"tetrahedra", w.count}, {"stable_dt", w.step}});
-    return {{"stable_dt", bound.step},
-            {"element", name_of(bound.element)},
-            {"tiny_elements", bound.tiny},
-            {"worst", worst},
-            {"without", without}};
-}
-
-/// "edge_node_smoothed, 290 tiny ones linear"
-std::string element_text(const StepBound& bound) {
-    const std::string kind(name_of(bound.element));
-    return bound.tiny > 0
-               ? kind + ", " + grouped(bound.tiny) + (bound.tiny == 1 ? " tiny one" : " tiny ones") + " linear"
-               : kind;
+    return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
 }
 
 /// A step beside the one that there is. Without some tetrahedra the others carry less mass: it may be shorter.
@@ -163,7 +151,7 @@ int inspect_mesh(const InspectOptions& options) {
               << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
     if (is_body) {
         std::cout << "  step          " << with_unit(bound.step, "s")
-                  << " of the default material, 1e5 Pa and 1000 kg/m^3 (" << element_text(bound) << ")\n";
+                  << " of the default material, 1e5 Pa and 1000 kg/m^3 (" << name_of(bound.element) << ")\n";
         print_bound(bound, "                ");
     }
     if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
@@ -226,17 +214,14 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
         const auto [at, is_new] = row.try_emplace({body.mesh, body.material, dynamics}, kinds.size());
         if (is_new) {
             const MeshReport mesh = inspect(plan.meshes[body.mesh]);
-            kinds.push_back({body.settings.name,
-                             count_materials(plan, body, mesh),
-                             0,
-                             b,
-                             mesh,
-                             dynamics,
-                             {.step = std::numeric_limits<Real>::infinity(),
-                              .element = {},
-                              .tiny = 0,
-                              .worst = {},
-                              .without = {}}});
+            kinds.push_back(
+                {body.settings.name,
+                 count_materials(plan, body, mesh),
+                 0,
+                 b,
+                 mesh,
+                 dynamics,
+                 {.step = std::numeric_limits<Real>::infinity(), .element = {}, .worst = {}, .without = {}}});
             if (kinds.back().sets_step())
                 kinds.back().bound = step_bound(plan.meshes[body.mesh], step_case(plan, body), details);
         }
@@ -247,7 +232,7 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
 
 /// "192 tetrahedra (smoothed), mean edge 0.05 m", or "a sphere of 0.1 m (rigid)".
 std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
-    const std::string how = kind.sets_step() ? element_text(kind.bound) : std::string(name_of(kind.dynamics));
+    const std::string how(kind.sets_step() ? name_of(kind.bound.element) : name_of(kind.dynamics));
     if (const auto& sphere = body.shape.sphere)
         return "a sphere of radius " + with_unit(sphere->radius, "m") + " (" + how + ")";
     if (const auto& capsule = body.shape.capsule)

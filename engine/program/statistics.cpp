@@ -95,7 +95,6 @@ Json statistics_of(const RunResult& result) {
         {"colliders", r.colliders},
         {"nodes", r.nodes},
         {"elements", r.elements},
-        {"tiny_elements", r.tiny_elements},
         {"integrator", name_of(result.settings.integrator)},
         {"multirate",
          {{"on", result.settings.multirate},

@@ -117,11 +117,8 @@ std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std
 
 StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details) {
     const Body body = body_of(mesh, of);
-    StepBound bound{.step = body.world.stable_step(),
-                    .element = body.world.element(body.handle),
-                    .tiny = body.world.report().tiny_elements,
-                    .worst = {},
-                    .without = {}};
+    StepBound bound{
+        .step = body.world.stable_step(), .element = body.world.element(body.handle), .worst = {}, .without = {}};
     if (!details) return bound;
     const std::vector<Real> step = body.world.tetrahedron_steps(body.handle);
     const std::vector<Index> order = worst_first(mesh, step);

@@ -34,7 +34,6 @@ struct StepWithout {
 struct StepBound {
     Real step = 0;  // s
     ElementKind element{};
-    std::size_t tiny = 0;                  // tetrahedra that are linear elements among smoothed ones
     std::vector<CostlyTetrahedron> worst;  // the one that bounds the step, then the flattest that allow hardly more
     std::vector<StepWithout> without;
 };

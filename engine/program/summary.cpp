@@ -169,12 +169,8 @@ std::string summary_of(const RunResult& result) {
         short_number(1e3 * r.max_penetration) + " mm" +
             (result.mean_edge > 0 ? " (" + percent(r.max_penetration / result.mean_edge) + " of the mean edge)" : "") +
             ", into the contact shell " + short_number(1e3 * r.max_gap_violation) + " mm");
-    text +=
-        line("elements", "smallest volume ratio " + short_number(r.worst_volume_ratio) +
-                             (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")") +
-                             (r.tiny_elements > 0 ? "; " + grouped(r.tiny_elements) +
-                                                        " linear among smoothed ones, of tetrahedra too tiny for these"
-                                                  : ""));
+    text += line("elements", "smallest volume ratio " + short_number(r.worst_volume_ratio) +
+                                 (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")"));
     text += trust_lines(result);
     text += probe_lines(result);
     text += line("stages", "");

@@ -84,10 +84,7 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                             "(the default) and \"implicit\", by predicted cost"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
-            .key("element", &BodyEntry::element,
-                 {.meaning = "what carries its stress; smoothed, the default: edge_smoothed up to a Poisson ratio of "
-                             "0.25, edge_node_smoothed above, but linear where a tetrahedron is tiny (below a tenth of "
-                             "the mean volume of the body, of which all of these are 1 % at most), and with multirate"})
+            .key("element", &BodyEntry::element, {.meaning = "what carries its stress"})
             .key("pin", &BodyEntry::pin, {.meaning = "nodes that are held"})
             .exactly_one({"mesh", "shape"})
             .at_most_one({"position", "positions"})

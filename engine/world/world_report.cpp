@@ -180,8 +180,6 @@ WorldReport World::report() const {
     report.colliders = world.model.colliders.slot.size();
     report.nodes = world.model.nodes.position.size();
     for (Index count : world.model.bodies.tetrahedron_count) report.elements += static_cast<std::size_t>(count);
-    for (std::size_t b = 0; b < world.model.body_records.size(); ++b)
-        report.tiny_elements += world.model.tiny_elements(b);
     Index stiffest = no_index;
     settle_clusters(state_->model, state_->scratch.stiffness_sum);
     report.clusters = world.model.clusters.size();

@@ -33,7 +33,7 @@ struct ElasticBody {
                 ElementKind kind = ElementKind::linear)
         : ElasticBody(of, {material}, std::vector<Index>(of.tetrahedra.size(), 0), rotation, kind) {}
 
-    /// Of several materials: that of each tetrahedron. ElementKind::smoothed: by edges and nodes, tiny ones linear.
+    /// Of several materials: that of each tetrahedron.
     ElasticBody(const TetMesh& of, const std::vector<MaterialConstants>& materials,
                 const std::vector<Index>& material_of, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear)
@@ -47,8 +47,7 @@ struct ElasticBody {
         std::vector<MaterialZone> zones;
         for (std::size_t m = 0; m < materials.size(); ++m) {
             constants.push_back(materials[m]);
-            const bool parted = kind == ElementKind::smoothed;
-            zones.push_back({static_cast<Index>(m), parted ? ElementKind::edge_node_smoothed : kind, {}});
+            zones.push_back({static_cast<Index>(m), kind, {}});
         }
         std::vector<Real> density;
         for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -57,7 +56,6 @@ struct ElasticBody {
             tetrahedron_mass.push_back(density.back() * six_volumes(mesh.tetrahedra[t], mesh.nodes) / 6);
         }
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
-        if (kind == ElementKind::smoothed) part_tiny_tetrahedra({mesh.tetrahedra, mesh.nodes}, zones);
         list = elements_of({mesh.tetrahedra, mesh.nodes}, zones);
         const AppendedElements appended =
             append_elements(list, mesh.nodes, {}, BlockOrder::fans, 0, 0, elements, element_nodes);

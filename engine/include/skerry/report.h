@@ -235,9 +235,8 @@ struct WorldReport : RunCounters {
     Real time = 0;
     std::size_t asleep = 0;  // bodies at rest, now
     std::size_t bodies = 0, colliders = 0, nodes = 0, elements = 0;
-    std::size_t tiny_elements = 0;  // tetrahedra of these that are linear among smoothed ones (ElementKind::smoothed)
-    Real stable_step = 0;           // s, of the stiffest body, now; where none sets one, the one that is taken
-    std::string stable_step_body;   // which body that is; empty where none sets one
+    Real stable_step = 0;          // s, of the stiffest body, now; where none sets one, the one that is taken
+    std::string stable_step_body;  // which body that is; empty where none sets one
     // Groups of nodes that implicit elements couple, so that these do not make the step shorter
     // (docs/methods/clusters.md).
     std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;

@@ -71,7 +71,7 @@ void restart(WorldState& world, std::size_t body) {
     const BodyRecord& record = model.body_records[body];
     const Range nodes = model.bodies.nodes[body];
     NewBody as_new;
-    as_new.element = record.asked;
+    as_new.element = record.element;
     as_new.material = model.bodies.material[body];
     as_new.tetrahedron_material = record.tetrahedron_material;
     as_new.core_nodes = model.bodies.core_nodes[body];

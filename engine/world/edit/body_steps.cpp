@@ -66,7 +66,6 @@ std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
         }
         zone->tetrahedra.push_back(static_cast<Index>(t));
     }
-    if (body.element == ElementKind::smoothed) part_tiny_tetrahedra({body.tetrahedra, body.nodes}, zones);
     return zones;
 }
 

@@ -49,12 +49,11 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// What all zones have but for those of tiny tetrahedra, or, where `smoothed` stands for both, the one with nodes; of
-/// none, linear.
+/// What all zones have, or, where `smoothed` stands for both, the one with nodes; of none, linear.
 ElementKind kind_of(std::span<const MaterialZone> zones) {
-    ElementKind kind = ElementKind::linear;
+    ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)
-        if (zone.kind != ElementKind::linear && kind != ElementKind::edge_node_smoothed) kind = zone.kind;
+        if (zone.kind == ElementKind::edge_node_smoothed) kind = zone.kind;
     return kind;
 }
 

@@ -63,8 +63,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate);
 
 // body_steps.cpp
-/// Tetrahedra by material, in the order in which the mesh comes to their materials, tiny ones of smoothed elements by
-/// themselves.
+/// Tetrahedra by material, in the order in which the mesh comes to their materials.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body);
 /// kg, of a body that is round: both ends together, which are a ball, and what lies between.
 struct RoundMass {

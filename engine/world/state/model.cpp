@@ -127,13 +127,6 @@ void Model::note_loads(std::size_t body, bool before) {
     loaded = loaded_bodies > 0;
 }
 
-std::size_t Model::tiny_elements(std::size_t body) const {
-    const BodyRecord& record = body_records[body];
-    if (record.asked != ElementKind::smoothed || record.element == ElementKind::linear) return 0;
-    return static_cast<std::size_t>(
-        std::ranges::count(tiny_tetrahedra({record.tetrahedra, rows_of(nodes.rest_position, bodies.nodes[body])}), 1));
-}
-
 ElementList Model::elements_of_implicit(std::size_t body) const {
     const BodyRecord& record = body_records[body];
     std::vector<MaterialZone> zones;
@@ -144,9 +137,7 @@ ElementList Model::elements_of_implicit(std::size_t body) const {
         if (zone == zones.end()) zone = zones.insert(zones.end(), {material, record.element, {}});
         zone->tetrahedra.push_back(static_cast<Index>(t));
     }
-    const RestMesh mesh{record.tetrahedra, rows_of(nodes.rest_position, bodies.nodes[body])};
-    if (record.asked == ElementKind::smoothed) part_tiny_tetrahedra(mesh, zones);
-    return elements_of(mesh, zones);
+    return elements_of({record.tetrahedra, rows_of(nodes.rest_position, bodies.nodes[body])}, zones);
 }
 
 void Model::stiffen(std::size_t body) {

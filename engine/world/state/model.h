@@ -152,8 +152,6 @@ struct Model {
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
     }
-    /// How many tetrahedra of a body are linear elements since the smoothed ones of the others would not see them.
-    std::size_t tiny_elements(std::size_t body) const;
     /// The elements that a body moving implicitly has, in no table; its nodes numbered from zero.
     ElementList elements_of_implicit(std::size_t body) const;
     /// Makes stiff_bodies of a body that moves implicitly, from its record, masses and materials.

@@ -348,7 +348,7 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     }
     if (!(best.step > 0) && least_lengthening * shortest < longest) look_at(least_lengthening * shortest);
     if (!(best.step > least_lengthening * shortest)) return best;
-    for (Real ratio = std::sqrt(Real(2)); ratio > 1.07; ratio = std::sqrt(ratio)) {
+    for (Real ratio = std::sqrt(Real(2)); ratio > 1.15; ratio = std::sqrt(ratio)) {
         const Real between = best.step * ratio;
         if (between < longest && between < most_lengthening * shortest) look_at(between);
     }

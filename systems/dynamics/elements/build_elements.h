@@ -19,6 +19,10 @@ inline constexpr std::size_t elements_per_patch = 256;
 /// m, of one tetrahedron.
 Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position);
 
+/// A tetrahedron with less than this share of the mean volume of the tetrahedra around each of its corners is a sliver:
+/// no step is shortened to keep it from turning over (docs/methods/time_stepping.md 4.2).
+inline constexpr Real sliver_volume = 0.05;
+
 /// Appends the blocks of a new body's tetrahedra, in the order of the mesh. `tetrahedra` index the body's own nodes;
 /// `first_node` is the row of its first node.
 Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,

@@ -60,21 +60,6 @@ struct MaterialZone {
 /// across an interface, where it jumps (docs/methods/elasticity.md 7.6).
 ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zones);
 
-/// A tetrahedron with less than this share of the mean volume of the tetrahedra around each of its corners is a sliver:
-/// no step is shortened to keep it from turning over (docs/methods/time_stepping.md 4.2).
-inline constexpr Real sliver_volume = 0.05;
-
-/// Of each tetrahedron, whether it is a sliver.
-std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh);
-
-/// Of each tetrahedron, whether it is one that smoothed elements do not see (docs/methods/elasticity.md 7.7): no
-/// sliver, of less than a tenth of the mean volume, and together with all of them of a hundredth of the volume of the
-/// mesh at most; where those below a tenth are more, below a twentieth, and so on.
-std::vector<std::uint8_t> tiny_tetrahedra(const RestMesh& mesh);
-
-/// Takes the tiny tetrahedra of the mesh out of zones of smoothed elements, into zones of linear ones behind them.
-void part_tiny_tetrahedra(const RestMesh& mesh, std::vector<MaterialZone>& zones);
-
 /// Which kind `smoothed` stands for: above a Poisson ratio of 0.25 the volumetric modulus lambda is more than the shear
 /// modulus, and elements by edges alone begin to lock (docs/methods/elasticity.md 7.3). With impulses at several rates
 /// smoothed elements gain energy: multirate has linear ones.
