@@ -163,7 +163,7 @@ bool move_alike(std::span<const Index> nodes, std::span<const Vec3> velocity) {
     return std::ranges::all_of(nodes, [&](Index n) { return velocity[static_cast<std::size_t>(n)] == first; });
 }
 
-std::size_t padded(std::size_t count) {
+std::size_t padded_count(std::size_t count) {
     return (count + tile - 1) / tile * tile;
 }
 
@@ -182,7 +182,8 @@ bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::spa
             const std::size_t count = nodes.size();
             const auto begin = static_cast<std::size_t>(clusters.nodes.offset[c]);
             Real* const memory = work.data() + 6 * tile * tile_of(begin, c);
-            const ByComponent kicks(memory, padded(count)), sums(memory + 3 * padded(count), padded(count));
+            const ByComponent kicks(memory, padded_count(count)),
+                sums(memory + 3 * padded_count(count), padded_count(count));
             const bool flies = inputs.is_unstrained(c) && move_alike(nodes, velocity_next);
             if (!known) {
                 for (std::size_t k = 0; k < count; ++k) {
