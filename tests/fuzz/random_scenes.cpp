@@ -23,8 +23,8 @@ struct Options {
     double seconds = 60;                   // of wall time, for all
     std::uint64_t seed = 1;                // of the first scene
     std::uint64_t scenes = 0;              // 0: as many as the time allows
-    double scene_seconds = 20;             // of CPU time, after which a scene is cut short
-    double hang_seconds = 200;             // of CPU time, after which a scene counts as hung
+    double scene_seconds = 20;             // of CPU time, after which no further step of a scene is tried: cut short
+    double hang_seconds = 200;             // of CPU time, after which a scene that did not end counts as hung
     int compare_every = 8;                 // every so many scenes is run again on other threads
     bool list = false;                     // one line a scene
     std::filesystem::path out;             // where scenes that failed are put

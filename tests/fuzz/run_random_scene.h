@@ -25,7 +25,7 @@ struct SceneRun {
 
 /// Builds the scene in `folder` and runs it. Throws std::runtime_error that says what is wrong: a number that is not
 /// finite, a contact that makes no sense, a refusal without a culprit, energy out of nothing. `seconds`: CPU time after
-/// which no further advance is begun.
+/// which no further step is tried.
 SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path& folder,
                           const SceneOverrides& overrides = {}, double seconds = 1e9);
 
