@@ -39,7 +39,10 @@ inline Json choices_json(const WorldReport& report) {
                            {"dynamics", name_of(choice.dynamics)},
                            {"reason", name_of(e.reason)},
                            {"explicit", {{"dt", e.explicit_step}, {"cpu_seconds_per_second", e.explicit_cost}}},
-                           {"implicit", {{"dt", e.implicit_step}, {"cpu_seconds_per_second", e.implicit_cost}}},
+                           {"implicit",
+                            {{"dt", e.implicit_step},
+                             {"deforming_dt", e.deforming_step},
+                             {"cpu_seconds_per_second", e.implicit_cost}}},
                            {"strain", e.strain},
                            {"damped_above_hz", e.damped_above}});
     }

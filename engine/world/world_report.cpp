@@ -88,14 +88,16 @@ std::string DynamicsChoice::message() const {
     const auto way = [](Real cost, Real step) {
         return short_text(cost) + " s of a core a simulated second, in steps of " + short_text(step) + " s";
     };
+    const std::string implicit =
+        way(e.implicit_cost, e.implicit_step) +
+        (e.deforming_step > e.implicit_step ? ", deforming in steps of " + short_text(e.deforming_step) + " s" : "");
     const bool is_implicit = dynamics == BodyDynamics::implicit_elastic;
     std::string text(name_of(dynamics));
     if (e.reason == DynamicsReason::given) return text;
     if (e.reason == DynamicsReason::self_contact) return text + ", since it touches itself";
     if (e.reason == DynamicsReason::strain) text += ", since it may deform by " + short_text(100 * e.strain) + " %";
-    text += ": " + (is_implicit ? way(e.implicit_cost, e.implicit_step) : way(e.explicit_cost, e.explicit_step)) +
-            (is_implicit ? "; explicit " + way(e.explicit_cost, e.explicit_step)
-                         : "; implicit " + way(e.implicit_cost, e.implicit_step));
+    text += ": " + (is_implicit ? implicit : way(e.explicit_cost, e.explicit_step)) +
+            (is_implicit ? "; explicit " + way(e.explicit_cost, e.explicit_step) : "; implicit " + implicit);
     if (is_implicit && e.damped_above > 0)
         text += "; what vibrates faster than " + short_text(e.damped_above) + " Hz is damped";
     return text;

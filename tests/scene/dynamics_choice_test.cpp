@@ -71,6 +71,32 @@ TEST_CASE("step_size above the stable step is granted where what does not stand 
     CHECK(world.report().dynamics_choices.size() == 1);
 }
 
+TEST_CASE("where implicit bodies may take longer steps the choice counts with them", "[scene]") {
+    // beside a soft box that sets short steps: a block that is not worth it at their pace, and is at its own
+    const auto choose_beside = [](Real implicit_step) {
+        Settings settings;
+        settings.implicit_step = implicit_step;
+        settings.gravity = {0, 0, -1};  // a fall that strains it little
+        World world(settings);
+        const auto soft = world.add_material({.young_modulus = 1e5}),
+                   stiff = world.add_material({.young_modulus = 5.6e7});
+        world.add_body(mesh::box(Vec3::Constant(0.03), {4, 4, 4}), {.material = soft, .position = {0, 0, 1}});
+        const auto block = world.add_body(mesh::box(Vec3::Constant(0.2), {6, 6, 6}),
+                                          {.material = stiff, .dynamics = BodyDynamics::automatic});
+        return Chosen{world.dynamics(block), world.dynamics_choice(block)};
+    };
+    const Chosen alike = choose_beside(0), longer = choose_beside(1.0 / 120);
+    CHECK(alike.estimate.implicit_step < 1e-3);
+    CHECK(alike.estimate.deforming_step == alike.estimate.implicit_step);
+    CHECK(longer.estimate.implicit_step == alike.estimate.implicit_step);
+    CHECK(longer.estimate.deforming_step == Approx(1.0 / 120));
+    CHECK(longer.estimate.explicit_cost == alike.estimate.explicit_cost);
+    CHECK(longer.estimate.damped_above == Approx(120 / (4 * std::numbers::pi)));
+    CHECK(longer.estimate.implicit_cost < 0.6 * alike.estimate.implicit_cost);
+    CHECK(alike.dynamics == BodyDynamics::explicit_elastic);
+    CHECK(longer.dynamics == BodyDynamics::implicit_elastic);
+}
+
 TEST_CASE("a body that was chosen has the bits of one that was told", "[scene]") {
     for (const Real modulus : {1e5, 2e11}) {
         INFO(modulus << " Pa");

@@ -153,8 +153,9 @@ struct EnumNames<DynamicsReason> {
 /// What the choice was made by (docs/methods/implicit_bodies.md 6).
 struct DynamicsEstimate {
     DynamicsReason reason = DynamicsReason::given;
-    Real explicit_step = 0;  // s, that the world takes with the body explicit
-    Real implicit_step = 0;  // s, with it implicit
+    Real explicit_step = 0;   // s, that the world takes with the body explicit
+    Real implicit_step = 0;   // s, with it implicit
+    Real deforming_step = 0;  // s, of what then deforms in it: longer where Settings::implicit_step is
     // s of one core a simulated second, of the elements of the world and of the solves for this body
     Real explicit_cost = 0, implicit_cost = 0;
     Real strain = 0;  // the largest that weight, its speed and a fall of ten times its own size may bring

@@ -224,8 +224,8 @@ SavedRows rows_to_save(const WorldState& world) {
         saved.body_settled.push_back(record.settled);
         const DynamicsEstimate& e = record.choice;
         saved.choice_reason.push_back(e.reason);
-        saved.choice_estimate.push_back(
-            {e.explicit_step, e.implicit_step, e.explicit_cost, e.implicit_cost, e.strain, e.damped_above});
+        saved.choice_estimate.push_back({e.explicit_step, e.implicit_step, e.deforming_step, e.explicit_cost,
+                                         e.implicit_cost, e.strain, e.damped_above});
         append(std::span<const Index>(record.tetrahedron_material), saved.tetrahedron_material);
         append_text(record.name, saved.body_name);
     }
@@ -296,10 +296,10 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         record.element = saved.body_element[b];
         record.asked = saved.body_asked[b];
         record.settled = saved.body_settled[b] != 0;
-        const std::array<Real, 6>& e = saved.choice_estimate[b];
+        const std::array<Real, 7>& e = saved.choice_estimate[b];
         if (std::ranges::any_of(e, [](Real value) { return !(value >= 0); }))
             file.complain("/records/choice_estimate", "a number below zero, or none, of " + body, "numbers from 0 on");
-        record.choice = {saved.choice_reason[b], e[0], e[1], e[2], e[3], e[4], e[5]};
+        record.choice = {saved.choice_reason[b], e[0], e[1], e[2], e[3], e[4], e[5], e[6]};
         record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
         record.surface.assign(parts.surface.begin(), parts.surface.end());
         const std::span<const Index> materials = saved.tetrahedron_material[b];

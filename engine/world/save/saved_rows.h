@@ -38,7 +38,7 @@ struct SavedRows {
     Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
     Column<DynamicsReason> choice_reason;           // of BodyRecord::choice, and
-    Column<std::array<Real, 6>> choice_estimate;    // its members in their order
+    Column<std::array<Real, 7>> choice_estimate;    // its members in their order
     Ragged<Index> tetrahedron_material;             // of BodyRecord
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // the alternative of Shape, and

@@ -183,6 +183,9 @@ TEST_CASE("bodies, meshes and motions that are no numbers are refused by name, a
                         world.attach(body, std::vector<Index>{0},
                                      {.keys = {{1, Vec3::Zero(), Vec3::Zero()}, {1, Vec3::Zero(), Vec3::Zero()}}});
                     }});
+    list.push_back({"attachment", "motion.keys.rotation", [&] {
+                        world.attach(body, std::vector<Index>{0}, {.keys = {{0, Vec3::Zero(), {0, 0, 1.1e6}}}});
+                    }});
     list.push_back({"set_velocities", "velocity", [&] { world.set_velocities(body, std::vector<Vec3>(3)); }});
     list.push_back(
         {"watch_contact_problems", "every", [&] { world.watch_contact_problems([](const StepProblem&) {}, 0); }});

@@ -96,9 +96,9 @@ TEST_CASE("a file of another kind, or of another version, is refused by what it 
     CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("a file of another kind"));
     CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(head_bytes)), Contains("a file of another kind"));
     std::vector<char> other = saved.bytes;
-    const std::string name = "version 18";
+    const std::string name = "version 19";
     *(std::search(other.begin(), other.end(), name.begin(), name.end()) + 9) = '0';
-    CHECK_THAT(saved.refusal(other), Contains("found version 10, expected version 18"));
+    CHECK_THAT(saved.refusal(other), Contains("found version 10, expected version 19"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("something that is no file"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
     // HDF5, with the right head, but not what is expected there
