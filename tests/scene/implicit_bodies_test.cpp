@@ -281,6 +281,26 @@ TEST_CASE("stiff implicit blocks that land on each other are solved as if they m
     CHECK(unconverged(6, 20, true) < 18);
 }
 
+TEST_CASE("contacts that Newton steps turn round are stopped", "[scene][implicit]") {
+    // few iterations: where such contacts go on sliding 31 regions are left
+    Settings settings;
+    settings.step_size = 0.002;
+    settings.tolerance = 1e-6;
+    settings.max_iterations = 60;
+    settings.sleep = false;
+    World world(settings);
+    const auto stiff = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .friction = 0.5});
+    world.add_collider(Plane{});
+    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2});
+    for (int k = 0; k < 8; ++k)
+        world.add_body(
+            block,
+            {.material = stiff, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = BodyDynamics::implicit_elastic});
+    const StepReport report = world.advance(0.3);
+    REQUIRE(report.ok());
+    CHECK(report.unconverged < 10);
+}
+
 TEST_CASE("a stack at rest whose contacts come and go by the last bits goes on from their impulses",
           "[scene][implicit]") {
     Settings settings;

@@ -74,4 +74,20 @@ Real BodyEquations::set_right(std::span<const Real> x) {
     return sum;
 }
 
+void BodyEquations::add_right(Index contact, const Vec3& impulse) {
+    for (const BodyPush& push : pushes_[static_cast<std::size_t>(contact)].all()) {
+        Real* const at = factor_.right().data() + factor_.first(push.part) + static_cast<std::size_t>(push.place);
+        const Vec3 moment = push.arm.cross(impulse);
+        for (Index k = 0; k < 3; ++k) at[k] += push.weight * impulse[k];
+        if (push.turns)
+            for (Index k = 0; k < 3; ++k) at[3 + k] += moment[k];
+    }
+}
+
+void BodyEquations::start_round() {
+    way.assign(pushes_.size(), Vec3::Zero());
+    stops.assign(pushes_.size(), 0);
+    rises = 0;
+}
+
 }  // namespace skerry

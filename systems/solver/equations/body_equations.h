@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "components/column.h"
@@ -65,6 +66,10 @@ public:
     Vec3 velocity(Index contact, std::span<const Real> v) const;
     /// The right-hand side: K x. Returns x K x.
     Real set_right(std::span<const Real> x);
+    /// Adds J^T r of a contact to the right-hand side.
+    void add_right(Index contact, const Vec3& impulse);
+    /// A round: no contact has slid yet, nor is to stop.
+    void start_round();
 
     Real softness = 0;    // of D, what contacts give way by in a round
     bool wholes = false;  // bodies that deform move as wholes
@@ -74,6 +79,10 @@ public:
     // step with the motion before it
     Column<Real> present, answered, change, step, before;
     Column<Mat3> answer;  // by contact: derivative of the impulse by the one that would stop it, when last asked
+    // by contact: which way it slid when the matrix was made last, or zero, and whether it is to stop in the next step
+    Column<Vec3> way;
+    Column<std::uint8_t> stops;
+    Index rises = 0;  // steps of a round that were taken though they raised what they were to lower
 
 private:
     BlockFactor factor_;

@@ -69,6 +69,18 @@ void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c
     }
 }
 
+/// From the first to behind the last column that is not zero in these eight rows.
+std::pair<Index, Index> columns_that_count(const DenseBlock& a, Index row) {
+    const auto counts = [&](Index k) {
+        const Real* const at = a.column(k) + row;
+        return std::any_of(at, at + 8, [](Real x) { return x != 0; });
+    };
+    Index first = 0, last = a.columns;
+    while (first < last && !counts(first)) ++first;
+    while (last > first && !counts(last - 1)) --last;
+    return {first, last};
+}
+
 void exchange_rows(const DenseBlock& of, Index from, Index to) {
     if (from == to) return;
     for (Index k = 0; k < of.columns; ++k) std::swap(of.column(k)[from], of.column(k)[to]);
@@ -129,11 +141,11 @@ struct TriangleInverse {
     /// b is multiplied by it: four columns are read before they are written.
     void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, put_there); }
 };
-constexpr Index many_columns = panel;  // from as many on an inverse is worth its cost
+constexpr Index many_columns = panel;  // from as many on an inverse is worth its cost, `many` below
 
 /// b = L^-1 b of the unit lower triangle of the factors' rows and columns [begin, end).
-void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b) {
-    if (end - begin == panel && b.columns >= many_columns) {
+void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b, bool many) {
+    if (end - begin == panel && many) {
         TriangleInverse::lower(factors, begin).multiply(b.part(begin, 0, panel, b.columns));
         return;
     }
@@ -142,8 +154,8 @@ void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseB
         for (Index k = begin; k < end; ++k) subtract_scaled(x[k], factors.column(k) + k + 1, x + k + 1, end - k - 1);
     }
 }
-void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b) {
-    if (end - begin == panel && b.columns >= many_columns) {
+void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b, bool many) {
+    if (end - begin == panel && many) {
         TriangleInverse::upper(factors, begin).multiply(b.part(begin, 0, panel, b.columns));
         return;
     }
@@ -156,15 +168,64 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
     }
 }
 
-}  // namespace
+/// Calls `of(begin, count)` for columns that follow each other, but for gaps of zeros that are worth the while: a node
+/// that no contact presses couples to nothing across.
+void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
+    constexpr Index gap = 8;
+    const auto counts = [&](Index k) {
+        const Real* const at = b.column(k);
+        return std::any_of(at, at + b.rows, [](Real x) { return x != 0; });
+    };
+    Index begin = 0, end = 0;
+    for (Index k = 0; k < b.columns; ++k) {
+        if (!counts(k)) continue;
+        if (k - end >= gap || end == 0) {
+            if (end > begin) of(begin, end - begin);
+            begin = k;
+        }
+        end = k + 1;
+    }
+    if (end > begin) of(begin, end - begin);
+}
 
-void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
+void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
     Index row = 0;
-    for (; row + 8 <= c.rows; row += 8) multiply_rows<Real8>(a, b, c, row, take_off);
+    for (; row + 8 <= c.rows; row += 8) {
+        // contacts couple each node of a face to few of the other's, which follow each other
+        const auto [first, last] = columns_that_count(a, row);
+        multiply_rows<Real8>(a.part(0, first, a.rows, last - first), b.part(first, 0, last - first, b.columns), c, row,
+                             take_off);
+    }
     if (row < c.rows && c.rows >= 8)
         multiply_rows<Real8>(a, b, c, c.rows - 8, TakeOffLast{c.rows - row});
     else
         for (; row < c.rows; ++row) multiply_rows<Real>(a, b, c, row, take_off);
+}
+
+void solve_all(const DenseBlock& factors, const Index* pivot, const DenseBlock& b, bool many) {
+    const Index size = factors.rows;
+    for (Index k = 0; k < size; ++k) exchange_rows(b, k, pivot[k]);
+    for (Index begin = 0; begin < size; begin += panel) {
+        const Index end = std::min(begin + panel, size);
+        solve_lower(factors, begin, end, b, many);
+        subtract_dense_product(factors.part(end, begin, size - end, end - begin),
+                               b.part(begin, 0, end - begin, b.columns), b.part(end, 0, size - end, b.columns));
+    }
+    for (Index end = size; end > 0;) {
+        const Index begin = (end - 1) / panel * panel;
+        solve_upper(factors, begin, end, b, many);
+        subtract_dense_product(factors.part(0, begin, begin, end - begin), b.part(begin, 0, end - begin, b.columns),
+                               b.part(0, 0, begin, b.columns));
+        end = begin;
+    }
+}
+
+}  // namespace
+
+void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
+    for_each_run_of_columns(b, [&](Index begin, Index count) {
+        subtract_dense_product(a, b.part(0, begin, b.rows, count), c.part(0, begin, c.rows, count));
+    });
 }
 
 void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Real* y) {
@@ -188,7 +249,7 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
         const Index end = std::min(begin + panel, size), rest = size - end;
         if (!factor_panel(a, begin, end, pivot)) return false;
         if (rest == 0) break;
-        solve_lower(a, begin, end, a.part(0, end, size, rest));
+        solve_lower(a, begin, end, a.part(0, end, size, rest), rest >= many_columns);
         subtract_product(a.part(end, begin, rest, end - begin), a.part(begin, end, end - begin, rest),
                          a.part(end, end, rest, rest));
     }
@@ -196,21 +257,9 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
 }
 
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
-    const Index size = factors.rows;
-    for (Index k = 0; k < size; ++k) exchange_rows(b, k, pivot[k]);
-    for (Index begin = 0; begin < size; begin += panel) {
-        const Index end = std::min(begin + panel, size);
-        solve_lower(factors, begin, end, b);
-        subtract_product(factors.part(end, begin, size - end, end - begin), b.part(begin, 0, end - begin, b.columns),
-                         b.part(end, 0, size - end, b.columns));
-    }
-    for (Index end = size; end > 0;) {
-        const Index begin = (end - 1) / panel * panel;
-        solve_upper(factors, begin, end, b);
-        subtract_product(factors.part(0, begin, begin, end - begin), b.part(begin, 0, end - begin, b.columns),
-                         b.part(0, 0, begin, b.columns));
-        end = begin;
-    }
+    const bool many = b.columns >= many_columns;  // of all: bits do not depend on where zeros are
+    for_each_run_of_columns(
+        b, [&](Index begin, Index count) { solve_all(factors, pivot, b.part(0, begin, b.rows, count), many); });
 }
 
 }  // namespace skerry

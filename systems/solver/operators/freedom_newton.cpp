@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -157,11 +158,13 @@ BodyEquations& FreedomOperator::list_equations(BodyEquations& equations) {
     Real work = equations.factor().work();
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         const Real numbers = 3 * static_cast<Real>(end - begin);
-        // twice as much: once for all steps, which are two where they are as dear as is expected
-        if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 2 / 3;
+        // the inverse of what impulses do, once for some ten steps
+        if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
-    constexpr Real operation_cost = 0.25, contact_cost = 2000;  // ns, measured on a 3 GHz core
-    equations.set_cost(operation_cost * work + contact_cost * static_cast<Real>(size()));
+    // ns, measured on a 3 GHz core; of many numbers at a time registers are full
+    constexpr Real small_operation_cost = 0.25, operation_cost = 0.06, contact_cost = 2000;
+    equations.set_cost((runs_ ? operation_cost : small_operation_cost) * work +
+                       contact_cost * static_cast<Real>(size()));
     return equations;
 }
 
@@ -240,6 +243,7 @@ struct Answer {
     Vec3 impulse;
     Mat3 derivative;
     bool open = false;
+    Vec3 way = Vec3::Zero();  // of what slides
 };
 Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -250,15 +254,17 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     const Vec3 h = tangential / length;
     const Mat3 pressing = normal * normal.transpose();
     const Mat3 turning = (mu.slide * along / length) * (Mat3::Identity() - pressing - h * h.transpose());
-    return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose()};
+    return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose(), false, h};
 }
 
 }  // namespace
 
 /// Impulses answer to the present motion, P( start - u / (softness D) ), and the velocities of the region and
 /// `answered` are those that they make. Returns ( answered - present ) K ( answered - present ), J, and leaves that
-/// right-hand side, with the matrix where it is asked for.
-Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix) {
+/// right-hand side, with the matrix where that is looked for, and with what has turned round (stop_turned), where that
+/// is: contacts that slide against the way that they slid when the matrix was made last.
+Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Look look) {
+    const bool with_matrix = look != Look::value;
     if (with_matrix) equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
         if (!(mobility(i) > 0)) continue;
@@ -269,9 +275,27 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
         memory_.impulse[at] = padded(answer.impulse);
         if (!with_matrix) continue;
         equations.answer[at] = answer.derivative;
-        if (!answer.open) equations.add(i, answer.derivative / soft);
+        if (runs_ && look == Look::turns) equations.stops[at] = equations.way[at].dot(answer.way) < 0 ? 1 : 0;
+        equations.way[at] = answer.way;
+        if (answer.open) continue;
+        equations.add(i, (equations.stops[at] != 0 ? Mat3(Mat3::Identity()) : answer.derivative) / soft);
     }
-    return compare_motion(equations, start);
+    const Real lack = compare_motion(equations, start);
+    if (with_matrix) stop_turned(equations, start);
+    return lack;
+}
+
+/// What has turned round has passed the place where it sticks, which is as small as contacts are hard: Newton's step
+/// for what slides would pass it again and again. It takes what has turned for stuck, and the right-hand side has the
+/// impulse that would stop it.
+void FreedomOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> start) {
+    for (Index i = 0; i < size(); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (equations.stops[at] == 0 || equations.way[at].isZero(0)) continue;
+        const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
+        const Vec3 stopping = start[at].head<3>() - u / (equations.softness * contact(i).diagonal);
+        equations.add_right(i, stopping - memory_.impulse[at].head<3>());
+    }
 }
 
 /// Velocities of the region and `answered` become those that its impulses make, the right-hand side K times what that
@@ -304,14 +328,17 @@ std::optional<Real> FreedomOperator::go_on_as_before(BodyEquations& equations, s
     if (!equations.factor().solve()) return std::nullopt;
     const std::span<const Real> step = equations.factor().right();
     for (std::size_t k = 0; k < equations.present.size(); ++k) equations.present[k] += step[k];
-    return answer_motion(equations, start, true);
+    return answer_motion(equations, start, Look::turns);
 }
 
 /// One Newton step from the present motion, as long as it lowers what answer_motion returns: the first of lengths 1,
-/// 1/2, ... that lowers it to 0.9 of it, else the best. Returns that, or nothing where the factor broke down.
+/// 1/2, ... that lowers it to 0.9 of it, else the best; a step that stops contacts may be of length 1 though it raises
+/// it, a few times a round. Returns that, or nothing where the factor broke down.
 std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
+    constexpr Index most_rises = 3;
+    const bool stops = std::ranges::find(equations.stops, 1) != equations.stops.end();
     if (!equations.factor().solve()) return std::nullopt;
     std::ranges::copy(equations.present, equations.before.begin());
     std::ranges::copy(equations.factor().right(), equations.step.begin());
@@ -323,8 +350,12 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
     for (int k = 0; k < halvings; ++k) {
         const Real length = std::ldexp(Real(1), -k);
         go(length);
-        const Real next = answer_motion(equations, start, k == 0);
+        const Real next = answer_motion(equations, start, k == 0 ? Look::turns : Look::value);
         if (k == 0 && next < enough * lack) return next;  // as most
+        if (k == 0 && stops && equations.rises < most_rises) {
+            ++equations.rises;
+            return next;
+        }
         if (next < least) {
             least = next;
             best_length = length;
@@ -332,7 +363,7 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
         if (next < enough * lack) break;
     }
     go(best_length);
-    return answer_motion(equations, start, true);
+    return answer_motion(equations, start, Look::matrix);
 }
 
 namespace {
@@ -341,11 +372,12 @@ namespace {
 // Soft bodies are solved at the first, stiff ones at a hundredth of it, a light one under a heavy one at a small part
 // of their ratio: so that it follows how hard rounds are.
 constexpr Real most_softness = 0.3, least_softness = 1e-9;
+constexpr Real first_softness = 0.03;  // with bodies that deform: what turns round stops, and rounds end
 
 /// Of the next round, after one that took so many steps.
-Real softness_after(Index steps, Real softness) {
+Real softness_after(Index steps, Real softness, bool deforming) {
     constexpr Index few = 4;
-    const Real change = steps <= few / 2 ? 0.03 : steps <= few ? 0.3 : 1.0;
+    const Real change = steps <= few / 2 ? 0.03 : steps > few ? 1.0 : deforming ? 0.1 : 0.3;
     return std::max(least_softness, change * softness);
 }
 
@@ -365,11 +397,12 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
     equations.offset.resize(static_cast<std::size_t>(size()));
     for (Index i = 0; i < size(); ++i) equations.offset[static_cast<std::size_t>(i)] = contact(i).offset.head<3>();
     SolveResult result{0, error, error <= tolerance};
-    equations.softness = most_softness;
+    equations.softness = runs_ ? first_softness : most_softness;
     Real error_at_start = error;
     Index in_round = 0;
     bool goes_on = false;  // with contacts as the round before left them
-    std::optional<Real> lack = answer_motion(equations, start, true);
+    equations.start_round();
+    std::optional<Real> lack = answer_motion(equations, start, Look::matrix);
     while (!result.converged && result.iterations < limit) {
         ++result.iterations;
         ++in_round;
@@ -389,7 +422,7 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
         in_round = 0;
         // the next round: from these impulses, and the motion that they make; or this one anew
         if (ended) {
-            equations.softness = softness_after(steps, equations.softness);
+            equations.softness = softness_after(steps, equations.softness, static_cast<bool>(runs_));
             error_at_start = now;
             std::ranges::copy(memory_.impulse, start.begin());
         } else {
@@ -401,7 +434,9 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
         }
         std::ranges::copy(equations.answered, equations.present.begin());
         goes_on = ended;
-        if (!goes_on) lack = answer_motion(equations, start, true);
+        std::ranges::fill(equations.stops, std::uint8_t(0));
+        equations.rises = 0;
+        if (!goes_on) lack = answer_motion(equations, start, Look::matrix);
     }
     std::ranges::copy(best, memory_.impulse.begin());
     refresh();

@@ -113,7 +113,9 @@ private:
     void assemble(BodyEquations& equations) const;
     /// What impulses do to the unknowns, from the velocities of the region.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
-    Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, bool with_matrix);
+    enum class Look { value, matrix, turns };
+    Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, Look look);
+    void stop_turned(BodyEquations& equations, std::span<const Vec4> start);
     Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
     BodyEquations& list_equations(BodyEquations& equations);
     /// Whether a term of a contact is all of its body, and whether a node moves by itself.

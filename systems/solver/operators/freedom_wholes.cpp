@@ -82,7 +82,8 @@ SolveResult FreedomOperator::take_rounds_of_wholes(Real error, Real tolerance, I
     while (goes_on) {
         std::ranges::copy(memory_.impulse, start.begin());
         start_round_of_wholes(*equations);
-        std::optional<Real> lack = answer_motion(*equations, start, true);
+        equations->start_round();
+        std::optional<Real> lack = answer_motion(*equations, start, Look::matrix);
         for (Index steps = 0; lack && steps < most_in_round && result.iterations < limit; ++steps) {
             if (std::sqrt(*lack) <= enough * scale_ * result.error) break;
             ++result.iterations;

@@ -58,6 +58,39 @@ TEST_CASE("a product is taken off a matrix of any shape", "[solver]") {
     CHECK((matrix_of(c, rows, columns) - expected).norm() < 1e-14);
 }
 
+TEST_CASE("zeros of a dense matrix are left out, bit for bit", "[solver]") {
+    constexpr Index size = 40, columns = 45;
+    std::vector<Real> a = random_numbers(size * size, 1), b = random_numbers(size * columns, 2);
+    // a band, as of contacts between two faces, and columns of what no contact presses: runs of four and of many
+    for (Index c = 0; c < size; ++c)
+        for (Index r = 0; r < size; ++r)
+            if (std::abs(c - r) > 5) a[static_cast<std::size_t>(c * size + r)] = 0;
+    const auto is_zero = [](Index c) { return c < 9 || (c >= 13 && c < 25) || c == 30 || c >= 43; };
+    std::vector<Real> gaps = b;
+    for (Index c = 0; c < columns; ++c)
+        if (is_zero(c)) std::fill_n(gaps.begin() + c * size, size, Real(0));
+
+    std::vector<Real> product(size * columns, 0), expected(size * columns, 0);
+    subtract_product(block_of(a, size, size), block_of(gaps, size, columns), block_of(product, size, columns));
+    for (Index c = 0; c < columns; ++c)
+        for (Index r = 0; r < size; ++r) {
+            Real sum = 0;
+            for (Index k = 0; k < size; ++k)
+                sum += a[static_cast<std::size_t>(k * size + r)] * gaps[static_cast<std::size_t>(c * size + k)];
+            expected[static_cast<std::size_t>(c * size + r)] -= sum;
+        }
+    CHECK(product == expected);
+
+    std::vector<Real> factors = random_numbers(size * size, 3);
+    std::vector<Index> pivot(size);
+    REQUIRE(factor_dense(block_of(factors, size, size), pivot.data()));
+    solve_dense(block_of(factors, size, size), pivot.data(), block_of(gaps, size, columns));
+    solve_dense(block_of(factors, size, size), pivot.data(), block_of(b, size, columns));
+    for (Index c = 0; c < columns; ++c)
+        if (is_zero(c)) std::fill_n(b.begin() + c * size, size, Real(0));
+    CHECK(gaps == b);
+}
+
 TEST_CASE("a product with a vector is added to one of any length", "[solver]") {
     const auto rows = GENERATE(Index{1}, Index{8}, Index{13}), columns = GENERATE(Index{1}, Index{4}, Index{11});
     std::vector<Real> a = random_numbers(static_cast<std::size_t>(rows * columns), 1);
