@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "components/check.h"
@@ -105,10 +106,8 @@ struct Pieces {
         for (std::size_t i = 0; i < 9; ++i)
             for (std::size_t l = 0; l < element_lanes; ++l) sum[i] += elements.volume[b][l] * entry[i][l];
     }
-    /// The same as bound(), by the masses of the frame: in the rotation nearest to how the body is deformed all in all.
-    void bound_in_frame(Range blocks, const std::array<Real, 9>& deformation, Real enough, auto&& visit) const {
-        const std::array<Real, 4> turn = nearest_rotation(Mat3(deformation.data()), {1, 0, 0, 0});
-        const Mat3 rotation = Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
+    /// The same as bound(), by the masses of the frame: in the rotation of the body.
+    void bound_in_frame(Range blocks, const Mat3& rotation, Real enough, auto&& visit) const {
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, 0, [&](std::size_t b) {
             visit(b,
@@ -152,6 +151,12 @@ void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepLo
     }
 }
 
+/// The rotation nearest to how a body is deformed all in all.
+Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
+    const std::array<Real, 4> turn = nearest_rotation(Mat3(deformation.data()), {1, 0, 0, 0});
+    return Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
+}
+
 /// Of the bound at rest: below it a body is not looked at by forms and shares, which hardly know it better.
 constexpr Real well_in_frame = 1.25;
 
@@ -162,6 +167,7 @@ void look_on(const Pieces& pieces, Range blocks, int levels, std::uint64_t until
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
     const Real at_rest = frame_bound(pieces.elements, blocks);
+    std::optional<Mat3> rotation;  // found once, for all waves that this goes on with
     while (look.piece < until) {
         const PieceRun run = run_from(blocks, levels, at_rest > 0, look.piece, until);
         if (run.opens_wave) look.known = greatest_of(look, run).bound;
@@ -169,13 +175,14 @@ void look_on(const Pieces& pieces, Range blocks, int levels, std::uint64_t until
             pieces.sum(run, look);
         } else if (run.work == PieceWork::bound_in_frame || !(look.in_frame > 0) ||
                    look.in_frame > well_in_frame * at_rest) {
+            if (run.work == PieceWork::bound_in_frame && !rotation) rotation = turn_as_whole(look.deformation);
             in_chunks(run, [&](Index begin, Index end, StepLook& found) {
                 const Range some{run.blocks.begin + begin, run.blocks.begin + end};
                 const auto note = [&](std::size_t b, const Real8& bound) {
                     note_bound(b, bound, greatest_of(found, run), found);
                 };
                 if (run.work == PieceWork::bound_in_frame)
-                    pieces.bound_in_frame(some, look.deformation, look.known, note);
+                    pieces.bound_in_frame(some, *rotation, look.known, note);
                 else
                     pieces.bound(some, run.level, look.known, note);
             });
