@@ -10,6 +10,7 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t contact_block = 512;  // ~5 us of merging
+constexpr std::size_t stored_block = 512;   // ~5 us of copying what the other cores wrote
 
 /// Turns an impulse by the smallest rotation that takes one unit normal to the other, so that it keeps its place in the
 /// friction cone. A normal that flipped names another contact: nothing is carried over.
@@ -134,19 +135,25 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
     return true;
 }
 
-void store_warm_start(const ContactsDone& done, Real kick, WarmStartTable& last) {
+void store_warm_start(Executor& executor, const ContactsDone& done, Real kick, WarmStartTable& last) {
     const std::size_t count = done.key.size();
     SKERRY_CHECK(done.normal.size() == count && done.impulse.size() == count);
     SKERRY_CHECK(done.point.empty() || done.point.size() == count);
-    const auto keep = [](const auto& from, auto& to) {
-        to.resize(from.size());
-        std::copy(from.begin(), from.end(), to.begin());
-    };
-    keep(done.key, last.key);
-    keep(done.normal, last.normal);
-    keep(done.impulse, last.impulse);
-    keep(done.point, last.point);
+    last.key.resize(count);
+    last.normal.resize(count);
+    last.impulse.resize(count);
+    last.point.resize(done.point.size());
     last.step.assign(count == 0 ? 0 : 1, kick);
+    parallel_for(executor, count, stored_block, [&](std::size_t begin, std::size_t end) {
+        const auto keep = [&](const auto& from, auto& to) {
+            std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin),
+                      from.begin() + static_cast<std::ptrdiff_t>(end), to.begin() + static_cast<std::ptrdiff_t>(begin));
+        };
+        keep(done.key, last.key);
+        keep(done.normal, last.normal);
+        keep(done.impulse, last.impulse);
+        if (!done.point.empty()) keep(done.point, last.point);
+    });
 }
 
 }  // namespace skerry

@@ -62,7 +62,7 @@ struct ContactsDone {
     }
 };
 
-/// Keeps this step's impulses for the next.
-void store_warm_start(const ContactsDone& done, Real kick, WarmStartTable& last);
+/// Keeps this step's impulses for the next. Parallel over contacts.
+void store_warm_start(Executor& executor, const ContactsDone& done, Real kick, WarmStartTable& last);
 
 }  // namespace skerry

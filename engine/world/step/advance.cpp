@@ -119,9 +119,10 @@ void note_inversions(WorldState& world, StepReport& report) {
 
 /// Says that the step asked for was too long for a body.
 void note_limit(WorldState& world, StepReport& report) {
+    if (!world.model.settings.step_size) return;
     Index body = no_index;
     const Real trusted = trusted_step(world.model, &body);
-    if (!world.model.settings.step_size || body == no_index || *world.model.settings.step_size <= trusted) return;
+    if (body == no_index || *world.model.settings.step_size <= trusted) return;
     ++report.limited;
     ++world.record.counters.limited;
     report.limited_step = trusted;

@@ -23,7 +23,7 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
     const std::vector<Vec3> normal(4, Vec3::UnitZ());
     const std::vector<Vec3> impulse{{0, 0, 1}, {0, 0, 2}, {0, 1, 3}, {0, 0, 4}};
     WarmStartTable last;
-    store_warm_start({before, normal, impulse}, 0.1, last);
+    store_warm_start(*serial, {before, normal, impulse}, 0.1, last);
 
     const std::vector<ContactKey> now{key(5), key(10), key(25), key(30), key(50)};  // 20 and 40 gone, 5, 25 and 50 new
     std::vector<Vec3> matched(5, Vec3::Ones());
@@ -33,7 +33,8 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
 
 TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]") {
     WarmStartTable last;
-    store_warm_start({std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()),
+    store_warm_start(*serial,
+                     {std::vector<ContactKey>{{1, 9}, {2, 3}}, std::vector<Vec3>(2, Vec3::UnitX()),
                       std::vector<Vec3>{{1, 0, 0}, {2, 0, 0}}},
                      1, last);
     std::vector<Vec3> matched(3);
@@ -45,8 +46,8 @@ TEST_CASE("keys are told apart by the pair before the feature", "[unit][contact]
 TEST_CASE("a contact that was not in the last step starts from what it came to rest with", "[unit][contact]") {
     WarmStartTable last;
     const auto ups = [](std::size_t count) { return std::vector<Vec3>(count, Vec3::UnitZ()); };
-    store_warm_start({std::vector<ContactKey>{{1, 1}, {4, 1}}, ups(2), std::vector<Vec3>{{1, 0, 0}, {4, 0, 0}}}, 1,
-                     last);
+    store_warm_start(
+        *serial, {std::vector<ContactKey>{{1, 1}, {4, 1}}, ups(2), std::vector<Vec3>{{1, 0, 0}, {4, 0, 0}}}, 1, last);
     RestingContactTable resting;
     resting.contact.resize(3);
     const std::vector<ContactKey> rest{{1, 1}, {2, 1}, {2, 2}};  // the first has been looked for again since
@@ -74,7 +75,7 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
         if (from.dot(to) < -0.99) continue;
         const Vec3 impulse(normal_number(random), normal_number(random), normal_number(random));
         WarmStartTable last;
-        store_warm_start({std::vector{key(1)}, std::vector{from}, std::vector{impulse}}, 0.2, last);
+        store_warm_start(*serial, {std::vector{key(1)}, std::vector{from}, std::vector{impulse}}, 0.2, last);
         std::vector<Vec3> matched(1);
         match_warm_start(*serial, std::vector{key(1)}, std::vector{to}, last, {}, 0.1, matched);
         const Vec3 expected = 0.5 * (Eigen::AngleAxisd(std::acos(from.dot(to)), from.cross(to).normalized()) * impulse);
@@ -85,8 +86,8 @@ TEST_CASE("an impulse turns with its normal and keeps its place in the cone", "[
 
 TEST_CASE("a normal that flipped carries nothing over", "[unit][contact]") {
     WarmStartTable last;
-    store_warm_start({std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}}, 1,
-                     last);
+    store_warm_start(*serial, {std::vector{key(1)}, std::vector<Vec3>{Vec3::UnitZ()}, std::vector<Vec3>{Vec3::UnitZ()}},
+                     1, last);
     std::vector<Vec3> matched(1, Vec3::Ones());
     match_warm_start(*serial, std::vector{key(1)}, std::vector<Vec3>{-Vec3::UnitZ()}, last, {}, 1, matched);
     CHECK(matched[0] == Vec3::Zero());
@@ -109,7 +110,7 @@ TEST_CASE("matching many contacts gives the same on any number of workers", "[un
     std::vector<Vec3> impulse(before.size());
     for (std::size_t i = 0; i < before.size(); ++i) impulse[i] = Vec3(0, 0, static_cast<Real>(before[i].feature));
     WarmStartTable last;
-    store_warm_start({before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse}, 1, last);
+    store_warm_start(*serial, {before, std::vector<Vec3>(before.size(), Vec3::UnitZ()), impulse}, 1, last);
     for (const int workers : {1, 2, 3, 8}) {
         std::vector<Vec3> matched(now.size());
         const auto executor = make_executor(Backend::threads, workers);
@@ -147,7 +148,7 @@ TEST_CASE("what a contact that is gone carried goes to the nearest one of its pa
     before.add({9, 1}, {0.1, 0, 0});
     WarmStartTable last;
     const std::vector<Vec3> impulse{{0, 0, 1}, {0, 0.5, 2}, {0, 0, 4}, {0, 0, 8}, {0, 0, 16}, {0, 0, 32}};
-    store_warm_start({before.key, before.normal, impulse, before.point}, 0.2, last);
+    store_warm_start(*serial, {before.key, before.normal, impulse, before.point}, 0.2, last);
 
     after.add(key(1), {0.1, 0, 0});
     after.add(key(6), {0.205, 0, 0});                // in place of 2, and nearer to it than 8
@@ -176,7 +177,7 @@ TEST_CASE("what a contact that is gone carried goes to the nearest one of its pa
         CHECK(matched == std::vector<Vec3>(6, Vec3::Zero()));
     }
     SECTION("a step whose places were not kept has nothing to hand on") {
-        store_warm_start({before.key, before.normal, impulse}, 0.2, last);
+        store_warm_start(*serial, {before.key, before.normal, impulse}, 0.2, last);
         CHECK_FALSE(hand_on_impulses(*serial, after.now(), last, 0.1, matched));
         CHECK(matched == expected);
     }
@@ -197,7 +198,7 @@ TEST_CASE("handing on gives the same on any number of workers", "[unit][contact]
             if (random() % 4 != 0) after.add({pair, f}, at);
         }
     WarmStartTable last;
-    store_warm_start({before.key, before.normal, impulse, before.point}, 1, last);
+    store_warm_start(*serial, {before.key, before.normal, impulse, before.point}, 1, last);
     std::vector<Vec3> expected;
     for (const int workers : {1, 2, 3, 8}) {
         std::vector<Vec3> matched(after.key.size(), Vec3::Zero());
