@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <span>
 
 #include "components/types.h"
@@ -16,6 +17,17 @@ struct Range {
     Index size() const { return end - begin; }
     bool operator==(const Range&) const = default;
 };
+
+/// A range of rows, to be written or not as all of them are.
+template <class T>
+std::span<T> rows_of(std::span<T> all, Range rows) {
+    return all.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
+}
+/// The same of a column.
+auto rows_of(auto& column, Range rows) requires requires {
+    column.span();
+}
+{ return rows_of(column.span(), rows); }
 
 /// Where a row is once ranges of rows, ascending, are gone; of one that is gone itself, where the next one is.
 inline Index row_without(Index row, std::span<const Range> gone) {

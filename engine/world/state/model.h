@@ -35,11 +35,6 @@
 
 namespace skerry {
 
-/// A range of the rows of a column, to be written or not as the column is.
-auto rows_of(auto& column, Range rows) {
-    return column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
-}
-
 /// Slot of an attachment that belongs to a mesh collider: no user has a handle to it.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "components/range.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
 
@@ -12,11 +13,6 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_job = 16;
-
-template <class T>
-std::span<T> part_of_rows(std::span<T> rows, Range range) {
-    return rows.subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
-}
 
 bool move_alike(std::span<const Vec3> velocity) {
     const Vec3& first = velocity.front();
@@ -52,7 +48,7 @@ bool is_unstrained(const UnstrainedInputs& inputs, Range blocks) {
 
 std::uint16_t steps_unstrained(const UnstrainedInputs& inputs, std::size_t body, std::uint16_t before) {
     const Range nodes = inputs.body_nodes[body], blocks = inputs.body_blocks[body];
-    if (inputs.body_asleep[body] || blocks.size() == 0 || !move_alike(part_of_rows(inputs.velocity, nodes))) return 0;
+    if (inputs.body_asleep[body] || blocks.size() == 0 || !move_alike(rows_of(inputs.velocity, nodes))) return 0;
     if (before > 1) return static_cast<std::uint16_t>(before - 1);
     return is_unstrained(inputs, blocks) ? unstrained_steps : std::uint16_t{0};
 }
@@ -66,9 +62,9 @@ Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const 
             out.unstrained[body] = steps_unstrained(inputs, body, before);
             if (before > 0 || out.unstrained[body] == 0) continue;
             const Range blocks = inputs.body_blocks[body];
-            std::ranges::copy(part_of_rows(inputs.rotation, blocks), part_of_rows(out.rotation_next, blocks).begin());
+            std::ranges::copy(rows_of(inputs.rotation, blocks), rows_of(out.rotation_next, blocks).begin());
             if (!out.viscous_strain_next.empty())
-                std::ranges::fill(part_of_rows(out.viscous_strain_next, blocks), ElementStrain{});
+                std::ranges::fill(rows_of(out.viscous_strain_next, blocks), ElementStrain{});
         }
     });
     return static_cast<Index>(std::ranges::count_if(out.unstrained, [](std::uint16_t steps) { return steps > 0; }));
