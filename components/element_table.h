@@ -75,7 +75,6 @@ struct ElementBlockTable {
     Column<ElementLane> relaxation_rate;  // 1/s, how fast the relaxing part forgets
     Column<ElementLane> own_frequency;    // 1/s, highest of the element at rest, from above
     Column<Real> relaxing_share;          // stiffness of the relaxing part over that of the law at rest
-    Column<Real> relaxed;                 // J, what the block dissipated in this step
     Column<Index> body;                   // row of BodyTable
     Column<Index> material;               // row of MaterialTable
     Column<ElementPart> part;
@@ -115,15 +114,20 @@ struct ElementBlockTable {
         visit("own_frequency", own_frequency, ColumnRole::state);
         visit("relaxing_share", relaxing_share, ColumnRole::state);
         visit("viscous_strain_next", viscous_strain_next, ColumnRole::memory);
-        visit("relaxed", relaxed, ColumnRole::scratch);
         visit("rotation_next", rotation_next, ColumnRole::scratch);
     }
 };
 
+/// x, y, z and a zero: one register.
+using PaddedVec3 = Lanes<Real, 4>;
+
+/// Numbers in a row of a patch.
+inline constexpr Index slot_width = sizeof(PaddedVec3) / sizeof(Real);
+
 /// The k-th nodes of the elements of a block, k = 0 first: the one whose gradient is minus the sum of all others.
 struct ElementNodeTable {
     Column<NodeLane> node;
-    Column<NodeLane> slot;             // where the node stands among those of the patch, from 0
+    Column<NodeLane> slot;             // where the node's row of a patch begins, in numbers: slot_width times its place
     Column<ElementGradient> gradient;  // at rest
 
     /// The only list of columns: resize, erase, hash and save walk it. Derived: slot by build_patches.
@@ -137,9 +141,6 @@ struct ElementNodeTable {
 /// J per unit of the rate of F, column by column: what the viscosity of an element does in a step.
 using ElementViscousImpulse = std::array<ElementLane, 9>;
 
-/// x, y, z and a zero: one register.
-using PaddedVec3 = Lanes<Real, 4>;
-
 /// Patches: blocks of one body and one level that lie close together, so that they have few nodes between them. Forces
 /// are summed up within a patch, in cache, before nodes gather what few patches give them. Made from the blocks by
 /// build_patches, body after body: the lists grow and nothing points to them.
@@ -152,6 +153,7 @@ struct ElementPatches {
     Ragged<Index> slots_of_node;   // by node, ascending
     Column<PaddedVec3> position;   // m, by slot; scratch
     Column<PaddedVec3> force;      // N, by slot, what the patch does to the node; scratch
+    Column<Real> relaxed;          // J, by patch: what relaxed in its elements in this step; scratch
     // by block, of those that are viscous and due; none where nothing is viscous; scratch
     Column<ElementViscousImpulse> viscous_impulse;
     Column<std::uint8_t> viscous;  // by block: whether it has one in this step; as many rows; scratch

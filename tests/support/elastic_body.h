@@ -92,11 +92,16 @@ struct ElasticBody {
     /// dissipates, J.
     Real compute_elements(Executor& executor, Real h = 0) {
         return compute_element_forces(executor, inputs(), position, velocity, h, 0, elements.rotation,
-                                      {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
-                                      patch_forces());
+                                      {elements.rotation_next, elements.viscous_strain_next}, patch_forces());
     }
     PatchForces patch_forces() {
-        return {patches.blocks, patches.slots, patches.node, element_nodes.slot, patches.position, patches.force};
+        return {.blocks = patches.blocks,
+                .slots = patches.slots,
+                .node = patches.node,
+                .slot = element_nodes.slot,
+                .position = patches.position,
+                .force = patches.force,
+                .relaxed = patches.relaxed};
     }
     void gather(const Vec3& gravity = Vec3::Zero()) {
         gather_node_forces(patches.slots_of_node.view(), patches.force, mass, gravity, load, force);

@@ -97,7 +97,7 @@ void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, s
     impulse *= weight;
     const auto add = [&](Index k, const Vec3& f) {
         for (std::size_t i = 0; i < 3; ++i)
-            force[static_cast<std::size_t>(slot[k][l])].lane[i] += f[static_cast<Eigen::Index>(i)];
+            force[static_cast<std::size_t>(slot[k][l] / slot_width)].lane[i] += f[static_cast<Eigen::Index>(i)];
     };
     const BlockNodes nodes = elements.nodes_of(b);
     Vec3 sum = Vec3::Zero();

@@ -308,7 +308,8 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
         for (auto s = static_cast<std::size_t>(first_slot); s < patches.node.size(); ++s)
             slot_of(patches.node[s]) = static_cast<Index>(s) - first_slot;
         for (std::size_t row = first_row; row < end_row; ++row)
-            for (std::size_t l = 0; l < element_lanes; ++l) nodes.slot[row][l] = slot_of(nodes.node[row][l]);
+            for (std::size_t l = 0; l < element_lanes; ++l)
+                nodes.slot[row][l] = slot_width * slot_of(nodes.node[row][l]);
         const Range slots{first_slot, static_cast<Index>(patches.node.size())};
         for (Index s = slots.begin; s < slots.end; ++s) slot_of(patches.node[static_cast<std::size_t>(s)]) = no_index;
         patches.level.resize(patches.node.size(), blocks.level[begin]);
@@ -319,6 +320,7 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
     }
     patches.position.resize(patches.node.size());
     patches.force.resize(patches.node.size());
+    patches.relaxed.resize(patches.blocks.size());
     sort_by_row(patches.node, node_count, patches.slots_of_node);
     const std::span<const Real> viscous_time = blocks.viscous_time.span().subspan(first_block);
     if (!patches.viscous_impulse.empty() || std::ranges::any_of(viscous_time, [](Real time) { return time > 0; }))
@@ -332,6 +334,7 @@ void truncate_patches(Index block_count, Index node_count, ElementPatches& patch
     const std::size_t slots = kept > 0 ? static_cast<std::size_t>(patches.slots[kept - 1].end) : 0;
     patches.blocks.resize(kept);
     patches.touched.resize(kept);
+    patches.relaxed.resize(kept);
     if (!patches.viscous_impulse.empty()) patches.resize_viscous(static_cast<std::size_t>(block_count));
     patches.slots.resize(kept);
     patches.node.resize(slots);

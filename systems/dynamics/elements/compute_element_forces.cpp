@@ -46,12 +46,6 @@ LaneMat3<T> bounded_viscous_stress(const T& viscosity, const LaneMat3<T>& F, con
     return multiply(F, scale * (product + transposed(product)));
 }
 
-/// The same order however many lanes are computed at once.
-Real sum_of(const ElementLane& lanes) {
-    const Real* const x = lanes.lane;
-    return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
-}
-
 // Blocks between the one that is computed and the one whose rows are asked for.
 constexpr std::size_t blocks_ahead = 6;
 
@@ -70,8 +64,8 @@ struct Run {
     Real duration;                   // in kicks
     Real kick;                       // s
     Real kick_over_last;             // 0: what relaxed in the step before is not known
-    const PaddedVec3* position;      // m, of the patch, by slot
-    PaddedVec3* force;               // N, the same
+    PatchRows<const Real> position;  // m, of the patch
+    PatchRows<Real> force;           // N, the same
     std::span<const Vec3> velocity;  // of all nodes
     std::span<const ElementRotation> rotation;
     const ElementMemory& next;
@@ -113,23 +107,33 @@ struct Run {
         return load_part<T>(column[block], part);
     }
 
-    /// The dashpots give way for as long as the block is due, then the springs push. Returns the stress, Pa, and writes
-    /// what the dashpots have taken and what they dissipated, J.
+    /// What is kept of the stretch of both viscous parts while the dashpots give way for as long as the block is due.
+    template <class T>
+    struct Kept {
+        T strain, volume;
+    };
+    template <class T>
+    [[gnu::always_inline]] Kept<T> kept_of(std::size_t block, std::size_t part) const {
+        const Real time = duration * kick;
+        const T forgets = time * part_of<T>(elements.relaxation_rate, block, part);
+        const T forgets_volume = (time / bulk_time) * part_of<T>(elements.own_frequency, block, part);
+        // backward Euler: never more than all; one division for both
+        const T less = 1.0 + forgets, less_volume = 1.0 + forgets_volume, over_both = 1.0 / (less * less_volume);
+        return {over_both * less_volume, over_both * less};
+    }
+
+    /// The dashpots give way, then the springs push. Returns the stress, Pa, and writes what the dashpots have taken
+    /// and what they dissipated, J.
     template <Kicks kicks, class T>
-    [[gnu::always_inline]] LaneMat3<T> relax(const LaneMat3<T>& F, std::size_t block, std::size_t part,
-                                             ElementLane& dissipated) const {
+    [[gnu::always_inline]] LaneMat3<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, std::size_t block,
+                                             std::size_t part, T& dissipated) const {
         ElementStrain& forgotten_next = next.viscous_strain[block];
         const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
         const LaneSymmetric<T> strain = green_strain(F);
         const ElementStrain& forgotten = elements.viscous_strain[block];
         const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
         const Real of_now = kick_over_last > 0 ? 1 : 2;  // not known: as if it had been stretched as now
-        const Real time = duration * kick;
-        const T forgets = time * part_of<T>(elements.relaxation_rate, block, part);
-        const T forgets_volume = (time / bulk_time) * part_of<T>(elements.own_frequency, block, part);
-        // backward Euler: never more than all; one division for both
-        const T kept = 1.0 + forgets, kept_volume = 1.0 + forgets_volume, over_both = 1.0 / (kept * kept_volume);
-        const ViscousStretch<T> after{T(over_both * kept_volume) * before.strain, over_both * kept * before.volume};
+        const ViscousStretch<T> after{kept.strain * before.strain, kept.volume * before.volume};
         const LaneSymmetric<T> taken = strain - after.strain;
         const T taken_volume = strain.trace() - after.volume;
         // Springs push, in the mean, as stretched as in the step before and in this one, on what the dashpots take; and
@@ -146,7 +150,7 @@ struct Run {
         const LaneSymmetric<T> S = stress(moduli, after);
         const T work =
             inner_product(S, taken_twice) + (moduli.bulk * after.volume) * (volume_twice - taken_twice.trace());
-        store_part(T(0.5 * part_of<T>(elements.volume, block, part) * work), dissipated, part);
+        dissipated = 0.5 * part_of<T>(elements.volume, block, part) * work;
         store_part(taken.xx, forgotten_next[0], part);
         store_part(taken.yy, forgotten_next[1], part);
         store_part(taken.zz, forgotten_next[2], part);
@@ -160,9 +164,9 @@ struct Run {
     /// Out of line, as all that is rare: by value, so that what it is given need not be in memory when it is not
     /// called.
     template <class T>
-    [[gnu::noinline]] static LaneMat3<T> relax_unlike(Run run, LaneMat3<T> F, std::size_t block, std::size_t part,
-                                                      ElementLane& dissipated) {
-        return run.relax<Kicks::any>(F, block, part, dissipated);
+    [[gnu::noinline]] static LaneMat3<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, std::size_t block,
+                                                      std::size_t part, T& dissipated) {
+        return run.relax<Kicks::any>(F, kept, block, part, dissipated);
     }
 
     /// Elastic stress, Pa. Frames are extracted from all parts at once: how often their steps are repeated does not
@@ -281,29 +285,38 @@ struct Run {
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
     }
 
-    /// First Piola-Kirchhoff stress, Pa, of all that the elements are made of.
+    /// First Piola-Kirchhoff stress, Pa, of all that the elements are made of. Adds up what relaxes in them, J.
     template <class Law>
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
-                                                                 const Parts<LaneMat3<KernelReal>>& F) const {
+                                                                 const Parts<LaneMat3<KernelReal>>& F,
+                                                                 Parts<KernelReal>& relaxed) const {
+        const bool relaxes = material.relaxes() && !next.viscous_strain.empty();
+        Parts<Kept<KernelReal>> kept{};
+        if (relaxes)  // before all else: a division takes long
+            for (std::size_t part = 0; part < kernel_parts; ++part) kept[part] = kept_of<KernelReal>(block, part);
         Parts<LaneMat3<KernelReal>> P = elastic_stress(law, block, F);
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
-            if (rests_easy(block, F))
+            if (rests_easy(block, F)) {
                 note(block, false, false);
-            else
-                P = with_viscous_stress(*this, block, F, P);
-        }
-        ElementLane dissipated{};
-        if (material.relaxes() && !next.viscous_strain.empty())
-            for (std::size_t part = 0; part < kernel_parts; ++part) {
-                if (kick_over_last == 1) {
-                    P[part] = P[part] + relax<Kicks::alike>(F[part], block, part, dissipated);
-                } else {
-                    ElementLane unlike;
-                    P[part] = P[part] + relax_unlike(*this, F[part], block, part, unlike);
-                    store_part(load_part<KernelReal>(unlike, part), dissipated, part);
-                }
+            } else {
+                // copies for the call alone: what has an address is in memory, whether it is called or not
+                const Parts<LaneMat3<KernelReal>> all =
+                    with_viscous_stress(*this, block, copy_of_parts(F), copy_of_parts(P));
+                P = copy_of_parts(all);
             }
-        if (!next.relaxed.empty()) next.relaxed[block] = sum_of(dissipated);
+        }
+        if (relaxes)
+            for (std::size_t part = 0; part < kernel_parts; ++part) {
+                KernelReal dissipated;
+                if (kick_over_last == 1) {
+                    P[part] = P[part] + relax<Kicks::alike>(F[part], kept[part], block, part, dissipated);
+                } else {
+                    KernelReal unlike;  // for the call alone: what has an address is in memory
+                    P[part] = P[part] + relax_unlike(*this, F[part], kept[part], block, part, unlike);
+                    dissipated = unlike;
+                }
+                relaxed[part] = relaxed[part] + dissipated;
+            }
         return P;
     }
 
@@ -382,10 +395,11 @@ struct Fans {
             const LaneVec3<KernelReal> f2 = force_on_node(Q, nodes, 2, part);
             const LaneVec3<KernelReal> f3 = force_on_node(Q, nodes, 3, part);
             const LaneVec3<KernelReal> sum = f1 + f2 + f3;
-            force2[part] = first ? f2 : force3[part] + f2;
-            force3[part] = f3;
-            force1[part] = first ? f1 : force1[part] + f1;
-            force0[part] = first ? LaneVec3<KernelReal>{-sum.x, -sum.y, -sum.z} : force0[part] - sum;
+            if (first) force0[part] = force1[part] = force3[part] = LaneVec3<KernelReal>{};
+            force2[part] = force3[part] + f2;
+            force1[part] = force1[part] + f1;
+            force3[part] = {f3.x, f3.y, f3.z};
+            force0[part] = force0[part] - sum;
         }
         // all parts of a node before the next node, so that sums have one order, whatever the width of a part
         for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force2[part], nodes.node[2], part);
@@ -398,29 +412,33 @@ struct Fans {
 
 /// With wide registers the nodes of a block are fetched before the forces of the block before are added: neither waits
 /// for the other, and the stress between them is a long chain of operations that do. Narrow ones are too few to hold
-/// both.
+/// both. Returns what relaxes in the elements, J.
 template <class Elements>
-[[gnu::always_inline]] inline void compute_run(const Run& run, Elements&& elements) {
+[[gnu::always_inline]] inline Real compute_run(const Run& run, Elements&& elements) {
     constexpr bool ahead = kernel_parts == 1;
+    Parts<KernelReal> relaxed{};
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = elements.fetch(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
             run.ask_for_one_ahead_of<std::remove_cvref_t<Elements>::rows>(block);
-            const Parts<LaneMat3<KernelReal>> P = run.stress_of(law, block, F);
+            const Parts<LaneMat3<KernelReal>> P = run.stress_of(law, block, F, relaxed);
             if (ahead && block + 1 < run.end) F = elements.fetch(block + 1);
             elements.add(block, P);
             if (!ahead && block + 1 < run.end) F = elements.fetch(block + 1);
         }
     });
+    return sum_of_parts(relaxed);
 }
 
-/// Positions of the nodes of a patch side by side, and forces zero.
+/// Positions of the nodes of a patch, which ascend, side by side, and forces zero.
 void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVec3* to, PaddedVec3* force) {
-    for (std::size_t s = 0; s < node.size(); ++s) {
-        const Vec3& x = position[static_cast<std::size_t>(node[s])];
-        to[s] = {{x[0], x[1], x[2], 0}};
-        force[s] = {};
-    }
+    SKERRY_CHECK(!node.empty());
+    std::fill_n(force, node.size(), PaddedVec3{});
+    const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
+    const std::size_t last = node.size() - 1;  // the only one that nothing may follow
+    for (std::size_t s = 0; s < last; ++s)
+        store_half(__builtin_shufflevector(load_position(&at(s)), Real4{}, 0, 1, 2, 4), to[s].lane);
+    to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 
 /// Where blocks are not as block `begin` is. `touched`: blocks of the patch may be due for different times.
@@ -446,10 +464,8 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
             const auto begin = static_cast<std::size_t>(patches.blocks[p].begin),
                        end = static_cast<std::size_t>(patches.blocks[p].end);
             const bool touched = !patches.touched.empty() && patches.touched[p];
-            if (!touched && elements.schedule.duration(begin) == 0) {
-                if (!next.relaxed.empty()) std::fill(next.relaxed.begin() + begin, next.relaxed.begin() + end, Real{0});
-                continue;
-            }
+            if (!patches.relaxed.empty()) patches.relaxed[p] = 0;
+            if (!touched && elements.schedule.duration(begin) == 0) continue;
             const auto slot = static_cast<std::size_t>(patches.slots[p].begin);
             const auto node = patches.node.subspan(slot, static_cast<std::size_t>(patches.slots[p].size()));
             std::array<PaddedVec3, near_nodes> near;
@@ -460,16 +476,12 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 const Real duration = elements.schedule.duration(b);
                 const std::size_t after = end_of_run(elements, b, end, touched);
                 if (duration > 0) {
-                    const Run run{b,        after,    elements,       elements.material_of(b),
-                                  duration, kick,     kick_over_last, x,
-                                  force,    velocity, rotation,       next,
-                                  patches};
-                    if (elements.count[b] == 4)
-                        compute_run(run, Fans{run});
-                    else
-                        compute_run(run, AnyElements{run});
-                } else if (!next.relaxed.empty()) {
-                    std::ranges::fill(next.relaxed.subspan(b, after - b), Real{0});
+                    const Run run{b,        after,          elements,  elements.material_of(b), duration,
+                                  kick,     kick_over_last, {x->lane}, {force->lane},           velocity,
+                                  rotation, next,           patches};
+                    const Real relaxed =
+                        elements.count[b] == 4 ? compute_run(run, Fans{run}) : compute_run(run, AnyElements{run});
+                    if (!patches.relaxed.empty()) patches.relaxed[p] += relaxed;
                 }
                 b = after;
             }
@@ -477,7 +489,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
     });
     const auto relaxes = [](const MaterialConstants& material) { return material.relaxes(); };
     if (std::ranges::none_of(elements.constants, relaxes)) return 0;
-    return std::accumulate(next.relaxed.begin(), next.relaxed.end(), Real{0});  // in order
+    return std::accumulate(patches.relaxed.begin(), patches.relaxed.end(), Real{0});  // in order
 }
 
 }  // namespace skerry

@@ -97,7 +97,7 @@ inline constexpr Real near_stiffness = 0.7;
 struct PatchForces {
     std::span<const Range> blocks, slots;
     std::span<const Index> node;                            // by slot
-    std::span<const NodeLane> slot;                         // by row of ElementNodeTable
+    std::span<const NodeLane> slot;                         // by row of ElementNodeTable: slot_width times the slot
     std::span<PaddedVec3> position;                         // m, by slot; scratch
     std::span<PaddedVec3> force;                            // N, by slot
     std::span<const std::uint8_t> touched = {};             // by patch: some block of it is; empty: none
@@ -105,6 +105,7 @@ struct PatchForces {
     std::span<std::uint8_t> viscous = {};                   // by block: whether it has one in this step
     // by block, of those that are due: whether the quick bound of an implicit element is above near_stiffness
     std::span<std::uint8_t> stiffening = {};
+    std::span<Real> relaxed = {};  // J, by patch; empty: nothing relaxes
 
     static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
         return {.blocks = binder.read(patches.blocks),
@@ -116,7 +117,8 @@ struct PatchForces {
                 .touched = binder.read(patches.touched),
                 .viscous_impulse = binder.write(patches.viscous_impulse),
                 .viscous = binder.write(patches.viscous),
-                .stiffening = binder.write(patches.stiffening)};
+                .stiffening = binder.write(patches.stiffening),
+                .relaxed = binder.write(patches.relaxed)};
     }
 };
 
@@ -125,12 +127,10 @@ struct ElementMemory {
     std::span<ElementRotation> rotation;
     // What dashpots have taken: of this step; until that is written, of before the last one. Empty: nothing relaxes.
     std::span<ElementStrain> viscous_strain = {};
-    std::span<Real> relaxed = {};  // J, by block
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
         return {.rotation = binder.write(element.rotation_next),
-                .viscous_strain = binder.write(element.viscous_strain_next),
-                .relaxed = binder.write(element.relaxed)};
+                .viscous_strain = binder.write(element.viscous_strain_next)};
     }
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "components/element_table.h"
 #include "systems/material/lane_math.h"
@@ -18,6 +19,18 @@ namespace skerry {
     return *reinterpret_cast<const Real4*>(at->lane);
 }
 
+/// Positions of the nodes of a patch, or forces on them. A slot is the place of the first number of its row
+/// (ElementNodeTable): processors scale by eight at most, and a row is longer.
+template <class Number>
+struct PatchRows {
+    Number* first;
+
+    const PaddedVec3* operator+(Index slot) const { return reinterpret_cast<const PaddedVec3*>(first + slot); }
+    Real4& operator[](Index slot) const requires(!std::is_const_v<Number>) {
+        return *reinterpret_cast<Real4*>(first + slot);
+    }
+};
+
 /// One node of as many lanes as the kernel takes at once, in the order in which the transposes below want them. A
 /// full-width load per node and a few shuffles, in place of three gathers, which cost a load per lane each.
 #ifdef __AVX512VL__
@@ -26,8 +39,8 @@ struct Corner {
     Real8 pair[4];
 };
 
-template <class Position>
-[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t, const Position* position) {
+template <class Positions>
+[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t, Positions position) {
     const auto pair = [&](std::size_t l) {
         return __builtin_shufflevector(load_position(position + node[l]), load_position(position + node[l + 4]), 0, 1,
                                        2, 3, 4, 5, 6, 7);
@@ -61,8 +74,8 @@ struct Corner {
     Real4 lane[4];  // x, y, z, next node's x
 };
 
-template <class Position>
-[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t part, const Position* position) {
+template <class Positions>
+[[gnu::always_inline]] inline Corner load_corner(const NodeLane& node, std::size_t part, Positions position) {
     const Index* const of = node.lane + 4 * part;
     return {{load_position(position + of[0]), load_position(position + of[1]), load_position(position + of[2]),
              load_position(position + of[3])}};
@@ -122,9 +135,9 @@ template <class Part>
 }
 
 /// The columns of Ds: corners 1 to 3 minus corner 0.
-template <class Position, class Load>
+template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> edges_of_part(const NodeLane* node, std::size_t part,
-                                                                 const Position* position, Load&& load_nodes) {
+                                                                 Positions position, Load&& load_nodes) {
     const Corner corner0 = load_nodes(node[0], part, position);
     return {edge(load_nodes(node[1], part, position), corner0), edge(load_nodes(node[2], part, position), corner0),
             edge(load_nodes(node[3], part, position), corner0)};
@@ -134,7 +147,7 @@ template <class Position, class Load>
 inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3> position) {
     const bool clear = clear_of_end(node.data(), 4, position);
     return joined([&](std::size_t part) {
-        return clear ? edges_of_part(node.data(), part, position.data(), load_corner<Vec3>)
+        return clear ? edges_of_part(node.data(), part, position.data(), load_corner<const Vec3*>)
                      : edges_of_part(node.data(), part, position.data(), load_corner_near_end);
     });
 }
@@ -158,9 +171,9 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
 }
 
 /// sum_k (x_k - x_0) (x) g_k
-template <class Position, class Load>
+template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
-                                                                    const Position* position, Load&& load_nodes) {
+                                                                    Positions position, Load&& load_nodes) {
     if (block.count == 4) return gradient_of_edges(block, part, edges_of_part(block.node, part, position, load_nodes));
     const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
     const Corner anchor = load_nodes(block.node[0], part, position);
@@ -177,13 +190,13 @@ template <class Position, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         std::span<const Vec3> position) {
     if (clear_of_end(block.node, block.count, position)) [[likely]]
-        return gradient_of_part(block, part, position.data(), load_corner<Vec3>);
+        return gradient_of_part(block, part, position.data(), load_corner<const Vec3*>);
     return gradient_of_part(block, part, position.data(), load_corner_near_end);
 }
-/// The same where every position is padded.
+/// The same of a patch, where every position is padded.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
-                                                                        const PaddedVec3* position) {
-    return gradient_of_part(block, part, position, load_corner<PaddedVec3>);
+                                                                        PatchRows<const Real> position) {
+    return gradient_of_part(block, part, position, load_corner<PatchRows<const Real>>);
 }
 
 /// The same of all lanes.
@@ -194,6 +207,27 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
 /// One for each part of a block.
 template <class T>
 using Parts = std::array<T, kernel_parts>;
+
+/// Number by number: what a call that is rare is given, so that the original need not be in memory.
+template <class T>
+[[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
+    Parts<LaneMat3<T>> copy;
+    for (std::size_t part = 0; part < kernel_parts; ++part) {
+        const LaneMat3<T>& a = of[part];
+        copy[part] = {{a.c0.x, a.c0.y, a.c0.z}, {a.c1.x, a.c1.y, a.c1.z}, {a.c2.x, a.c2.y, a.c2.z}};
+    }
+    return copy;
+}
+
+/// The lanes of a block added up, in the same order however many are computed at once.
+[[gnu::always_inline]] inline Real sum_of_parts(const std::array<Real4, 2>& lanes) {
+    const Real4 half = lanes[0] + lanes[1];
+    return (half[0] + half[1]) + (half[2] + half[3]);
+}
+[[gnu::always_inline]] inline Real sum_of_parts(const std::array<Real8, 1>& lanes) {
+    const Real8& all = lanes[0];
+    return sum_of_parts({__builtin_shufflevector(all, all, 0, 1, 2, 3), __builtin_shufflevector(all, all, 4, 5, 6, 7)});
+}
 
 /// Q g_k
 [[gnu::always_inline]] inline LaneVec3<KernelReal> force_on_node(const LaneMat3<KernelReal>& Q, const BlockNodes& block,
@@ -232,27 +266,24 @@ template <class Take>
         take(Index{0}, part, LaneVec3<KernelReal>{-sum[part].x, -sum[part].y, -sum[part].z});
 }
 
-/// Adds f of lane l to force[node[l]], one lane after the other: two may have the same node.
-[[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* node, PaddedVec3* force) {
+/// Adds f of lane l to force[slot[l]], one lane after the other: two may have the same node.
+[[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* slot, PatchRows<Real> force) {
     const Real4 zero{};
     const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // x0 y0 x2 y2
     const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
     const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);  // z0 0 z2 0
     const Real4 z13 = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
-    const auto add = [&](Index to, const Real4& lane) {
-        auto& sum = *reinterpret_cast<Real4*>(force[to].lane);
-        sum = sum + lane;
-    };
-    add(node[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));
-    add(node[1], __builtin_shufflevector(xy13, z13, 0, 1, 4, 5));
-    add(node[2], __builtin_shufflevector(xy02, z02, 2, 3, 6, 7));
-    add(node[3], __builtin_shufflevector(xy13, z13, 2, 3, 6, 7));
+    const auto add = [&](Index to, const Real4& lane) { force[to] = force[to] + lane; };
+    add(slot[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));
+    add(slot[1], __builtin_shufflevector(xy13, z13, 0, 1, 4, 5));
+    add(slot[2], __builtin_shufflevector(xy02, z02, 2, 3, 6, 7));
+    add(slot[3], __builtin_shufflevector(xy13, z13, 2, 3, 6, 7));
 }
-[[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real8>& f, const Index* node, PaddedVec3* force) {
+[[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real8>& f, const Index* slot, PatchRows<Real> force) {
     const auto low = [](const Real8& x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); };
     const auto high = [](const Real8& x) { return __builtin_shufflevector(x, x, 4, 5, 6, 7); };
-    add_lanes(LaneVec3<Real4>{low(f.x), low(f.y), low(f.z)}, node, force);
-    add_lanes(LaneVec3<Real4>{high(f.x), high(f.y), high(f.z)}, node + 4, force);
+    add_lanes(LaneVec3<Real4>{low(f.x), low(f.y), low(f.z)}, slot, force);
+    add_lanes(LaneVec3<Real4>{high(f.x), high(f.y), high(f.z)}, slot + 4, force);
 }
 
 }  // namespace skerry

@@ -130,7 +130,7 @@ TEST_CASE("a patch has every node of its elements once, and a node its patches i
             for (Index k = 0; k < body.elements.count[b]; ++k) {
                 const auto row = static_cast<std::size_t>(body.elements.first[b] + k);
                 for (std::size_t l = 0; l < element_lanes; ++l)
-                    CHECK(own[static_cast<std::size_t>(body.element_nodes.slot[row][l])] ==
+                    CHECK(own[static_cast<std::size_t>(body.element_nodes.slot[row][l] / slot_width)] ==
                           body.element_nodes.node[row][l]);
             }
         }

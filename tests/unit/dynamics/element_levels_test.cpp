@@ -28,8 +28,7 @@ struct SliverBody : ElasticBody {
     }
     void compute(const ElementInputs& inputs) {
         compute_element_forces(*executor, inputs, position, velocity, 1e-3, 0, elements.rotation,
-                               {elements.rotation_next, elements.viscous_strain_next, elements.relaxed},
-                               patch_forces());
+                               {elements.rotation_next, elements.viscous_strain_next}, patch_forces());
     }
     /// Gives every block a level, in a patch of its own.
     template <class LevelOf>
@@ -246,6 +245,6 @@ TEST_CASE("frames and strains are kept of blocks that were due", "[unit]") {
         CHECK(turned == (b % 2 == 1));
         const bool forgot = body.elements.viscous_strain[b][0][0] != 0;
         CHECK(forgot == (b % 2 == 1));
-        CHECK((body.elements.relaxed[b] > 0) == (b % 2 == 1));
+        CHECK((body.patches.relaxed[b] > 0) == (b % 2 == 1));
     }
 }

@@ -64,7 +64,7 @@ struct LevelledBody : ElasticBody {
         forces.viscous_impulse = impulse;
         forces.viscous = viscous;
         compute_element_forces(*executor, inputs, position, velocity, h, 0, elements.rotation,
-                               {elements.rotation_next, elements.viscous_strain_next, elements.relaxed}, forces);
+                               {elements.rotation_next, elements.viscous_strain_next}, forces);
     }
     std::vector<Vec3> kicked(unsigned mask, Real h) {
         const std::vector<LevelMask> active{
