@@ -32,7 +32,7 @@ struct TetrahedronBlockTable {
     Column<ElementLane> altitude;  // m, the smallest at rest; infinite in a lane that is left over
     // in how many times max_strain_step F may change: more than 1 where an implicit element covers the tetrahedron
     Column<ElementLane> leeway;
-    Column<std::uint8_t> sliver;  // bit l: tetrahedron of lane l is one (build_elements.h)
+    Column<std::uint8_t> sliver;  // bit l: tetrahedron of lane l is one (element_list.h)
     // m: none of the block turns inside out, or back, while the body's travel is below this
     Column<Real> uninverted_until;
 
@@ -55,7 +55,7 @@ struct TetrahedronBlockTable {
 struct ElementBlockTable {
     Column<Index> first;             // row of ElementNodeTable
     Column<Index> count;             // of rows
-    Column<ElementLane> volume;      // m^3, at rest; 0 in a lane that is left over
+    Column<ElementLane> volume;      // m^3, at rest; 0 in a lane that is left over, and of a guard that does not act
     Column<ElementLane> mass_share;  // weight with which an element takes mass from its nodes (stable_step.h)
     // 1/(kg m^2), Q of the mass G Q^-1 G^T that an element takes from its nodes (mass_forms.h); 0: it goes by
     // mass_share

@@ -22,11 +22,21 @@ struct MaterialConstants {
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
 
-/// Which part of the stress an element gives: all of it, or what goes with one of Lame's constants alone.
-enum class ElementPart : std::uint8_t { whole, shear, volume };
+/// Which part of the stress an element gives: all of it, what goes with one of Lame's constants alone, or what keeps a
+/// tetrahedron from turning over, which no other element has.
+enum class ElementPart : std::uint8_t { whole, shear, volume, guard };
 
-/// What goes with one of Lame's constants alone: the other is zero.
+/// Pa, of the law of guards, over the modulus lambda + 2 mu of the material.
+inline constexpr Real guard_modulus = 5;
+
+/// What goes with one of Lame's constants alone: the other is zero. A guard loses nothing, but for its viscosity where
+/// a cluster carries it.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
+    if (part == ElementPart::guard)
+        return {.model = MaterialModel::guard,
+                .shear_modulus = 0,
+                .lame_lambda = guard_modulus * (material.lame_lambda + 2 * material.shear_modulus),
+                .density = material.density};
     if (part == ElementPart::shear) material.lame_lambda = 0;
     if (part == ElementPart::volume) material.shear_modulus = 0;
     return material;

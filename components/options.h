@@ -9,7 +9,9 @@
 
 namespace skerry {
 
-enum class MaterialModel { linear, corotational, stable_neo_hookean };
+/// guard: what tetrahedra push back with that are about to turn over (docs/methods/elasticity.md 7.7); no material has
+/// it.
+enum class MaterialModel { linear, corotational, stable_neo_hookean, guard };
 /// What carries the stress of a body. linear: its tetrahedra, with constant strain each; they lock: in bending, and
 /// where volume hardly changes. edge_smoothed: its edges, with the mean strain of the tetrahedra around each.
 /// edge_node_smoothed: the same for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a

@@ -152,6 +152,7 @@ void validate(const Settings& settings) {
 
 void validate(const MaterialSettings& material, const Settings& settings) {
     const std::string object = "material";
+    if (material.model == MaterialModel::guard) refuse(object, "model", "guard", "a law that a material can have");
     require(material.young_modulus > 0, object, "young_modulus", material.young_modulus, "a modulus > 0 (Pa)");
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");

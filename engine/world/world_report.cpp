@@ -186,8 +186,10 @@ WorldReport World::report() const {
     settle_clusters(state_->model, state_->scratch.stiffness_sum);
     report.clusters = world.model.clusters.size();
     report.cluster_nodes = world.model.clusters.nodes.item.size();
-    for (const ElementLane& modulus : world.model.elements.implicit_modulus)
-        for (const Real m : modulus.lane) report.implicit_elements += m > 0;
+    for (std::size_t block = 0; block < world.model.elements.implicit_modulus.size(); ++block)
+        for (const Real m : world.model.elements.implicit_modulus[block].lane)
+            (world.model.elements.part[block] == ElementPart::guard ? report.guards : report.implicit_elements) +=
+                m > 0;
     report.stable_step = told_step(world.model, &stiffest);
     if (stiffest != no_index)
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;

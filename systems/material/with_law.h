@@ -3,6 +3,7 @@
 
 #include "components/options.h"
 #include "systems/material/corotational.h"
+#include "systems/material/guard.h"
 #include "systems/material/linear.h"
 #include "systems/material/stable_neo_hookean.h"
 
@@ -22,7 +23,7 @@ namespace skerry {
 ///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or something above it, as terms
 ///                                                               (dynamics/stability/element_stiffness.cpp)
 ///
-/// and an entry here and in EnumNames<MaterialModel>.
+/// and an entry here and, where materials can have it, in EnumNames<MaterialModel>.
 template <class Visit>
 [[gnu::always_inline]] inline decltype(auto) with_law(MaterialModel model, Visit&& visit) {
     switch (model) {
@@ -30,6 +31,8 @@ template <class Visit>
             return visit(Linear{});
         case MaterialModel::corotational:
             return visit(Corotational{});
+        case MaterialModel::guard:
+            return visit(Guard{});
         case MaterialModel::stable_neo_hookean:
             break;
     }

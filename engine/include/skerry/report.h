@@ -241,6 +241,7 @@ struct WorldReport : RunCounters {
     // Groups of nodes that implicit elements couple, so that these do not make the step shorter
     // (docs/methods/clusters.md).
     std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;
+    std::size_t guards = 0;  // tetrahedra in these that are kept from turning over (docs/methods/elasticity.md 7.7)
     std::vector<DynamicsChoice> dynamics_choices;  // of bodies that were added as `automatic`, in the order added
     // Of the last look, which is taken before the first step after something was added.
     std::vector<StartOverlap> start_overlaps;

@@ -38,6 +38,7 @@ private:
         with(mass_form_, rows(model.elements.mass_form, blocks));
         with(frame_mass_, rows(model.elements.frame_mass, blocks));
         with(frame_bound_, rows(model.elements.frame_bound, blocks));
+        with(volume_, rows(model.elements.volume, blocks));
         with(implicit_modulus_, rows(model.elements.implicit_modulus, blocks));
         with(relaxation_rate_, rows(model.elements.relaxation_rate, blocks));
         with(own_frequency_, rows(model.elements.own_frequency, blocks));
@@ -50,7 +51,7 @@ private:
     std::vector<ElementForm> mass_form_;
     std::vector<FrameMass> frame_mass_;
     std::vector<Real> frame_bound_;
-    std::vector<ElementLane> mass_share_, implicit_modulus_, relaxation_rate_, own_frequency_;
+    std::vector<ElementLane> mass_share_, volume_, implicit_modulus_, relaxation_rate_, own_frequency_;
     Real rest_step_ = 0, stable_step_ = 0;
 };
 

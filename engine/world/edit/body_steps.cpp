@@ -7,6 +7,7 @@
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
+#include "systems/dynamics/clusters/arm_guards.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/find_relaxation.h"
 #include "systems/dynamics/stability/frame_masses.h"
@@ -210,6 +211,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     start_mass_shares(model.all_elements(), blocks, rows_of(elements.mass_share, blocks));
     forget_mass_forms(model, blocks);
     std::ranges::fill(rows_of(elements.implicit_modulus, blocks), ElementLane{});
+    disarm_guards(rows_of(elements.part, blocks), rows_of(elements.volume, blocks));
     if (model.bodies.cluster_step[b] > 0) std::ranges::fill(rows_of(elements.viscous_time, blocks), Real(0));
     std::ranges::fill(rows_of(elements.relaxation_rate, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.own_frequency, blocks), ElementLane{});

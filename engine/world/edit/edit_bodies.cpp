@@ -241,7 +241,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     // what moves as rigid bodies do has tetrahedra, and no elements
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
     // As they lie in the mesh, until all that does not depend on it is known: bodies of one mesh have the same then.
-    const ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
+    ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
+    add_guards({body.tetrahedra, body.nodes}, zones, list);
     rows.elements = append_elements_of(model, list, {}, rows);
     if (may_have_levels(model, zones)) sort_by_level(model, body, list, stiffness_sum, rows);
     const Range blocks = rows.elements.blocks;

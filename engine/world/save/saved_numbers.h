@@ -108,7 +108,7 @@ inline constexpr std::uint64_t value_count<bool> = 2;
 template <>
 inline constexpr std::uint64_t value_count<BodyKind> = 2;
 template <>
-inline constexpr std::uint64_t value_count<ElementPart> = 3;
+inline constexpr std::uint64_t value_count<ElementPart> = 4;
 template <>
 inline constexpr std::uint64_t value_count<ColliderShape> = 7;
 template <>

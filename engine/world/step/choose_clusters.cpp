@@ -11,6 +11,7 @@
 #include "engine/world/step/find_twins.h"
 #include "engine/world/step/step.h"
 #include "systems/dynamics/checks/check_state.h"
+#include "systems/dynamics/clusters/arm_guards.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/find_implicit_elements.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
@@ -82,8 +83,11 @@ struct Kept {
     }
 };
 
-/// What goes with being implicit: leeway of tetrahedra, viscosity.
+/// What goes with being implicit: guards, leeway of tetrahedra, viscosity.
 void note_implicit(Model& model, std::size_t b) {
+    const Range of_body = model.bodies.blocks[b];
+    arm_guards(model.all_elements(), of_body, model.nodes.inverse_mass,
+               {rows_of(model.elements.implicit_modulus, of_body), rows_of(model.elements.volume, of_body)});
     find_leeway(model.body_records[b].element_tetrahedra,
                 rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]), implicit_leeway,
                 rows_of(model.tetrahedra.leeway, model.bodies.tetrahedron_blocks[b]));

@@ -172,6 +172,8 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
 /// The greatest |F'|^2 over the square of the leeway (1/s^2) of the elements of a block, if any has a marked node;
 /// else 0.
 Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
+    // a guard is of one tetrahedron, not of a mean
+    if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
     const Index count = state.element_count[block];
     unsigned marked = 0;  // more than half of what it takes to look at a block are the gradients

@@ -51,6 +51,7 @@ struct CheckInputs {
     std::span<const NodeLane> element_node = {};
     std::span<const ElementGradient> element_gradient = {};
     std::span<const ElementLane> element_implicit_modulus = {};
+    std::span<const ElementPart> element_part = {};  // empty: none is a guard
     std::span<const MovingFrame> body_frame = {};  // BodyTable; empty: none moves
 
     /// `pushed`: some contact pushes.
@@ -77,6 +78,7 @@ struct CheckInputs {
                 .element_node = binder.read(element_node.node),
                 .element_gradient = binder.read(element_node.gradient),
                 .element_implicit_modulus = binder.read(element.implicit_modulus),
+                .element_part = binder.read(element.part),
                 .body_frame = binder.read(body.frame)};
     }
 };

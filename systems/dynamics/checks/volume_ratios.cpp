@@ -39,8 +39,11 @@ VolumeRatios tetrahedron_volume_ratios(std::span<const TetrahedronNodes> node, s
 
 VolumeRatios element_volume_ratios(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                    Real near) {
-    return worst_of(elements.volume, blocks, near,
-                    [&](std::size_t b) { return determinant(deformation_gradient(elements.nodes_of(b), position)); });
+    return worst_of(elements.volume, blocks, near, [&](std::size_t b) {
+        return elements.part[b] == ElementPart::guard
+                   ? Real8{} + 1.0
+                   : determinant(deformation_gradient(elements.nodes_of(b), position));
+    });
 }
 
 }  // namespace skerry

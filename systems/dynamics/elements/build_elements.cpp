@@ -62,11 +62,15 @@ Places places_of(const ElementList& list, std::span<const Vec3> rest_position, s
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
     const auto level_of = [&](Index e) { return level.empty() ? std::uint8_t{0} : level[static_cast<std::size_t>(e)]; };
-    std::ranges::stable_sort(order, {}, level_of);
+    // guards by themselves: they change no sum of others while they do not act
+    const auto group_of = [&](Index e) {
+        return std::pair(level_of(e), list.part[static_cast<std::size_t>(e)] == ElementPart::guard);
+    };
+    std::ranges::stable_sort(order, {}, group_of);
     std::vector<std::size_t> patch_size;
     for (std::size_t first = 0; first < order.size();) {
         std::size_t end = first;
-        while (end < order.size() && level_of(order[end]) == level_of(order[first])) ++end;
+        while (end < order.size() && group_of(order[end]) == group_of(order[first])) ++end;
         split_into_patches(Order(order).subspan(first, end - first), centre, patch_size);
         first = end;
     }
@@ -114,30 +118,10 @@ Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const 
     return six_volumes(tetrahedron, rest_position) / largest_face;
 }
 
-namespace {
-
-/// Of each node: the mean of what `six_volume` has of the tetrahedra around it.
-std::vector<Real> mean_around_nodes(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> six_volume,
-                                    std::size_t node_count) {
-    std::vector<Real> mean(node_count, 0), around(node_count, 0);
-    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
-        for (const Index n : tetrahedra[t]) {
-            mean[static_cast<std::size_t>(n)] += six_volume[t];
-            around[static_cast<std::size_t>(n)] += 1;
-        }
-    for (std::size_t n = 0; n < node_count; ++n)
-        if (around[n] > 0) mean[n] /= around[n];
-    return mean;
-}
-
-}  // namespace
-
 Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                         Index first_node, TetrahedronBlockTable& table) {
     const Index first_block = static_cast<Index>(table.node.size());
-    std::vector<Real> six_volume(tetrahedra.size());
-    for (std::size_t t = 0; t < tetrahedra.size(); ++t) six_volume[t] = six_volumes(tetrahedra[t], rest_position);
-    const std::vector<Real> around = mean_around_nodes(tetrahedra, six_volume, rest_position.size());
+    const std::vector<std::uint8_t> is_sliver = sliver_tetrahedra({tetrahedra, rest_position});
     for (std::size_t first = 0; first < tetrahedra.size(); first += element_lanes) {
         TetrahedronNodes node;
         for (NodeLane& corner : node)
@@ -147,11 +131,8 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
         unsigned sliver = 0;
         for (std::size_t l = 0; l < element_lanes && first + l < tetrahedra.size(); ++l) {
             for (std::size_t a = 0; a < 4; ++a) node[a][l] = first_node + tetrahedra[first + l][a];
-            volume[l] = six_volume[first + l] / 6;
-            const bool small = std::ranges::all_of(tetrahedra[first + l], [&](Index n) {
-                return six_volume[first + l] < sliver_volume * around[static_cast<std::size_t>(n)];
-            });
-            sliver |= static_cast<unsigned>(small) << l;
+            volume[l] = six_volumes(tetrahedra[first + l], rest_position) / 6;
+            sliver |= static_cast<unsigned>(is_sliver[first + l]) << l;
             altitude[l] = smallest_altitude(tetrahedra[first + l], rest_position);
         }
         table.node.push_back(node);

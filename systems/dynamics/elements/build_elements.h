@@ -19,10 +19,6 @@ inline constexpr std::size_t elements_per_patch = 256;
 /// m, of one tetrahedron.
 Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position);
 
-/// A tetrahedron with less than this share of the mean volume of the tetrahedra around each of its corners is a sliver:
-/// no step is shortened to keep it from turning over (docs/methods/time_stepping.md 4.2).
-inline constexpr Real sliver_volume = 0.05;
-
 /// Appends the blocks of a new body's tetrahedra, in the order of the mesh. `tetrahedra` index the body's own nodes;
 /// `first_node` is the row of its first node.
 Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
@@ -43,7 +39,7 @@ struct AppendedElements {
 /// with as many nodes together, so that few rows are left over; those of four nodes stand as `order` says, the others
 /// keep their order.
 /// `rest_position`: m, of the body's nodes. `level` of each element of the list, or none: all 0; elements are sorted by
-/// level, and a patch has one.
+/// level, and a patch has one. Guards have patches of their own, behind the others of their level.
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
                                  std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);

@@ -441,6 +441,12 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 
+/// A patch of guards of which none acts: those that do are viscous, too.
+bool is_idle(const ElementInputs& elements, std::size_t begin, std::size_t end) {
+    return elements.part[begin] == ElementPart::guard && !elements.viscous_time.empty() &&
+           std::ranges::all_of(elements.viscous_time.subspan(begin, end - begin), [](Real time) { return time == 0; });
+}
+
 /// Where blocks are not as block `begin` is. `touched`: blocks of the patch may be due for different times.
 std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end, bool touched) {
     std::size_t b = begin + 1;
@@ -465,9 +471,11 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                        end = static_cast<std::size_t>(patches.blocks[p].end);
             const bool touched = !patches.touched.empty() && patches.touched[p];
             if (!patches.relaxed.empty()) patches.relaxed[p] = 0;
-            if (!touched && elements.schedule.duration(begin) == 0) continue;
             const auto slot = static_cast<std::size_t>(patches.slots[p].begin);
             const auto node = patches.node.subspan(slot, static_cast<std::size_t>(patches.slots[p].size()));
+            const bool idle = is_idle(elements, begin, end);
+            if (idle) std::ranges::fill(patches.force.subspan(slot, node.size()), PaddedVec3{});
+            if (idle || (!touched && elements.schedule.duration(begin) == 0)) continue;
             std::array<PaddedVec3, near_nodes> near;
             PaddedVec3 *const x = node.size() <= near_nodes ? near.data() : patches.position.data() + slot,
                               *const force = patches.force.data() + slot;

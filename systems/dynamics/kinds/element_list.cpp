@@ -1,5 +1,7 @@
 #include "systems/dynamics/kinds/element_list.h"
 
+#include <algorithm>
+
 #include "components/check.h"
 
 namespace skerry {
@@ -61,6 +63,31 @@ ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zone
         append(elements_of({tetrahedra, mesh.position}, zone.kind, zone.material), zone.tetrahedra, list);
     }
     return list;
+}
+
+void add_guards(const RestMesh& mesh, std::span<const MaterialZone> zones, ElementList& list) {
+    if (std::ranges::all_of(zones, [](const MaterialZone& zone) { return zone.kind == ElementKind::linear; })) return;
+    Real whole = 0;  // six times the volume, as what is compared with it
+    for (const auto& tetrahedron : mesh.tetrahedra) whole += six_volumes(tetrahedron, mesh.position);
+    const Real bound = guarded_volume * whole / static_cast<Real>(mesh.tetrahedra.size());
+    const std::vector<std::uint8_t> sliver = sliver_tetrahedra(mesh);
+    std::vector<std::array<Index, 4>> small;
+    for (const MaterialZone& zone : zones) {
+        if (zone.kind == ElementKind::linear) continue;
+        small.clear();
+        for (const Index t : zone.tetrahedra) {
+            const auto& tetrahedron = mesh.tetrahedra[static_cast<std::size_t>(t)];
+            if (six_volumes(tetrahedron, mesh.position) < bound && sliver[static_cast<std::size_t>(t)] == 0)
+                small.push_back(tetrahedron);
+        }
+        if (small.empty()) continue;
+        ElementList guards = elements_of({small, mesh.position}, ElementKind::linear, zone.material);
+        std::ranges::fill(guards.part, ElementPart::guard);
+        std::ranges::fill(guards.volume, Real(0));
+        std::ranges::fill(guards.first_tetrahedron, std::size_t{0});
+        guards.tetrahedron.clear();
+        append(guards, {}, list);
+    }
 }
 
 }  // namespace skerry

@@ -60,6 +60,22 @@ struct MaterialZone {
 /// across an interface, where it jumps (docs/methods/elasticity.md 7.6).
 ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zones);
 
+/// A tetrahedron with less than this share of the mean volume of the tetrahedra around each of its corners is a sliver:
+/// no step is shortened to keep it from turning over (docs/methods/time_stepping.md 4.2).
+inline constexpr Real sliver_volume = 0.05;
+
+/// Of each tetrahedron, whether it is a sliver.
+std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh);
+
+/// Tetrahedra below this share of the mean volume have guards: what is as small shows little in the means around its
+/// edges and nodes (docs/methods/elasticity.md 7.7).
+inline constexpr Real guarded_volume = 0.5;
+
+/// Adds a guard for every small tetrahedron that is no sliver of the zones of smoothed elements, behind all other
+/// elements. It covers none, since it tells nothing of stress or strain, and its volume is zero until it acts
+/// (clusters/arm_guards.h).
+void add_guards(const RestMesh& mesh, std::span<const MaterialZone> zones, ElementList& list);
+
 /// Which kind `smoothed` stands for: above a Poisson ratio of 0.25 the volumetric modulus lambda is more than the shear
 /// modulus, and elements by edges alone begin to lock (docs/methods/elasticity.md 7.3). With impulses at several rates
 /// smoothed elements gain energy: multirate has linear ones.

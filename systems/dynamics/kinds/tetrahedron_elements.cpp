@@ -1,4 +1,5 @@
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "components/check.h"
 #include "systems/dynamics/kinds/element_list.h"
@@ -19,6 +20,26 @@ Mat3 rest_edges(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> p
 
 Real six_volumes(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position) {
     return rest_edges(tetrahedron, rest_position).determinant();
+}
+
+std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh) {
+    std::vector<Real> six_volume;
+    std::vector<Real> mean(mesh.position.size()), around(mesh.position.size());  // of the tetrahedra around each node
+    for (const auto& tetrahedron : mesh.tetrahedra) {
+        six_volume.push_back(six_volumes(tetrahedron, mesh.position));
+        for (const Index n : tetrahedron) {
+            mean[static_cast<std::size_t>(n)] += six_volume.back();
+            around[static_cast<std::size_t>(n)] += 1;
+        }
+    }
+    for (std::size_t n = 0; n < mean.size(); ++n)
+        if (around[n] > 0) mean[n] /= around[n];
+    std::vector<std::uint8_t> sliver;
+    for (std::size_t t = 0; t < six_volume.size(); ++t)
+        sliver.push_back(std::ranges::all_of(mesh.tetrahedra[t], [&](Index n) {
+            return six_volume[t] < sliver_volume * mean[static_cast<std::size_t>(n)];
+        }));
+    return sliver;
 }
 
 TetrahedronGradients tetrahedron_gradients(const std::array<Index, 4>& tetrahedron,

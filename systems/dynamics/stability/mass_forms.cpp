@@ -13,6 +13,7 @@
 #include "components/check.h"
 #include "components/split_mix.h"
 #include "systems/dynamics/stability/mass_search.h"
+#include "systems/dynamics/stability/without_guards.h"
 #include "systems/material/relaxation.h"
 
 namespace skerry {
@@ -379,8 +380,11 @@ private:
 void find_mass_forms(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, Real most_products, std::span<ElementForm> form) {
     SKERRY_CHECK(form.size() == static_cast<std::size_t>(blocks.size()));
-    if (blocks.size() == 0) return;
-    FormSearch search(elements, blocks, position, mass, most_products, form);
+    const Range of_body = without_guards(elements, blocks);
+    std::ranges::fill(form.subspan(static_cast<std::size_t>(of_body.size())), ElementForm{});
+    form = form.first(static_cast<std::size_t>(of_body.size()));
+    if (of_body.size() == 0) return;
+    FormSearch search(elements, of_body, position, mass, most_products, form);
     search.choose();
     const Real bound = search.bound();
     if (bound > 0 && std::isfinite(bound))

@@ -10,6 +10,7 @@ namespace skerry {
 RestModuli::RestModuli(const ElementInputs& elements, Range blocks, Real longer) : elements_(elements) {
     Real fastest = 0;  // 1/s
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
+        if (elements.part[b] == ElementPart::guard) continue;
         const MaterialConstants material = elements.material_of(b);
         stiffest_ = std::max({stiffest_, 2 * material.shear_modulus, material.lame_lambda});
         if (elements.own_frequency.empty()) continue;

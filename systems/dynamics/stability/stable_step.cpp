@@ -14,6 +14,7 @@
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/stability/element_levels.h"
 #include "systems/dynamics/stability/stiffness_share.h"
+#include "systems/dynamics/stability/without_guards.h"
 #include "systems/material/extract_rotation.h"
 #include "systems/material/linear.h"
 
@@ -204,6 +205,7 @@ Real step_of(Real bound, int level) {
 }  // namespace
 
 std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks, int levels) {
+    blocks = without_guards(elements, blocks);
     const Index passes = frame_bound(elements, blocks) > 0 ? 2 : 1;
     return static_cast<std::uint64_t>(levels) * static_cast<std::uint64_t>(sums_of(blocks) + passes * blocks.size());
 }
@@ -234,7 +236,8 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
             most.element = here.element;
         }
     };
-    look_on({elements, position, mass, stiffness_sum}, blocks, levels, until, look, in_chunks);
+    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), levels, until, look,
+            in_chunks);
 }
 
 StableStep result_of(const StepLook& look) {
@@ -257,7 +260,8 @@ StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<co
     clear_stiffness(elements, blocks, stiffness_sum);
     const int levels = levels_of(elements, blocks);
     StepLook look;
-    look_on({elements, position, mass, stiffness_sum}, blocks, levels, pieces_of_look(elements, blocks, levels), look,
+    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), levels,
+            pieces_of_look(elements, blocks, levels), look,
             [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), look); });
     return result_of(look);
 }
@@ -271,10 +275,13 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     by_shares.mass_form = {};
     by_shares.frame_bound = {};
     const Pieces pieces{by_shares, position, mass, stiffness_sum};
-    const std::uint64_t count = pieces_of_look(by_shares, blocks, levels);
+    const Range of_body = without_guards(elements, blocks);
+    for (ElementLane& lanes : step.subspan(static_cast<std::size_t>(of_body.size())))
+        std::ranges::fill(lanes.lane, std::numeric_limits<Real>::infinity());
+    const std::uint64_t count = pieces_of_look(by_shares, of_body, levels);
     StepLook look;
     for (std::uint64_t piece = 0; piece < count;) {
-        const PieceRun run = run_from(blocks, levels, false, piece, count);
+        const PieceRun run = run_from(of_body, levels, false, piece, count);
         piece = run.end;
         if (run.work == PieceWork::sum) {
             pieces.sum(run, look);

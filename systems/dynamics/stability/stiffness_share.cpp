@@ -106,7 +106,7 @@ void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<El
     for (std::size_t b = first; b < end; ++b) {
         const bool known = !several || varies(constants_of(b));
         const Real share = known ? 1 : stiffness(constants_of(b)) / (any_varies ? 1 : stiffest);
-        for (Real& lane : mass_share[b - first].lane) lane = share;
+        for (Real& lane : mass_share[b - first].lane) lane = elements.part[b] == ElementPart::guard ? 0 : share;
     }
 }
 

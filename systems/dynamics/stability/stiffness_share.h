@@ -23,6 +23,7 @@ Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const L
 
 /// What mass_share starts with. Where a body has several materials, an element whose law leaves its stiffness out of
 /// its weight has it here, over the greatest of the body, or in Pa beside laws that have it in their weight; else 1.
+/// Guards take no mass: they act only where a cluster carries them.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
 /// stiffness_sum[node] += the stiffness with which each element of the block holds it; of lanes where `counts` says so.

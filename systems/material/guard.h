@@ -1,0 +1,80 @@
+// What keeps a tetrahedron from turning over: Psi = k/2 (J0 - J)^2 where J = det F is below J0, else nothing
+// (docs/methods/elasticity.md 7.7).
+#pragma once
+
+#include "components/material_table.h"
+#include "systems/material/lane_math.h"
+#include "systems/material/tangent.h"
+
+namespace skerry {
+
+/// What a law has is said in systems/material/with_law.h. k is the constant lambda.
+struct Guard {
+    static constexpr bool has_frame = false;
+    static constexpr bool stiffness_varies = true;
+    static constexpr int stress_flops = 36;
+
+    static constexpr Real intact = 0.5;  // J0, a share of the volume at rest
+
+    /// Elastic energy per rest volume, J/m^3.
+    static Real energy_density(const MaterialConstants& material, const Mat3& F);
+
+    /// First Piola-Kirchhoff stress, Pa: -k (J0 - J) cof F.
+    static Mat3 stress(const MaterialConstants& material, const Mat3& F);
+
+    /// Bound on the largest eigenvalue of dP/dF, Pa: k |cof F|^2 + 2/sqrt(3) k (J0 - J) |F|
+    /// (docs/methods/stable_step.md 4.3).
+    static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
+
+    /// dP/dF: with p = -k (J0 - J), c the stretches of cof F: k c c^T + p s_k of the stretches i, j, -p s_k of a flip,
+    /// p s_k of a twist.
+    static Tangent tangent(const MaterialConstants& material, const Mat3& F);
+
+    /// The same by lanes.
+    template <class T>
+    static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
+        const T missing = missing_of(determinant(F));
+        return (0.5 * material.lame_lambda) * (missing * missing);
+    }
+
+    template <class T>
+    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
+        const LaneMat3<T> cof = cofactor(F);
+        return (-material.lame_lambda * missing_of(dot(F.c0, cof.c0))) * cof;
+    }
+
+    template <class T>
+    static T stiffness_bound(const MaterialConstants& material, const LaneMat3<T>& F) {
+        constexpr Real two_over_root_three = 1.1547005383792515;
+        const LaneMat3<T> cof = cofactor(F);
+        const T missing = missing_of(dot(F.c0, cof.c0));
+        const T bound = inner_product(cof, cof) + two_over_root_three * (missing * square_root(inner_product(F, F)));
+        return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
+    }
+
+    /// Above that, of |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1.
+    template <class T>
+    static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
+        const T missing = missing_of(J);
+        const T bound = (square * square) * (1.0 / 3) + missing * (square * (1.0 / 3) + 1.0);
+        return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
+    }
+
+    /// dP/dF itself: k (cof F : X) cof F - k (J0 - J) d(cof F).
+    template <class T, class Terms>
+    static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
+        const LaneMat3<T> cof = cofactor(F);
+        const T missing = missing_of(dot(F.c0, cof.c0));
+        H.add_dyad(missing > 0.0 ? T{} + material.lame_lambda : T{}, cof);
+        H.add_cofactor_slope(-material.lame_lambda * missing, F);
+    }
+
+private:
+    template <class T>
+    static T missing_of(const T& J) {
+        const T missing = intact - J;
+        return missing < 0.0 ? T{} : missing;  // no number where J is none
+    }
+};
+
+}  // namespace skerry
