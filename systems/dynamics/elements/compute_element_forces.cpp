@@ -8,6 +8,7 @@
 #include "components/check.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
+#include "systems/dynamics/elements/idle_guards.h"
 #include "systems/dynamics/elements/quick_stiffness.h"
 #include "systems/material/extract_rotation.h"
 #include "systems/material/relaxation.h"
@@ -439,12 +440,6 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     for (std::size_t s = 0; s < last; ++s)
         store_half(__builtin_shufflevector(load_position(&at(s)), Real4{}, 0, 1, 2, 4), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
-}
-
-/// A patch of guards of which none acts: those that do are viscous, too.
-bool is_idle(const ElementInputs& elements, std::size_t begin, std::size_t end) {
-    return elements.part[begin] == ElementPart::guard && !elements.viscous_time.empty() &&
-           std::ranges::all_of(elements.viscous_time.subspan(begin, end - begin), [](Real time) { return time == 0; });
 }
 
 /// Where blocks are not as block `begin` is. `touched`: blocks of the patch may be due for different times.
