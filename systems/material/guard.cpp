@@ -1,5 +1,6 @@
 #include "systems/material/guard.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>

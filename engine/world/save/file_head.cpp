@@ -14,7 +14,10 @@ namespace skerry {
 namespace {
 
 constexpr const char* title = "Skerry world, version ";
-constexpr const char* expected_file = "a world that Skerry saved, version 17";
+
+std::string expected_file() {
+    return "a world that Skerry saved, version " + std::to_string(world_file_version);
+}
 
 [[noreturn]] void refuse_file(const std::filesystem::path& file, const std::string& found, const std::string& expected,
                               const std::string& hint = {}) {
@@ -41,14 +44,14 @@ std::string head_of(std::span<const char> body) {
 void check_head(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) refuse_file(file, "no such file", expected_file);
-    if (!std::filesystem::is_regular_file(status)) refuse_file(file, "something that is no file", expected_file);
+    if (!std::filesystem::exists(status)) refuse_file(file, "no such file", expected_file());
+    if (!std::filesystem::is_regular_file(status)) refuse_file(file, "something that is no file", expected_file());
     std::ifstream in(file, std::ios::binary);
-    if (!in) refuse_file(file, "a file that cannot be read", expected_file);
+    if (!in) refuse_file(file, "a file that cannot be read", expected_file());
     std::string head(head_bytes, '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(in.gcount()));
-    if (!head.starts_with(title)) refuse_file(file, "a file of another kind", expected_file);
+    if (!head.starts_with(title)) refuse_file(file, "a file of another kind", expected_file());
     int version = 0;
     std::uint64_t bytes = 0;
     const std::string behind_title = head.substr(std::string(title).size());
@@ -58,7 +61,7 @@ void check_head(const std::filesystem::path& file) {
     const std::size_t second_line = head.find('\n');
     if (head.size() != head_bytes || second_line == std::string::npos ||
         std::sscanf(head.c_str() + second_line + 1, "An HDF5 file of %" SCNu64, &bytes) != 1)
-        refuse_file(file, "a head that is damaged", expected_file);
+        refuse_file(file, "a head that is damaged", expected_file());
     const std::uint64_t size = std::filesystem::file_size(file, error);
     if (error || size != head_bytes + bytes)
         refuse_file(file, std::to_string(size) + " bytes", std::to_string(head_bytes + bytes),
@@ -69,7 +72,7 @@ void check_head(const std::filesystem::path& file) {
     for (std::uint64_t left = bytes; left > 0;) {
         const auto count = static_cast<std::streamsize>(std::min<std::uint64_t>(left, part.size()));
         in.read(part.data(), count);
-        if (in.gcount() != count) refuse_file(file, "bytes that cannot be read", expected_file);
+        if (in.gcount() != count) refuse_file(file, "bytes that cannot be read", expected_file());
         hash.add(part.data(), static_cast<std::size_t>(count));
         left -= static_cast<std::uint64_t>(count);
     }

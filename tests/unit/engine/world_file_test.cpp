@@ -93,7 +93,7 @@ TEST_CASE("a saved world of which any bit was turned over is refused", "[unit]")
 TEST_CASE("a file of another kind, or of another version, is refused by what it is", "[unit]") {
     const SavedFile saved(full_world());
     CHECK_THAT(saved.refusal(text("")), Contains("found a file of another kind, expected a world that Skerry saved"));
-    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("a file of another kind"));
+    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("expected a world that Skerry saved, version 19"));
     CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(head_bytes)), Contains("a file of another kind"));
     std::vector<char> other = saved.bytes;
     const std::string name = "version 19";
