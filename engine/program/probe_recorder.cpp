@@ -25,9 +25,24 @@ bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& i
     return false;
 }
 
+/// Stress of the nodes of bodies, each found once, however many probes look at it.
+class NodeStresses {
+public:
+    explicit NodeStresses(const World& world) : world_(world) {}
+
+    const std::vector<Mat3>& of(BodyHandle body) {
+        const auto known = std::ranges::find(found_, body, &std::pair<BodyHandle, std::vector<Mat3>>::first);
+        if (known != found_.end()) return known->second;
+        return found_.emplace_back(body, world_.node_stress(body)).second;
+    }
+
+private:
+    const World& world_;
+    std::vector<std::pair<BodyHandle, std::vector<Mat3>>> found_;
+};
+
 /// Pa, of the nodes inside.
-Real largest_von_mises(const World& world, BodyHandle body, const std::vector<char>& inside) {
-    const std::vector<Mat3> stress = world.node_stress(body);
+Real largest_von_mises(const std::vector<Mat3>& stress, const std::vector<char>& inside) {
     Real largest = 0;
     for (std::size_t n = 0; n < stress.size(); ++n)
         if (inside[n] != 0) largest = std::max(largest, von_mises(stress[n]));
@@ -47,6 +62,7 @@ ProbeRecorder::ProbeRecorder(const Scene& scene) {
 
 void ProbeRecorder::sample(const World& world, Real seconds) {
     std::vector<State> states;
+    NodeStresses stresses(world);
     for (std::size_t p = 0; p < tracked_.size(); ++p) {
         Tracked& tracked = tracked_[p];
         ProbeRecord& record = records_[p];
@@ -74,7 +90,7 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         record.sticking.push_back(sample.sticking);
         record.sliding.push_back(sample.sliding);
         record.slip.push_back(sample.slip);
-        record.von_mises.push_back(largest_von_mises(world, tracked.body, tracked.inside));
+        record.von_mises.push_back(largest_von_mises(stresses.of(tracked.body), tracked.inside));
         record.max_von_mises = std::max(record.max_von_mises, record.von_mises.back());
     }
     if (std::count(states.begin(), states.end(), State::slide) == 1)
