@@ -52,7 +52,7 @@ struct CheckInputs {
     std::span<const ElementGradient> element_gradient = {};
     std::span<const ElementLane> element_implicit_modulus = {};
     std::span<const ElementPart> element_part = {};  // empty: none is a guard
-    std::span<const MovingFrame> body_frame = {};  // BodyTable; empty: none moves
+    std::span<const MovingFrame> body_frame = {};    // BodyTable; empty: none moves
 
     /// `pushed`: some contact pushes.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
