@@ -70,7 +70,7 @@ ElementList guards_of(const TetMesh& mesh, ElementKind kind = ElementKind::edge_
     return list;
 }
 
-/// A body whose elements have guards behind them, as the world makes it; those of `chain` nodes are in a cluster.
+/// A body whose elements have guards behind them, as the world makes it.
 struct GuardedBody : test::ElasticBody {
     std::vector<Real> viscous_time;
 
@@ -91,7 +91,7 @@ struct GuardedBody : test::ElasticBody {
 
     bool is_guard(std::size_t element) const { return elements.part[element / element_lanes] == ElementPart::guard; }
 
-    /// All elements that have a node for which `chained` says so are implicit.
+    /// Elements of whose nodes `chained` says so of all are implicit.
     template <class Chained>
     void make_implicit(Chained&& chained) {
         for (std::size_t e = 0; e < element_at.size(); ++e) {
@@ -160,7 +160,8 @@ TEST_CASE("the bounds on the stiffness of guards hold, and lanes are as the law"
         const Real J = F.determinant();
         if (std::abs(J - Guard::intact) < 1e-3) continue;  // differences across the kink
         const Real bound = Guard::stiffness_bound(law, F);
-        const Real highest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, 9, 9>>(hessian(F)).eigenvalues()[8];
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, 9, 9>> modes(hessian(F));
+        const Real highest = modes.eigenvalues()[8];
         CHECK(highest <= bound + 1e-4 * law.lame_lambda);
         CHECK(bound <= Guard::rough_stiffness_bound(law, F.squaredNorm(), J) * (1 + 1e-12));
         const LaneMat3<Real8> lanes = everywhere(F);
@@ -174,7 +175,18 @@ TEST_CASE("the bounds on the stiffness of guards hold, and lanes are as the law"
         const Tangent tangent = Guard::tangent(law, F);
         CHECK(std::max({tangent.normal.norm(), tangent.flip.maxCoeff(), tangent.twist.maxCoeff()}) <=
               std::sqrt(Real(3)) * bound + 1e-9);
-        CHECK(std::max(tangent.flip.minCoeff(), Real(0)) >= 0);
+        const Mat3 X = random_gradient(random, 1), inside = tangent.left.transpose() * X * tangent.right;
+        Real form = inside.diagonal().dot(tangent.normal * inside.diagonal());
+        for (Eigen::Index k = 0; k < 3; ++k) {
+            const Real there = inside((k + 1) % 3, (k + 2) % 3), back = inside((k + 2) % 3, (k + 1) % 3);
+            form += tangent.flip[k] / 2 * (there + back) * (there + back) +
+                    tangent.twist[k] / 2 * (there - back) * (there - back);
+        }
+        const Eigen::Matrix<Real, 9, 1> share =
+            modes.eigenvectors().transpose() * Eigen::Map<const Eigen::Matrix<Real, 9, 1>>(X.data());
+        CHECK(form == Approx(share.cwiseAbs2().dot(modes.eigenvalues().cwiseMax(0)))
+                          .epsilon(1e-5)
+                          .margin(1e-5 * law.lame_lambda * X.squaredNorm()));
     }
 }
 

@@ -5,33 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "components/union_find.h"
+#include "systems/dynamics/clusters/chain_nodes.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 
 namespace skerry {
 
 namespace {
-
-bool holds(const ElementGradient& gradient, std::size_t l) {
-    return gradient[0][l] != 0 || gradient[1][l] != 0 || gradient[2][l] != 0;
-}
-
-/// Calls visit(block, lane, modulus) for every implicit element; `modulus`: from blocks.begin on.
-template <class Visit>
-void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit&& visit) {
-    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
-        for (std::size_t l = 0; l < element_lanes; ++l)
-            if (const Real m = modulus[b - static_cast<std::size_t>(blocks.begin)][l]; m > 0) visit(b, l, m);
-}
-
-/// Calls visit(node, k) for the moving nodes that an element holds.
-template <class Visit>
-void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real> inverse_mass, Visit&& visit) {
-    for (Index k = 0; k < nodes.count; ++k) {
-        const Index n = nodes.node[k][l];
-        if (holds(nodes.gradient[k], l) && inverse_mass[static_cast<std::size_t>(n)] > 0) visit(n, k);
-    }
-}
 
 void chain(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
            std::span<const Real> inverse_mass, UnionFind& sets, std::vector<Index>& nodes) {
@@ -138,28 +117,11 @@ void keep(const NodeClusters& before, std::size_t c, NodeClusters& clusters) {
 
 ClusterSizes cluster_sizes(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
                            std::span<const Real> inverse_mass) {
-    std::vector<Index> nodes;
-    for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {
-        for_each_node(elements.nodes_of(b), l, inverse_mass, [&](Index n, Index) { nodes.push_back(n); });
-    });
+    NodeChains chains(elements, blocks, modulus, inverse_mass);
     ClusterSizes sizes;
-    if (nodes.empty()) return sizes;
-    // of the body's nodes alone, which lie side by side
-    const auto ends = std::ranges::minmax(nodes);
-    const Index first = ends.min, last = ends.max;
-    UnionFind sets;
-    sets.start(static_cast<std::size_t>(last - first) + 1);
-    for_each_implicit(blocks, modulus, [&](std::size_t b, std::size_t l, Real) {
-        Index before = no_index;
-        for_each_node(elements.nodes_of(b), l, inverse_mass, [&](Index n, Index) {
-            if (before != no_index) sets.join(before - first, n - first);
-            before = n;
-        });
-    });
-    std::vector<std::size_t> width(sets.node.size());
-    for (const Index n : nodes) width[static_cast<std::size_t>(n - first)] = 1;
+    std::vector<std::size_t> width(chains.chained.begin(), chains.chained.end());
     for (std::size_t n = width.size(); n-- > 0;) {
-        const auto root = static_cast<std::size_t>(sets.root(static_cast<Index>(n)));
+        const auto root = static_cast<std::size_t>(chains.sets.root(static_cast<Index>(n)));
         if (root != n) width[root] += std::exchange(width[n], 0);
     }
     for (const std::size_t count : width) {
