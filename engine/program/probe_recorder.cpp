@@ -1,6 +1,7 @@
 #include "engine/program/probe_recorder.h"
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -25,27 +26,10 @@ bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& i
     return false;
 }
 
-/// Stress of the nodes of bodies, each found once, however many probes look at it.
-class NodeStresses {
-public:
-    explicit NodeStresses(const World& world) : world_(world) {}
-
-    const std::vector<Mat3>& of(BodyHandle body) {
-        const auto known = std::ranges::find(found_, body, &std::pair<BodyHandle, std::vector<Mat3>>::first);
-        if (known != found_.end()) return known->second;
-        return found_.emplace_back(body, world_.node_stress(body)).second;
-    }
-
-private:
-    const World& world_;
-    std::vector<std::pair<BodyHandle, std::vector<Mat3>>> found_;
-};
-
-/// Pa, of the nodes inside.
-Real largest_von_mises(const std::vector<Mat3>& stress, const std::vector<char>& inside) {
+/// Pa, of these of the nodes that `stress` is of.
+Real largest_von_mises(std::span<const Mat3> stress, std::span<const std::size_t> nodes) {
     Real largest = 0;
-    for (std::size_t n = 0; n < stress.size(); ++n)
-        if (inside[n] != 0) largest = std::max(largest, von_mises(stress[n]));
+    for (const std::size_t n : nodes) largest = std::max(largest, von_mises(stress[n]));
     return largest;
 }
 
@@ -55,6 +39,13 @@ ProbeRecorder::ProbeRecorder(const Scene& scene) {
     for (const Probe& probe : scene.probes) {
         Tracked tracked{.body = probe.body, .inside = std::vector<char>(scene.world.positions(probe.body).size(), 0)};
         for (const Index node : probe.nodes) tracked.inside[static_cast<std::size_t>(node)] = 1;
+        auto stressed = std::ranges::find(stressed_, probe.body, &Stressed::body);
+        if (stressed == stressed_.end()) stressed = stressed_.insert(stressed, {.body = probe.body});
+        tracked.stressed = static_cast<std::size_t>(stressed - stressed_.begin());
+        for (const Index node : probe.nodes) {
+            tracked.stressed_nodes.push_back(stressed->nodes.size());
+            stressed->nodes.push_back(node);
+        }
         tracked_.push_back(std::move(tracked));
         records_.emplace_back().name = probe.name;
     }
@@ -62,7 +53,8 @@ ProbeRecorder::ProbeRecorder(const Scene& scene) {
 
 void ProbeRecorder::sample(const World& world, Real seconds) {
     std::vector<State> states;
-    NodeStresses stresses(world);
+    std::vector<std::vector<Mat3>> stress;
+    for (const Stressed& of : stressed_) stress.push_back(world.node_stress(of.body, of.nodes));
     for (std::size_t p = 0; p < tracked_.size(); ++p) {
         Tracked& tracked = tracked_[p];
         ProbeRecord& record = records_[p];
@@ -90,7 +82,7 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         record.sticking.push_back(sample.sticking);
         record.sliding.push_back(sample.sliding);
         record.slip.push_back(sample.slip);
-        record.von_mises.push_back(largest_von_mises(stresses.of(tracked.body), tracked.inside));
+        record.von_mises.push_back(largest_von_mises(stress[tracked.stressed], tracked.stressed_nodes));
         record.max_von_mises = std::max(record.max_von_mises, record.von_mises.back());
     }
     if (std::count(states.begin(), states.end(), State::slide) == 1)

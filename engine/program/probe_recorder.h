@@ -41,9 +41,17 @@ private:
         BodyHandle body;
         std::vector<char> inside;  // by local node
         State last_closed = State::open;
+        std::size_t stressed = 0;                   // which of `stressed_` has its nodes,
+        std::vector<std::size_t> stressed_nodes{};  // and where
+    };
+    /// The nodes of all probes of a body, whose stress is found at once: what is around them is looked for each time.
+    struct Stressed {
+        BodyHandle body;
+        std::vector<Index> nodes{};  // local
     };
 
     std::vector<Tracked> tracked_;
+    std::vector<Stressed> stressed_;
     std::vector<ProbeRecord> records_;
 };
 

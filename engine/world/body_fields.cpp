@@ -1,6 +1,7 @@
 // Stress, strain and steps of bodies, by tetrahedron or node.
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -18,46 +19,93 @@ namespace {
 using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
 using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
 
-/// Of a body that moves implicitly, whose elements are in no table: of its shape in the frame of its mesh, turned with
-/// that.
-std::vector<Mat3> implicit_field(const Model& model, std::size_t row, OfElements of_elements,
-                                 OfTetrahedra of_tetrahedra) {
-    const ElementList list = model.elements_of_implicit(row);
-    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
-                                displacement = rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
-    std::vector<Vec3> shape(rest.begin(), rest.end());
-    for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
-    ElementBlockTable elements;
+/// The elements of a body that moves implicitly, which are in no table, and its shape in the frame of its mesh: its
+/// stress is that, turned with the frame.
+struct ImplicitElements {
+    std::vector<Vec3> shape;
+    ElementBlockTable table;
     ElementNodeTable nodes;
-    const AppendedElements appended = append_elements(list, rest, {}, BlockOrder::compact, 0, 0, elements, nodes);
-    std::vector<Mat3> values(static_cast<std::size_t>(appended.blocks.size()) * element_lanes);
-    of_elements(ElementInputs::bind({}, elements, nodes, model.materials, model.bodies), appended.blocks, shape,
-                values);
+    Range blocks;
+    Ragged<Index> covered;
+
+    ImplicitElements(const Model& model, std::size_t row) {
+        const ElementList list = model.elements_of_implicit(row);
+        const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
+                                    displacement =
+                                        rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
+        shape.assign(rest.begin(), rest.end());
+        for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
+        const AppendedElements appended = append_elements(list, rest, {}, BlockOrder::compact, 0, 0, table, nodes);
+        blocks = appended.blocks;
+        covered = covered_tetrahedra(list, appended.element);
+    }
+    ElementInputs inputs(const Model& model) const {
+        return ElementInputs::bind({}, table, nodes, model.materials, model.bodies);
+    }
+};
+
+void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values) {
     const Mat3 turn = pose_of_body(model, row).rotation;
     for (Mat3& value : values) value = turn * value * turn.transpose();
-    Ragged<Index> covered = covered_tetrahedra(list, appended.element);
-    return of_tetrahedra({elements.part, covered.view()}, values,
-                         static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
+}
+
+/// visit(elements, blocks, cover, positions, turn): of the elements of a body. What is found with them is turned by
+/// turn(values).
+auto with_elements(const Model& model, std::size_t row, auto&& visit) {
+    if (model.dynamics_of(row) == BodyDynamics::implicit_elastic) {
+        const ImplicitElements own(model, row);
+        return visit(own.inputs(model), own.blocks, ElementCover{own.table.part, own.covered.view()},
+                     std::span<const Vec3>(own.shape),
+                     [&](std::span<Mat3> values) { turn_with_frame(model, row, values); });
+    }
+    const Range blocks = model.bodies.blocks[row];
+    const ElementCover cover{rows_of(model.elements.part, blocks), model.body_records[row].element_tetrahedra.view()};
+    return visit(model.all_elements(), blocks, cover, model.nodes.position.span(), [](std::span<Mat3>) {});
 }
 
 std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfElements of_elements,
                                     OfTetrahedra of_tetrahedra) {
-    if (model.dynamics_of(row) == BodyDynamics::implicit_elastic)
-        return implicit_field(model, row, of_elements, of_tetrahedra);
-    const Range blocks = model.bodies.blocks[row];
-    std::vector<Mat3> values(static_cast<std::size_t>(blocks.size()) * element_lanes);
-    of_elements(model.all_elements(), blocks, model.nodes.position, values);
-    const ElementCover cover{model.elements.part.span().subspan(static_cast<std::size_t>(blocks.begin),
-                                                                static_cast<std::size_t>(blocks.size())),
-                             model.body_records[row].element_tetrahedra.view()};
-    return of_tetrahedra(cover, values, static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
+    return with_elements(model, row,
+                         [&](const ElementInputs& elements, Range blocks, const ElementCover& cover,
+                             std::span<const Vec3> position, auto&& turn) {
+                             std::vector<Mat3> values(static_cast<std::size_t>(blocks.size()) * element_lanes);
+                             of_elements(elements, blocks, position, values);
+                             turn(values);
+                             return of_tetrahedra(cover, values,
+                                                  static_cast<std::size_t>(model.bodies.tetrahedron_count[row]));
+                         });
+}
+
+Real volume_of(const Model& model, std::size_t row, std::size_t tetrahedron) {
+    const auto first = static_cast<std::size_t>(model.bodies.tetrahedron_blocks[row].begin);
+    return model.tetrahedra.volume[first + tetrahedron / element_lanes][tetrahedron % element_lanes];
+}
+
+/// Stress of some nodes of a body, no two alike, from the elements around them.
+std::vector<Mat3> stress_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
+    return with_elements(
+        model, row,
+        [&](const ElementInputs& elements, Range blocks, const ElementCover& cover, std::span<const Vec3> position,
+            auto&& turn) {
+            const ElementsAround around = elements_around(cover, model.body_records[row].tetrahedra, nodes,
+                                                          static_cast<std::size_t>(model.bodies.nodes[row].size()));
+            std::vector<Mat3> values(around.block.size() * element_lanes);
+            kernels().cauchy_stress_of_blocks(elements, blocks, around.block, position, values);
+            turn(values);
+            const std::vector<Mat3> of_tetrahedra =
+                kernels().stress_of_tetrahedra({around.part, around.covered.view()}, values, around.tetrahedron.size());
+            std::vector<Real> volume;
+            for (const Index t : around.tetrahedron)
+                volume.push_back(volume_of(model, row, static_cast<std::size_t>(t)));
+            std::vector<Mat3> mean = kernels().means_of_nodes(around.corners, volume, of_tetrahedra, nodes.size() + 1);
+            mean.pop_back();  // of all other nodes
+            return mean;
+        });
 }
 
 std::vector<Mat3> node_field(const Model& model, std::size_t row, std::span<const Mat3> of_tetrahedra) {
-    const auto first = static_cast<std::size_t>(model.bodies.tetrahedron_blocks[row].begin);
     std::vector<Real> volume(of_tetrahedra.size());
-    for (std::size_t t = 0; t < volume.size(); ++t)
-        volume[t] = model.tetrahedra.volume[first + t / element_lanes][t % element_lanes];
+    for (std::size_t t = 0; t < volume.size(); ++t) volume[t] = volume_of(model, row, t);
     return kernels().means_of_nodes(model.body_records[row].tetrahedra, volume, of_tetrahedra,
                                     static_cast<std::size_t>(model.bodies.nodes[row].size()));
 }
@@ -77,6 +125,29 @@ std::vector<Mat3> World::strain(BodyHandle body) const {
 std::vector<Mat3> World::node_stress(BodyHandle body) const {
     const auto row = static_cast<std::size_t>(state_->model.row(body, "node_stress"));
     return node_field(state_->model, row, stress(body));
+}
+
+std::vector<Mat3> World::node_stress(BodyHandle body, std::span<const Index> nodes) const {
+    const Model& model = state_->model;
+    const auto row = static_cast<std::size_t>(model.row(body, "node_stress"));
+    const Index count = model.bodies.nodes[row].size();
+    for (const Index n : nodes)
+        if (n < 0 || n >= count)
+            Complaint{.file = {},
+                      .object = "node_stress",
+                      .field = "nodes",
+                      .found = "node " + std::to_string(n),
+                      .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
+                      .hint = {}}
+                .raise();
+    std::vector<Index> once(nodes.begin(), nodes.end());
+    std::ranges::sort(once);
+    once.erase(std::unique(once.begin(), once.end()), once.end());
+    const std::vector<Mat3> of_once = stress_of_nodes(model, row, once);
+    std::vector<Mat3> stress;
+    for (const Index n : nodes)
+        stress.push_back(of_once[static_cast<std::size_t>(std::ranges::lower_bound(once, n) - once.begin())]);
+    return stress;
 }
 
 std::vector<Mat3> World::node_strain(BodyHandle body) const {

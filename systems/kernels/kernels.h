@@ -43,6 +43,7 @@ struct Kernels {
     decltype(&skerry::elastic_energy) elastic_energy;
     decltype(&skerry::elastic_power) elastic_power;
     decltype(&skerry::cauchy_stress) cauchy_stress;
+    decltype(&skerry::cauchy_stress_of_blocks) cauchy_stress_of_blocks;
     decltype(&skerry::element_strains) element_strains;
     decltype(&skerry::stress_of_tetrahedra) stress_of_tetrahedra;
     decltype(&skerry::strain_of_tetrahedra) strain_of_tetrahedra;

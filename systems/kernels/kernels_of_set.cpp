@@ -19,6 +19,7 @@ const skerry::Kernels SKERRY_KERNELS = {
     .elastic_energy = &skerry::elastic_energy,
     .elastic_power = &skerry::elastic_power,
     .cauchy_stress = &skerry::cauchy_stress,
+    .cauchy_stress_of_blocks = &skerry::cauchy_stress_of_blocks,
     .element_strains = &skerry::element_strains,
     .stress_of_tetrahedra = &skerry::stress_of_tetrahedra,
     .strain_of_tetrahedra = &skerry::strain_of_tetrahedra,

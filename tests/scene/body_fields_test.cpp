@@ -3,6 +3,7 @@
 
 #include "tests/support/element_kinds.h"
 #include "tests/support/jittered_box.h"
+#include "tests/support/material_models.h"
 #include "tests/support/worlds.h"
 
 using namespace skerry;
@@ -76,4 +77,40 @@ TEST_CASE("a node has the mean stress of its tetrahedra by volume", "[scene]") {
     REQUIRE(stress.front().norm() > 0);
     CHECK((of_nodes[node] - sum / weight).norm() <= 1e-12 * of_nodes[node].norm());
     CHECK((stress.front() - stress.front().transpose()).norm() <= 1e-12 * stress.front().norm());
+}
+
+TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scene]") {
+    const ElementKind kind = GENERATE(from_range(test::element_kinds));
+    const MaterialModel model = GENERATE(from_range(test::material_models));
+    const BodyDynamics dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic);
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    const auto [nodes, tetrahedra] = test::jittered_box({5, 4, 3}, 0.1, 0.25, 1);
+    const auto material = world.add_material(test::lossless({.model = model}));
+    world.add_body({nodes, tetrahedra}, {.material = material, .position = {2, 0, 0}, .element = kind});
+    const auto body = world.add_body(
+        {nodes, tetrahedra},
+        {.material = material, .rotation = {0.3, -0.2, 0.5}, .dynamics = dynamics, .element = kind});
+    std::vector<Vec3> velocity;
+    for (const Vec3& x : nodes) velocity.push_back(10 * x.squaredNorm() * Vec3(1, -2, 0.5));
+    world.set_velocities(body, velocity);
+    REQUIRE(world.advance(10 * world.stable_step()).ok());
+
+    INFO(name_of(kind) << ", " << name_of(model) << ", " << name_of(dynamics));
+    const std::vector<Mat3> all = world.node_stress(body);
+    REQUIRE(all.size() == nodes.size());
+    std::vector<Index> everything;
+    for (Index n = 0; n < static_cast<Index>(nodes.size()); ++n) everything.push_back(n);
+    const auto last = static_cast<Index>(nodes.size()) - 1;
+    for (const std::vector<Index>& asked : {std::vector<Index>{}, {0}, {last}, {40, 3, last, 40, 17}, everything}) {
+        const std::vector<Mat3> some = world.node_stress(body, asked);
+        REQUIRE(some.size() == asked.size());
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            CHECK(some[i] == all[static_cast<std::size_t>(asked[i])]);
+            CHECK(some[i].norm() > 0);
+        }
+    }
+    CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{0, last + 1}), Catch::Contains("nodes of the body"));
+    CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{-1}), Catch::Contains("nodes of the body"));
 }

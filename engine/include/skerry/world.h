@@ -113,10 +113,12 @@ public:
     /// Cauchy stress, Pa, without what relaxes (losses), and Green's strain. A tetrahedron has the mean of the elements
     /// that cover it, a node the mean of its tetrahedra by volume (docs/methods/elasticity.md 7.5), whatever their
     /// materials: where two meet stress jumps, and the nodes between them have a mean of both sides.
-    std::vector<Mat3> stress(BodyHandle body) const;            // by tetrahedron
-    std::vector<Mat3> strain(BodyHandle body) const;            // by tetrahedron
-    std::vector<Mat3> node_stress(BodyHandle body) const;       // by node
-    std::vector<Mat3> node_strain(BodyHandle body) const;       // by node
+    std::vector<Mat3> stress(BodyHandle body) const;       // by tetrahedron
+    std::vector<Mat3> strain(BodyHandle body) const;       // by tetrahedron
+    std::vector<Mat3> node_stress(BodyHandle body) const;  // by node
+    std::vector<Mat3> node_strain(BodyHandle body) const;  // by node
+    /// node_stress of some nodes alone, in their order, from the elements around them: to the bit what it is of all.
+    std::vector<Mat3> node_stress(BodyHandle body, std::span<const Index> nodes) const;
     std::vector<Real> von_mises_stress(BodyHandle body) const;  // Pa, by tetrahedron
     /// The step that each tetrahedron allows as the body is now, s: that of the stiffest element that covers it. The
     /// shortest is the body's stable step, the tetrahedra that have it are those to mend.

@@ -60,11 +60,10 @@ ForceReport force_of(const Forces& forces, const ReactionProbe& probe) {
 }
 
 Real largest_stress(const World& world, const StressProbe& probe) {
-    const std::vector<Mat3> stress = world.node_stress(probe.body);
     Real largest = 0;
-    if (probe.nodes.empty())
-        for (const Mat3& of_node : stress) largest = std::max(largest, von_mises(of_node));
-    for (const Index n : probe.nodes) largest = std::max(largest, von_mises(stress[static_cast<std::size_t>(n)]));
+    for (const Mat3& of_node :
+         probe.nodes.empty() ? world.node_stress(probe.body) : world.node_stress(probe.body, probe.nodes))
+        largest = std::max(largest, von_mises(of_node));
     return largest;
 }
 

@@ -15,18 +15,40 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, material, volume, F, frame) for every block. The frame of an element starts from the same lane
-/// of the block before it: neighbours turn together. Laws without a frame do not look at it.
-template <class Visit>
-void for_each_block(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Visit&& visit) {
+/// Calls visit(block, material, volume, F, frame) for every block that is asked for. The frame of an element starts
+/// from the same lane of the block before it, asked for or not: neighbours turn together. Laws without a frame do not
+/// look at it.
+template <class Ask, class Visit>
+void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& asks,
+                       Visit&& visit) {
     const Real8 one = Real8{} + 1.0;
     LaneQuaternion<Real8> q{one, {}, {}, {}};
     for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
         const MaterialConstants material = elements.material_of(b);
+        const bool asked = asks(b);
+        if (!asked && !has_frame(material.model)) continue;
         const Real8 volume = load(elements.volume[b]);
         const LaneMat3<Real8> F = deformation_gradient(elements.nodes_of(b), position);
         if (has_frame(material.model)) extract_rotation(F, volume, q);
-        visit(b, material, volume, F, rotation_of(q));
+        if (asked) visit(b, material, volume, F, rotation_of(q));
+    }
+}
+
+template <class Visit>
+void for_each_block(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Visit&& visit) {
+    for_each_block_of(
+        elements, blocks, position, [](std::size_t) { return true; }, visit);
+}
+
+/// Cauchy stress of the elements of a block.
+void put_cauchy_stress(const Real8& volume, const LaneMat3<Real8>& F, const LaneMat3<Real8>& P,
+                       std::span<Mat3> stress) {
+    constexpr Real least_volume_ratio = 1e-6;  // below it the Cauchy stress has no meaning; the cap keeps it finite
+    for (std::size_t l = 0; l < element_lanes; ++l) {
+        const Mat3 f = lane_of(F, static_cast<int>(l));
+        const Real ratio = std::max(std::abs(f.col(0).dot(f.col(1).cross(f.col(2)))), least_volume_ratio);
+        stress[l] = lane_of(P, static_cast<int>(l)) * f.transpose() / ratio;
+        if (!(volume[l] > 0)) stress[l].setZero();
     }
 }
 
@@ -85,20 +107,30 @@ Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const 
 void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<Mat3> stress) {
     SKERRY_CHECK(stress.size() >= static_cast<std::size_t>(blocks.size()) * element_lanes);
-    constexpr Real least_volume_ratio = 1e-6;  // below it the Cauchy stress has no meaning; the cap keeps it finite
     for_each_block(elements, blocks, position,
                    [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                        const LaneMat3<Real8>& R) {
-                       const LaneMat3<Real8> P = stress_of(material, F, R);
                        const std::size_t first = (b - static_cast<std::size_t>(blocks.begin)) * element_lanes;
-                       for (std::size_t l = 0; l < element_lanes; ++l) {
-                           const Mat3 f = lane_of(F, static_cast<int>(l));
-                           const Real ratio =
-                               std::max(std::abs(f.col(0).dot(f.col(1).cross(f.col(2)))), least_volume_ratio);
-                           stress[first + l] = lane_of(P, static_cast<int>(l)) * f.transpose() / ratio;
-                           if (!(volume[l] > 0)) stress[first + l].setZero();
-                       }
+                       put_cauchy_stress(volume, F, stress_of(material, F, R), stress.subspan(first, element_lanes));
                    });
+}
+
+void cauchy_stress_of_blocks(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
+                             std::span<const Vec3> position, std::span<Mat3> stress) {
+    SKERRY_CHECK(stress.size() >= asked.size() * element_lanes);
+    if (asked.empty()) return;
+    std::size_t next = 0;
+    const auto asks = [&](std::size_t b) {
+        return next < asked.size() && static_cast<std::size_t>(blocks.begin + asked[next]) == b;
+    };
+    const Range up_to_last{blocks.begin, blocks.begin + asked.back() + 1};
+    for_each_block_of(elements, up_to_last, position, asks,
+                      [&](std::size_t, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
+                          const LaneMat3<Real8>& R) {
+                          put_cauchy_stress(volume, F, stress_of(material, F, R),
+                                            stress.subspan(next * element_lanes, element_lanes));
+                          ++next;
+                      });
 }
 
 void element_strains(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

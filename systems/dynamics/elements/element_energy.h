@@ -20,6 +20,11 @@ Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const 
 /// no part in it.
 void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<Mat3> stress);
 
+/// The same of the blocks asked for, ascending and from 0 at the first of the range: stress[8 place in asked + lane].
+/// To the bit what the whole range gives.
+void cauchy_stress_of_blocks(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
+                             std::span<const Vec3> position, std::span<Mat3> stress);
+
 /// Green's strain (F^T F - I) / 2 of each element, in the same order. What is left over has none.
 void element_strains(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<Mat3> strain);

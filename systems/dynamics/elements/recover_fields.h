@@ -17,6 +17,19 @@ struct ElementCover {
     RaggedView<Index> tetrahedra;       // that the element at each place covers, numbered within the body
 };
 
+/// What the fields of some nodes of a body are made of: the tetrahedra around them, and the elements that cover those.
+struct ElementsAround {
+    std::vector<Index> block;                   // of the body, from 0, ascending
+    std::vector<ElementPart> part;              // of each
+    Ragged<Index> covered;                      // by the element at each place of them: places in `tetrahedron`
+    std::vector<Index> tetrahedron;             // numbered within the body, ascending
+    std::vector<std::array<Index, 4>> corners;  // of each: places in the list of nodes; its length: another node
+};
+
+/// `tetrahedra`: all of the body. `nodes`: no two alike.
+ElementsAround elements_around(const ElementCover& cover, std::span<const std::array<Index, 4>> tetrahedra,
+                               std::span<const Index> nodes, std::size_t node_count);
+
 /// By tetrahedron: the mean of the elements that cover it, of each part of the stress by itself, and their sum.
 std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
 

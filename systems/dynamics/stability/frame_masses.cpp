@@ -38,6 +38,7 @@ public:
             last = std::max(last, node);
         });
         const auto count = static_cast<std::size_t>(last + 1 - first_node_);
+        weigh();
         number(position.subspan(static_cast<std::size_t>(first_node_), count));
         root_.resize(count);
         for (std::size_t n = 0; n < count; ++n) {
@@ -84,30 +85,11 @@ public:
         return highest_of(diagonal, beside);
     }
 
-    /// Of each row the band from the diagonal on.
-    std::vector<Real> matrix() const {
-        const std::size_t width = 3 * width_;
-        std::vector<Real> matrix(3 * nodes_ * width);
-        for_each_element([&](const Element& e) {
-            for (Index k = 0; k < e.count; ++k) {
-                const std::size_t row = 3 * place_[e.node(k)];
-                const Vec3 g = root_[e.node(k)] * e.gradient(k);
-                for (Index j = 0; j < e.count; ++j) {
-                    const std::size_t column = 3 * place_[e.node(j)];
-                    if (column < row) continue;
-                    const Vec3 other = root_[e.node(j)] * e.gradient(j);
-                    const Real same = e.shear * product_of(g, other);
-                    for (std::size_t i = 0; i < 3; ++i)
-                        for (std::size_t l = column == row ? i : 0; l < 3; ++l)
-                            matrix[(row + i) * width + (column + l - (row + i))] +=
-                                e.volumetric * g[static_cast<Eigen::Index>(i)] * other[static_cast<Eigen::Index>(l)] +
-                                (i == l ? same : 0);
-                }
-            }
-        });
-        return matrix;
+    /// Whether all eigenvalues are below a limit.
+    bool is_below(Real limit, BandDecomposition& decomposition) const {
+        const auto add_rows = [&](std::size_t node, Real* rows, std::size_t stride) { add(node, rows, stride); };
+        return decomposition.is_below({3 * nodes_, 3 * width_, 3, add_rows}, limit);
     }
-    std::size_t width() const { return 3 * width_; }
 
     /// q and b of all elements, for this bound.
     void share(Real bound, std::span<FrameMass> mass) const {
@@ -123,6 +105,10 @@ public:
     }
 
 private:
+    /// Of a block, by element: of those that take mass; Pa m^3.
+    struct Weights {
+        ElementLane volume, shear, volumetric;
+    };
     struct Element {
         const BlockNodes& nodes;
         std::size_t lane;
@@ -135,6 +121,27 @@ private:
         }
     };
 
+    /// Adds the three rows of the node at a place, each from its diagonal on.
+    void add(std::size_t place, Real* rows, std::size_t stride) const {
+        for (const ElementCorner& corner : corners_[place]) {
+            const BlockNodes nodes = elements_.nodes_of(corner.block);
+            const Element e = element_of(nodes, corner.block, corner.lane);
+            const Vec3 g = root_[e.node(corner.corner)] * e.gradient(corner.corner);
+            for (Index j = 0; j < e.count; ++j) {
+                const std::size_t of_other = place_[e.node(j)];
+                if (of_other < place) continue;
+                const std::size_t column = 3 * (of_other - place);
+                const Vec3 other = root_[e.node(j)] * e.gradient(j);
+                const Real same = e.shear * product_of(g, other);
+                for (std::size_t i = 0; i < 3; ++i)
+                    for (std::size_t l = column == 0 ? i : 0; l < 3; ++l)
+                        rows[i * stride + (column + l - i)] +=
+                            e.volumetric * g[static_cast<Eigen::Index>(i)] * other[static_cast<Eigen::Index>(l)] +
+                            (i == l ? same : 0);
+            }
+        }
+    }
+
     void for_each_node(auto&& visit) const {
         for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -142,15 +149,28 @@ private:
                 for (const Index node : nodes.node[k].lane) visit(node);
         }
     }
-    /// Of those that take mass.
+    Element element_of(const BlockNodes& nodes, std::size_t block, std::size_t lane) const {
+        const Weights& of_block = weights_[block - static_cast<std::size_t>(blocks_.begin)];
+        return {nodes, lane, nodes.count, first_node_, of_block.shear[lane], of_block.volumetric[lane]};
+    }
+    /// Of those that take mass: visit(element, block).
     void for_each_element(auto&& visit) const {
         for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
             const BlockNodes nodes = elements_.nodes_of(b);
-            const auto [shear, volumetric] = moduli_.of(b);
-            const Real8 volume = moduli_.of_explicit(b) * load(elements_.volume[b]);
-            const Real8 of_shear = volume * shear, of_volume = volume * volumetric;
+            const ElementLane& volume = weights_[b - static_cast<std::size_t>(blocks_.begin)].volume;
             for (std::size_t l = 0; l < element_lanes; ++l)
-                if (volume[l] > 0) visit(Element{nodes, l, nodes.count, first_node_, of_shear[l], of_volume[l]});
+                if (volume[l] > 0) visit(element_of(nodes, b, l), b);
+        }
+    }
+    void weigh() {
+        weights_.resize(static_cast<std::size_t>(blocks_.size()));
+        for (std::size_t i = 0; i < weights_.size(); ++i) {
+            const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
+            const auto [shear, volumetric] = moduli_.of(block);
+            const Real8 volume = moduli_.of_explicit(block) * load(elements_.volume[block]);
+            store(volume, weights_[i].volume);
+            store(Real8(volume * shear), weights_[i].shear);
+            store(Real8(volume * volumetric), weights_[i].volumetric);
         }
     }
 
@@ -167,7 +187,7 @@ private:
         nodes_ = nodes.size();
         place_.resize(position.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) place_[static_cast<std::size_t>(nodes[i])] = i;
-        for_each_element([&](const Element& e) {
+        for_each_element([&](const Element& e, std::size_t) {
             std::size_t low = place_[e.node(0)], high = low;
             for (Index k = 1; k < e.count; ++k) {
                 low = std::min(low, place_[e.node(k)]);
@@ -175,12 +195,17 @@ private:
             }
             width_ = std::max(width_, high - low + 1);
         });
+        corners_ = corners_at(nodes_, [&](auto&& visit) {
+            for_each_element([&](const Element& e, std::size_t block) {
+                for (Index k = 0; k < e.count; ++k) visit(place_[e.node(k)], ElementCorner{block, e.lane, k});
+            });
+        });
     }
 
     /// product = M^-1/2 K M^-1/2 vector
     void multiply(const std::vector<Vec3>& vector, std::vector<Vec3>& product) const {
         std::ranges::fill(product, Vec3::Zero());
-        for_each_element([&](const Element& e) {
+        for_each_element([&](const Element& e, std::size_t) {
             std::array<Vec3, 3> slope{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // of vector, by its components
             for (Index k = 0; k < e.count; ++k) {
                 const Vec3 g = root_[e.node(k)] * e.gradient(k);
@@ -223,6 +248,8 @@ private:
     std::vector<Real> root_;  // 1/sqrt(kg), by node from the first: of the inverse mass
     std::vector<std::size_t> place_;
     std::size_t nodes_ = 0, width_ = 0;
+    std::vector<Weights> weights_;   // by block
+    Ragged<ElementCorner> corners_;  // by place
 };
 
 }  // namespace
@@ -237,11 +264,10 @@ void find_frame_masses(const ElementInputs& elements, Range blocks, std::span<co
     const RestStiffness stiffness(elements, blocks, position, mass);
     if (!(stiffness.products() <= most_products)) return;
     constexpr Real above = 1.005;  // what the vectors have not found yet
-    const std::vector<Real> matrix = stiffness.matrix();
-    std::vector<Real> rest;
+    BandDecomposition decomposition;
     Real limit = above * stiffness.highest();
-    for (Real growth = above;
-         std::isfinite(limit) && limit > 0 && !is_band_below(matrix, stiffness.width(), limit, rest); growth *= growth)
+    for (Real growth = above; std::isfinite(limit) && limit > 0 && !stiffness.is_below(limit, decomposition);
+         growth *= growth)
         limit *= growth;
     if (!(limit > 0) || !std::isfinite(limit)) return;
     stiffness.share(limit, frame_mass);

@@ -129,10 +129,12 @@ public:
         Real bound = 0;
         for (const ElementGroup& group : groups) bound = std::max(bound, above * group.highest);
         for (const ElementGroup& group : groups) {
-            find_matrix(group);
+            const GroupMatrix matrix = matrix_of(group);
+            const auto add_rows = [&](std::size_t row, Real* to, std::size_t) { add_row(matrix, row, to); };
+            const BandMatrix band{group.node.size(), group.width, 1, add_rows};
             Real growth = above;
-            for (; std::isfinite(bound) && !is_band_below(matrix_, group.width, bound, rest_); growth *= growth)
-                bound *= growth;
+            for (; std::isfinite(bound) && !decomposition_.is_below(band, bound); growth *= growth) bound *= growth;
+            forget_numbers(group);
         }
         return bound;
     }
@@ -334,32 +336,41 @@ private:
         return highest;
     }
 
-    /// M^-1/2 sum_e G V W G^T M^-1/2 of a group: of each row the band from the diagonal on.
-    void find_matrix(const ElementGroup& group) {
-        const std::size_t size = group.node.size();
-        matrix_.assign(size * group.width, 0);
-        std::vector<Real> scale(size);
-        for (std::size_t i = 0; i < size; ++i) scale[i] = group.mass[i] > 0 ? 1 / std::sqrt(group.mass[i]) : 0;
+    /// What M^-1/2 sum_e G V W G^T M^-1/2 of a group is made of.
+    struct GroupMatrix {
+        std::vector<Real> scale;        // 1/sqrt(kg), by node along the group
+        Ragged<ElementCorner> corners;  // by node along the group
+    };
+    /// Numbers the nodes of the group.
+    GroupMatrix matrix_of(const ElementGroup& group) {
         number(group);
-        for_each_element(group.blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
-            const ElementForm& w = weight_[b - first_block()];
-            const auto place = [&](Index k) { return static_cast<std::size_t>(place_[local(nodes.node[k][l])]); };
-            for (Index k = 0; k < nodes.count; ++k) {
-                const std::size_t row = place(k);
-                const Real x = scale[row] * nodes.gradient[k][0][l], y = scale[row] * nodes.gradient[k][1][l],
-                           z = scale[row] * nodes.gradient[k][2][l];
-                const Real wx = w[0][l] * x + w[3][l] * y + w[5][l] * z, wy = w[3][l] * x + w[1][l] * y + w[4][l] * z,
-                           wz = w[5][l] * x + w[4][l] * y + w[2][l] * z;
-                for (Index j = 0; j < nodes.count; ++j) {
-                    const ElementGradient& g = nodes.gradient[j];
-                    const std::size_t column = place(j);
-                    if (column < row) continue;
-                    matrix_[row * group.width + (column - row)] +=
-                        scale[column] * (wx * g[0][l] + wy * g[1][l] + wz * g[2][l]);
-                }
+        GroupMatrix matrix{
+            std::vector<Real>(group.node.size()), corners_at(group.node.size(), [&](auto&& visit) {
+                for_each_element(group.blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
+                    for (Index k = 0; k < nodes.count; ++k)
+                        visit(static_cast<std::size_t>(place_[local(nodes.node[k][l])]), ElementCorner{b, l, k});
+                });
+            })};
+        for (std::size_t i = 0; i < matrix.scale.size(); ++i)
+            matrix.scale[i] = group.mass[i] > 0 ? 1 / std::sqrt(group.mass[i]) : 0;
+        return matrix;
+    }
+    void add_row(const GroupMatrix& matrix, std::size_t row, Real* to) const {
+        for (const ElementCorner& of : matrix.corners[row]) {
+            const std::size_t l = of.lane;
+            const ElementForm& w = weight_[of.block - first_block()];
+            const BlockNodes nodes = elements_.nodes_of(of.block);
+            const ElementGradient& own = nodes.gradient[of.corner];
+            const Real scale = matrix.scale[row], x = scale * own[0][l], y = scale * own[1][l], z = scale * own[2][l];
+            const Real wx = w[0][l] * x + w[3][l] * y + w[5][l] * z, wy = w[3][l] * x + w[1][l] * y + w[4][l] * z,
+                       wz = w[5][l] * x + w[4][l] * y + w[2][l] * z;
+            for (Index j = 0; j < nodes.count; ++j) {
+                const ElementGradient& g = nodes.gradient[j];
+                const auto column = static_cast<std::size_t>(place_[local(nodes.node[j][l])]);
+                if (column >= row)
+                    to[column - row] += matrix.scale[column] * (wx * g[0][l] + wy * g[1][l] + wz * g[2][l]);
             }
-        });
-        forget_numbers(group);
+        }
     }
     const ElementInputs& elements_;
     Range blocks_;
@@ -371,8 +382,8 @@ private:
     std::vector<ElementForm> weight_;      // V W, Pa m^3
     std::vector<Real4> vector_, product_;  // by node
     RestModuli moduli_;
-    std::vector<Index> place_;         // by node, in a group
-    std::vector<Real> matrix_, rest_;  // of find_matrix; of its decomposition
+    std::vector<Index> place_;  // by node, in a group
+    BandDecomposition decomposition_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "systems/dynamics/stability/mass_search.h"
 
 #include <algorithm>
+#include <array>
 
 #include "systems/dynamics/stability/stiffness_share.h"
 #include "systems/material/relaxation.h"
@@ -55,28 +56,63 @@ void sort_along(std::span<const Vec3> position, std::span<Index> nodes) {
     });
 }
 
-bool is_band_below(std::span<const Real> matrix, std::size_t width, Real limit, std::vector<Real>& rest) {
-    const Real rounding = 1e-10 * limit;
-    const std::size_t size = matrix.size() / width;
-    rest.resize(matrix.size());
-    for (std::size_t k = 0; k < size; ++k) {
-        Real* const row = &rest[k * width];
-        const Real* const of_matrix = &matrix[k * width];
-        row[0] = limit - of_matrix[0];
-        for (std::size_t j = 1; j < width; ++j) row[j] = 0 - of_matrix[j];
+void BandDecomposition::load_group(const BandMatrix& matrix, std::size_t of_group, Real limit) {
+    const std::size_t first = of_group * matrix.group;
+    for (std::size_t i = 0; i < matrix.group; ++i) std::fill_n(row(first + i), stride_, Real{0});
+    matrix.add_rows(of_group, row(first), stride_);
+    for (std::size_t i = 0; i < matrix.group; ++i) {
+        Real* const to = row(first + i);
+        std::size_t used = matrix.width;
+        while (used > 1 && to[used - 1] == 0) --used;
+        to[0] = limit - to[0];
+        for (std::size_t j = 1; j < used; ++j) to[j] = 0 - to[j];
+        used_[(first + i) % rows_] = used;
     }
-    for (std::size_t k = 0; k < size; ++k) {
-        const Real* const row = &rest[k * width];
-        if (!(row[0] > rounding)) return false;
-        const Real inverse = 1 / row[0];
-        const std::size_t end = std::min(width, size - k);
-        for (std::size_t i = 1; i < end; ++i) {
-            const Real factor = row[i] * inverse;
-            if (factor == 0) continue;
-            Real* const to = &rest[(k + i) * width];
-            const Real* const from = row + i;
+}
+
+bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
+    constexpr std::size_t pivots = 4;  // at once: what they take from a row is loaded and stored once
+    const Real rounding = 1e-10 * limit;
+    const std::size_t groups = matrix.size / matrix.group;
+    // Whole groups: none is torn where the window ends. A row reaches `pivots - 1` beyond itself, where there are
+    // zeros.
+    rows_ = ((matrix.width + 2 * pivots) / matrix.group + 2) * matrix.group;
+    stride_ = (matrix.width + pivots + 7) / 8 * 8;
+    window_.resize(rows_ * stride_);
+    used_.resize(rows_);
+    std::size_t loaded = 0;  // groups
+    for (std::size_t k = 0; k < matrix.size; k += pivots) {
+        const std::size_t count = std::min(pivots, matrix.size - k);
+        while (loaded < groups && loaded * matrix.group < k + pivots + matrix.width)
+            load_group(matrix, loaded++, limit);
+        std::array<Real*, pivots> pivot{};
+        std::array<Real, pivots> inverse{};
+        std::size_t end = k + 1;  // of what the pivots reach
+        for (std::size_t p = 0; p < count; ++p) {
+            pivot[p] = row(k + p);
+            // what the pivots before it take from it
+            for (std::size_t before = 0; before < p; ++before) {
+                const Real factor = pivot[before][p - before] * inverse[before];
+                for (std::size_t j = k + p; j < end; ++j)
+                    pivot[p][j - (k + p)] -= factor * pivot[before][j - (k + before)];
+            }
+            if (!(pivot[p][0] > rounding)) return false;
+            inverse[p] = 1 / pivot[p][0];
+            end = std::min(std::max(end, k + p + used_[(k + p) % rows_]), matrix.size);
+        }
+        for (std::size_t r = k + count; r < end; ++r) {
+            const std::size_t at = r - k;
+            const Real *const a = pivot[0] + at, *const b = pivot[1] + (at - 1), *const c = pivot[2] + (at - 2),
+                              *const d = pivot[3] + (at - 3);
+            const Real of_a = a[0] * inverse[0], of_b = b[0] * inverse[1], of_c = c[0] * inverse[2],
+                       of_d = d[0] * inverse[3];
+            if (of_a == 0 && of_b == 0 && of_c == 0 && of_d == 0) continue;
+            Real* const to = row(r);
 #pragma omp simd
-            for (std::size_t j = 0; j < end - i; ++j) to[j] -= factor * from[j];
+            for (std::size_t j = 0; j < end - r; ++j)
+                to[j] = (((to[j] - of_a * a[j]) - of_b * b[j]) - of_c * c[j]) - of_d * d[j];
+            std::size_t& used = used_[r % rows_];
+            used = std::max(used, end - r);
         }
     }
     return true;

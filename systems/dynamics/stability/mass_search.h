@@ -1,9 +1,12 @@
 // What the searches for the masses that elements take have in common (mass_forms.h, frame_masses.h).
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
+#include "components/ragged.h"
+#include "jobs/function_ref.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/material/relaxation.h"
 
@@ -43,8 +46,50 @@ private:
 /// Sorts nodes along the longest side of their bounding box.
 void sort_along(std::span<const Vec3> position, std::span<Index> nodes);
 
-/// Whether limit - matrix has a Cholesky decomposition, by more than rounding. `matrix`: of each row the band from the
-/// diagonal on, `width` numbers. `rest`: scratch.
-bool is_band_below(std::span<const Real> matrix, std::size_t width, Real limit, std::vector<Real>& rest);
+/// A corner of an element: the one that is at a node.
+struct ElementCorner {
+    std::size_t block, lane;
+    Index corner;
+};
+
+/// The corners at each of some places, element by element. `for_each_corner(visit)` calls visit(place, corner) for
+/// all, in the order of elements.
+inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corner) {
+    Ragged<ElementCorner> corners;
+    corners.offset.resize(places + 1);
+    for_each_corner([&](std::size_t place, const ElementCorner&) { ++corners.offset[place + 1]; });
+    for (std::size_t i = 0; i < places; ++i) corners.offset[i + 1] += corners.offset[i];
+    corners.item.resize(static_cast<std::size_t>(corners.offset[places]));
+    std::vector<Index> next(corners.offset.begin(), corners.offset.end());
+    for_each_corner([&](std::size_t place, const ElementCorner& corner) {
+        corners.item[static_cast<std::size_t>(next[place]++)] = corner;
+    });
+    return corners;
+}
+
+/// A symmetric matrix with nothing but zeros further from its diagonal than a band: of each row the band from the
+/// diagonal on counts, the diagonal first. Rows come in groups, and are made when they are needed.
+struct BandMatrix {
+    std::size_t size;   // rows, whole groups
+    std::size_t width;  // numbers of a row
+    std::size_t group;  // rows
+    /// Adds the rows of a group, each `stride` numbers behind the one before, to zeros.
+    FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
+};
+
+/// Whether limit - matrix has a Cholesky decomposition, by more than rounding. Of it no more is kept than rows that
+/// reach each other: a window that moves along the diagonal.
+class BandDecomposition {
+public:
+    bool is_below(const BandMatrix& matrix, Real limit);
+
+private:
+    void load_group(const BandMatrix& matrix, std::size_t of_group, Real limit);
+    Real* row(std::size_t r) { return &window_[(r % rows_) * stride_]; }
+
+    std::size_t rows_ = 0, stride_ = 0;  // of the window
+    std::vector<Real> window_;
+    std::vector<std::size_t> used_;  // numbers of each of its rows, behind which there are zeros
+};
 
 }  // namespace skerry
