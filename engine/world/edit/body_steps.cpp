@@ -138,14 +138,17 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
     const auto step = [&] {
         return kernels().stable_step(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum).step;
     };
-    bodies.rest_step[b] = bodies.stable_step[b] = step();
-    if (zones.empty()) return;
+    if (zones.empty()) {
+        bodies.rest_step[b] = bodies.stable_step[b] = step();
+        return;
+    }
     const auto relaxes = [&](const MaterialZone& zone) {
         return model.materials.constants[static_cast<std::size_t>(zone.material)].relaxes();
     };
-    if (std::any_of(zones.begin(), zones.end(), relaxes))
-        set_relaxation(model, bodies.nodes[b], blocks, stiffness_sum, bar_speed(model, body, zones),
-                       bodies.rest_step[b]);
+    if (std::any_of(zones.begin(), zones.end(), relaxes)) {
+        const Real before = step();
+        set_relaxation(model, bodies.nodes[b], blocks, stiffness_sum, bar_speed(model, body, zones), before);
+    }
     // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
     const auto& levels = bodies.level_count[b];
     if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; })) {

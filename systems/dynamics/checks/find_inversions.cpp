@@ -1,9 +1,11 @@
 #include "systems/dynamics/checks/find_inversions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "components/ask_for_lines.h"
 #include "components/check.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
@@ -66,15 +68,24 @@ struct Body {
           travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
 
     void look(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> looks_left) const {
-        const auto end = static_cast<std::size_t>(part.blocks.end);
-        for (auto b = static_cast<std::size_t>(part.blocks.begin); b < end; b += blocks_at_once) {
-            const std::size_t stop = std::min(b + blocks_at_once, end);
-            if (!(travel_bound < least(uninverted_until, b, stop)))
-                for (std::size_t i = b; i < stop; ++i)
-                    if (!(travel_bound < uninverted_until[i]))
-                        look_at_block(i, uninverted_until[i], looks_left[i], part);
+        // All are asked for before the first is looked at: they are out of the cache since the step before.
+        std::array<std::size_t, blocks_per_part> due;
+        std::size_t due_count = 0;
+        SKERRY_CHECK(static_cast<std::size_t>(part.blocks.size()) <= due.size());
+        for_each_group(part.blocks, [&](std::size_t b, std::size_t stop) {
+            if (travel_bound < least(uninverted_until, b, stop)) return;
+            for (std::size_t i = b; i < stop; ++i) {
+                if (travel_bound < uninverted_until[i]) continue;
+                due[due_count++] = i;
+                ask_for_lines(&inputs.tetrahedron_node[i], 1);
+                ask_for_lines(&inputs.tetrahedron_volume[i], 1);
+            }
+        });
+        for (std::size_t k = 0; k < due_count; ++k)
+            look_at_block(due[k], uninverted_until[due[k]], looks_left[due[k]], part);
+        for_each_group(part.blocks, [&](std::size_t b, std::size_t stop) {
             part.uninverted_until = std::min(part.uninverted_until, least(uninverted_until, b, stop));
-        }
+        });
     }
 
     bool has_inverted(Range blocks) const {
@@ -92,6 +103,13 @@ private:
     bool is_judged(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
+    }
+
+    /// visit(begin, end) of some blocks that follow each other.
+    static void for_each_group(Range blocks, auto&& visit) {
+        const auto end = static_cast<std::size_t>(blocks.end);
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < end; b += blocks_at_once)
+            visit(b, std::min(b + blocks_at_once, end));
     }
 
     static Real least(std::span<const Real> of, std::size_t begin, std::size_t end) {

@@ -13,11 +13,23 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_job = 16;
-
 bool move_alike(std::span<const Vec3> velocity) {
     const Vec3& first = velocity.front();
     // the last first: it is far from the first, so that what turns or trembles is found out at once
-    return velocity.back() == first && std::ranges::all_of(velocity, [&](const Vec3& v) { return v == first; });
+    if (velocity.back() != first) return false;
+    constexpr std::size_t at_once = 64;  // compared without a branch for each
+    const Real x = first[0], y = first[1], z = first[2];
+    for (std::size_t begin = 0; begin < velocity.size(); begin += at_once) {
+        const Real* const v = velocity[begin].data();
+        const std::size_t count = std::min(at_once, velocity.size() - begin);
+        unsigned other = 0;
+#pragma omp simd reduction(| : other)
+        for (std::size_t n = 0; n < count; ++n)
+            other |= static_cast<unsigned>(v[3 * n] != x) | static_cast<unsigned>(v[3 * n + 1] != y) |
+                     static_cast<unsigned>(v[3 * n + 2] != z);
+        if (other != 0) return false;
+    }
+    return true;
 }
 
 bool is_zero(const ElementStrain& strain) {

@@ -1,6 +1,7 @@
 #include "systems/dynamics/motion/damp_velocity.h"
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 
 #include "components/check.h"
@@ -112,27 +113,61 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     return omega;
 }
 
+/// What the velocities of a block are taken towards, and by which part.
+struct RigidMotion {
+    Vec3 linear, angular, origin, centre;
+    Real lag, fraction;
+};
+
+/// Adds to velocity_next what takes the velocities of nodes, none of which is held, towards a rigid motion; work[n]:
+/// the kinetic energy that this takes out of a node, J. Several nodes at a time.
+void damp_free(const RigidMotion& rigid, std::size_t count, const Vec3* position, const Vec3* velocity,
+               const Real* mass, Vec3* velocity_next, Real* work) {
+    const Real *const x = position->data(), *const v = velocity->data();
+    Real* const next = velocity_next->data();
+    const Real lx = rigid.linear[0], ly = rigid.linear[1], lz = rigid.linear[2], ax = rigid.angular[0],
+               ay = rigid.angular[1], az = rigid.angular[2], ox = rigid.origin[0], oy = rigid.origin[1],
+               oz = rigid.origin[2], cx = rigid.centre[0], cy = rigid.centre[1], cz = rigid.centre[2], lag = rigid.lag,
+               fraction = rigid.fraction, half = rigid.fraction / 2;
+#pragma omp simd
+    for (std::size_t n = 0; n < count; ++n) {
+        const Real vx = v[3 * n] - lx, vy = v[3 * n + 1] - ly, vz = v[3 * n + 2] - lz;
+        const Real rx = earlier(x[3 * n] - ox - cx, vx, lag), ry = earlier(x[3 * n + 1] - oy - cy, vy, lag),
+                   rz = earlier(x[3 * n + 2] - oz - cz, vz, lag);
+        const Real ex = vx - (ay * rz - az * ry), ey = vy - (az * rx - ax * rz), ez = vz - (ax * ry - ay * rx);
+        next[3 * n] -= fraction * ex;
+        next[3 * n + 1] -= fraction * ey;
+        next[3 * n + 2] -= fraction * ez;
+        // Half of v^2 before less after. Where places move the excess is not quite at right angles to the rigid motion.
+        work[n] = mass[n] * fraction * (ex * (vx - half * ex) + (ey * (vy - half * ey) + ez * (vz - half * ez)));
+    }
+}
+
 /// Adds to velocity_next what takes the velocities of a block towards the rigid motion of the body's sums by
 /// `fraction`; returns the kinetic energy that this takes out, J.
 Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total,
                 std::span<const Vec3> velocity, std::span<Vec3> velocity_next) {
     const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);
-    const bool rigid = keeps_rigid_motion(bodies, body);
-    if (rigid && !(total.mass > 0)) return 0;
-    const Real4 linear = load(rigid ? Vec3(total.momentum / total.mass) : Vec3::Zero());
-    const Real4 angular = load(rigid ? angular_velocity_of(total) : Vec3::Zero());
-    const Real4 origin = load(bodies.position[first_node(bodies, body)]);
-    const Real4 centre = load(rigid ? Vec3(total.first_moment / total.mass) : Vec3::Zero());
-    Real taken = 0;  // J
-    for (std::size_t n = static_cast<std::size_t>(bodies.block_begin[block]);
-         n < static_cast<std::size_t>(bodies.block_end[block]); ++n) {
-        if (!(bodies.inverse_mass[n] > 0)) continue;
-        const Real4 v = load(velocity[n]) - linear;
-        const Real4 excess = v - cross(angular, earlier(load(bodies.position[n]) - origin - centre, v, bodies.lag));
-        velocity_next[n] = vec3(load(velocity_next[n]) - fraction * excess);
-        // Half of v^2 before less after. Where places move the excess is not quite at right angles to the rigid motion.
-        const Real4 work = excess * (v - fraction / 2 * excess);
-        taken += bodies.mass[n] * fraction * (work[0] + (work[1] + work[2]));
+    const bool keeps = keeps_rigid_motion(bodies, body);
+    if (keeps && !(total.mass > 0)) return 0;
+    const Vec3 none = Vec3::Zero();
+    const RigidMotion rigid{keeps ? Vec3(total.momentum / total.mass) : none,
+                            keeps ? angular_velocity_of(total) : none,
+                            bodies.position[first_node(bodies, body)],
+                            keeps ? Vec3(total.first_moment / total.mass) : none,
+                            bodies.lag,
+                            fraction};
+    const auto begin = static_cast<std::size_t>(bodies.block_begin[block]),
+               end = static_cast<std::size_t>(bodies.block_end[block]);
+    std::array<Real, nodes_per_block> work;
+    SKERRY_CHECK(end - begin <= work.size());
+    Real taken = 0;  // J, of the nodes in order
+    for (std::size_t first = begin, last = begin; first < end; first = last + 1) {
+        for (last = first; last < end && bodies.inverse_mass[last] > 0;) ++last;
+        if (last == first) continue;
+        damp_free(rigid, last - first, &bodies.position[first], &velocity[first], &bodies.mass[first],
+                  &velocity_next[first], work.data());
+        for (std::size_t n = 0; n < last - first; ++n) taken += work[n];
     }
     return taken;
 }

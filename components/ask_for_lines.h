@@ -1,0 +1,16 @@
+// Asking for memory before it is needed.
+#pragma once
+
+#include <cstddef>
+
+namespace skerry {
+
+/// Has the cache lines of `count` items brought near, and does not wait for them.
+template <class T>
+[[gnu::always_inline]] inline void ask_for_lines(const T* first, std::size_t count) {
+    constexpr std::size_t line = 64;
+    const char* const bytes = reinterpret_cast<const char*>(first);
+    for (std::size_t at = 0; at < count * sizeof(T); at += line) __builtin_prefetch(bytes + at);
+}
+
+}  // namespace skerry
