@@ -89,9 +89,9 @@ TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scen
     const auto [nodes, tetrahedra] = test::jittered_box({5, 4, 3}, 0.1, 0.25, 1);
     const auto material = world.add_material(test::lossless({.model = model}));
     world.add_body({nodes, tetrahedra}, {.material = material, .position = {2, 0, 0}, .element = kind});
-    const auto body = world.add_body(
-        {nodes, tetrahedra},
-        {.material = material, .rotation = {0.3, -0.2, 0.5}, .dynamics = dynamics, .element = kind});
+    const auto body =
+        world.add_body({nodes, tetrahedra},
+                       {.material = material, .rotation = {0.3, -0.2, 0.5}, .dynamics = dynamics, .element = kind});
     std::vector<Vec3> velocity;
     for (const Vec3& x : nodes) velocity.push_back(10 * x.squaredNorm() * Vec3(1, -2, 0.5));
     world.set_velocities(body, velocity);
