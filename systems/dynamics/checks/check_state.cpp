@@ -1,6 +1,7 @@
 #include "systems/dynamics/checks/check_state.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -21,19 +22,27 @@ Vec3 motion(const CheckInputs& state, std::size_t node) {
     return state.push_out.empty() ? state.velocity_next[node] : Vec3(state.velocity_next[node] + state.push_out[node]);
 }
 
-/// Of a block, in a frame that moves with `frame` (m/s). Not a number when any node's velocity is not finite, or so
-/// large that its square is not.
-Real max_speed_squared(const CheckInputs& state, std::size_t block, const Vec3& frame) {
+/// Of a block: in the world, and in a frame that moves with `frame` (m/s). Not a number when any node's velocity is not
+/// finite, or so large that its square is not.
+std::array<Real, 2> max_speeds_squared(const CheckInputs& state, std::size_t block, const Vec3& frame) {
     const auto begin = static_cast<std::size_t>(state.block_begin[block]);
     const std::size_t count = static_cast<std::size_t>(state.block_end[block]) - begin;
-    if (count == 0) return 0;
-    const Real* v = state.velocity_next[begin].data();
-    const Real* p = state.push_out.empty() ? nullptr : state.push_out[begin].data();
-    const Real highest = p == nullptr ? largest_squared_length(
-                                            count, [&](std::size_t i) { return v[i]; }, frame)
-                                      : largest_squared_length(
-                                            count, [&](std::size_t i) { return v[i] + p[i]; }, frame);
-    return highest <= std::numeric_limits<Real>::max() ? highest : std::numeric_limits<Real>::quiet_NaN();
+    if (count == 0) return {0, 0};
+    const Real* const v = state.velocity_next[begin].data();
+    const Real* const p = state.push_out.empty() ? nullptr : state.push_out[begin].data();
+    const auto free = [v](std::size_t i) { return v[i]; };
+    const auto pushed = [v, p](std::size_t i) { return v[i] + p[i]; };
+    std::array<Real, 2> highest{};
+    if (!frame.isZero(0)) {
+        highest =
+            p == nullptr ? largest_squared_lengths(count, free, frame) : largest_squared_lengths(count, pushed, frame);
+    } else {
+        highest[0] = p == nullptr ? largest_squared_length(count, free) : largest_squared_length(count, pushed);
+        highest[1] = highest[0];
+    }
+    for (Real& of : highest)
+        if (!(of <= std::numeric_limits<Real>::max())) of = std::numeric_limits<Real>::quiet_NaN();
+    return highest;
 }
 
 Index first_not_finite(const CheckInputs& state, Range blocks) {
@@ -265,10 +274,11 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
     SKERRY_CHECK(speed.block_frame_squared.size() == state.block_begin.size() && speed.body_frame.size() == body_count);
     parallel_for(executor, state.block_begin.size(), node_blocks_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
-            speed.block_squared[b] = speed.block_frame_squared[b] = max_speed_squared(state, b, Vec3::Zero());
-            if (state.body_frame.empty()) continue;
-            const Vec3& frame = state.body_frame[static_cast<std::size_t>(state.block_body[b])].velocity;
-            if (!frame.isZero(0)) speed.block_frame_squared[b] = max_speed_squared(state, b, frame);
+            const auto body = static_cast<std::size_t>(state.block_body[b]);
+            const std::array<Real, 2> squared = max_speeds_squared(
+                state, b, state.body_frame.empty() ? Vec3(Vec3::Zero()) : state.body_frame[body].velocity);
+            speed.block_squared[b] = squared[0];
+            speed.block_frame_squared[b] = squared[1];
         }
     });
     const auto greatest = [](std::span<const Real> squared) {

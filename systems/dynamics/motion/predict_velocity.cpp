@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
@@ -60,15 +61,49 @@ private:
                 add(n, Vec3::Zero());
     }
 
-    /// In the order of the patches: the same bits whatever the worker count.
-    void all(std::size_t begin, std::size_t end) const {
+    /// visit(node, force of all its slots). In the order of the patches: the same bits whatever the worker count.
+    void sum_slots(std::size_t begin, std::size_t end, auto&& visit) const {
         const RaggedView<Index>& slots = nodes.slots_of_node;
         const Index* slot = slots.item.data() + slots.offset[begin];
         for (std::size_t n = begin; n < end; ++n) {
             Real4 sum{};
             for (const Index* last = slots.item.data() + slots.offset[n + 1]; slot != last; ++slot)
                 sum = sum + force_of(*slot);
-            add(n, {sum[0], sum[1], sum[2]});
+            visit(n, sum);
+        }
+    }
+    void all(std::size_t begin, std::size_t end) const {
+        if (nodes.load.empty() && are_free(begin, end))
+            all_free(begin, end);
+        else
+            sum_slots(begin, end, [&](std::size_t n, const Real4& sum) { add(n, {sum[0], sum[1], sum[2]}); });
+    }
+    bool are_free(std::size_t begin, std::size_t end) const {
+        const Real* const inverse_mass = nodes.inverse_mass.data();
+        unsigned held = 0;
+#pragma omp simd reduction(| : held)
+        for (std::size_t n = begin; n < end; ++n) held |= static_cast<unsigned>(!(inverse_mass[n] > 0));
+        return held == 0;
+    }
+    /// Of nodes that nothing holds and nothing loads, which are kicked several at a time.
+    void all_free(std::size_t begin, std::size_t end) const {
+        std::array<Real, 3 * nodes_per_block + 1> force_on;
+        const std::size_t count = end - begin;
+        SKERRY_CHECK(3 * count < force_on.size());
+        sum_slots(begin, end, [&](std::size_t n, const Real4& sum) {
+            // four numbers at once: the next node writes over the last of them
+            std::memcpy(force_on.data() + 3 * (n - begin), &sum, sizeof sum);
+        });
+        const Real *const v = velocity[begin].data(), *const mass = nodes.mass.data() + begin,
+                          *const inverse_mass = nodes.inverse_mass.data() + begin, *const f = force_on.data();
+        Real* const next = velocity_next[begin].data();
+        const Real gx = nodes.gravity[0], gy = nodes.gravity[1], gz = nodes.gravity[2], h = seconds;
+#pragma omp simd
+        for (std::size_t n = 0; n < count; ++n) {
+            const Real m = mass[n], kick = h * inverse_mass[n];
+            next[3 * n] = v[3 * n] + kick * (f[3 * n] + m * gx);
+            next[3 * n + 1] = v[3 * n + 1] + kick * (f[3 * n + 1] + m * gy);
+            next[3 * n + 2] = v[3 * n + 2] + kick * (f[3 * n + 2] + m * gz);
         }
     }
     std::size_t levels_in(std::size_t begin, std::size_t end) const {
@@ -84,10 +119,11 @@ private:
             due[due_count] = static_cast<Index>(n);
             due_count += (nodes.active.node_levels[n] & counts) != 0;
         }
+        const auto add_all = [&](std::size_t n, const Real4& sum) { add(n, {sum[0], sum[1], sum[2]}); };
         for (std::size_t k = 0; k < due_count; ++k) {
             const auto n = static_cast<std::size_t>(due[k]);
             if ((nodes.active.node_levels[n] & ~counts) == 0)
-                all(n, n + 1);
+                sum_slots(n, n + 1, add_all);
             else
                 add(n, sum_of_due(n, counts));
         }

@@ -1,7 +1,7 @@
 // The greatest length among many vectors, several at a time.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +26,25 @@ template <class Component>
         largest = bits > largest ? bits : largest;
     }
     return std::bit_cast<Real>(largest);
+}
+
+/// The same of the vectors themselves, and less `origin`. The component must be handed in by value: through a reference
+/// the loop is not laid into lanes.
+template <class Component>
+[[gnu::always_inline]] inline std::array<Real, 2> largest_squared_lengths(std::size_t count, Component component,
+                                                                          const Vec3& origin) {
+    std::uint64_t largest = 0, largest_less = 0;
+    const Real x0 = origin[0], y0 = origin[1], z0 = origin[2];
+#pragma omp simd reduction(max : largest, largest_less)
+    for (std::size_t n = 0; n < count; ++n) {
+        const Real x = component(3 * n), y = component(3 * n + 1), z = component(3 * n + 2);
+        const Real dx = x - x0, dy = y - y0, dz = z - z0;
+        const auto bits = std::bit_cast<std::uint64_t>(x * x + y * y + z * z);
+        const auto less = std::bit_cast<std::uint64_t>(dx * dx + dy * dy + dz * dz);
+        largest = bits > largest ? bits : largest;
+        largest_less = less > largest_less ? less : largest_less;
+    }
+    return {std::bit_cast<Real>(largest), std::bit_cast<Real>(largest_less)};
 }
 
 }  // namespace skerry

@@ -65,6 +65,50 @@ TEST_CASE("a kick adds h force over mass, and nothing to a pinned node", "[unit]
     predict_velocity(*nodes.executor, {}, {}, 0.25, {}, {});
 }
 
+TEST_CASE("nodes that are kicked together have the bits of one after the other", "[unit]") {
+    const auto executor = make_executor(Backend::serial, 1);
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<Real> uniform(-1, 1);
+    const auto vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+    const Vec3 gravity(0.3, -0.2, -9.81);
+    const Real h = 0.37;
+    for (const Index count : {1, 7, 8, 100, 256}) {
+        std::vector<PaddedVec3> patch_force;
+        Ragged<Index> slots;
+        std::vector<Vec3> velocity, sum;
+        std::vector<Real> mass, inverse_mass;
+        slots.offset.push_back(0);
+        for (Index n = 0; n < count; ++n) {
+            Vec3 force = Vec3::Zero();
+            for (Index k = 0; k < n % 4; ++k) {
+                const Vec3 part = vector();
+                slots.item.push_back(static_cast<Index>(patch_force.size()));
+                patch_force.push_back({part[0], part[1], part[2], uniform(random)});
+                force += part;
+            }
+            slots.offset.push_back(static_cast<Index>(slots.item.size()));
+            sum.push_back(force);
+            velocity.push_back(vector());
+            mass.push_back(2 + uniform(random));
+            inverse_mass.push_back(1 / mass.back());
+        }
+        for (const bool held : {false, true}) {
+            const auto middle = static_cast<std::size_t>(count / 2);
+            if (held) inverse_mass[middle] = 0;
+            const std::vector<Index> begin{0}, end{count}, body{0};
+            std::vector<Vec3> force(velocity.size()), next(velocity.size());
+            predict_velocity(*executor, {begin, end, body, slots.view(), patch_force, {}, mass, inverse_mass, gravity},
+                             velocity, h, force, next);
+            for (std::size_t n = 0; n < next.size(); ++n) {
+                const Vec3 total = sum[n] + mass[n] * gravity;
+                const bool is_held = held && n == middle;
+                CHECK(next[n] == (is_held ? velocity[n] : Vec3(velocity[n] + (h * inverse_mass[n]) * total)));
+                if (is_held) CHECK(force[n] == total);
+            }
+        }
+    }
+}
+
 TEST_CASE("a node without elements carries its weight and its load", "[unit]") {
     Nodes nodes(1);
     nodes.mass[0] = 2;
@@ -138,11 +182,21 @@ TEST_CASE("the largest length is found among any number of vectors, and what is 
             largest = std::max(largest, flat[3 * n] * flat[3 * n] + flat[3 * n + 1] * flat[3 * n + 1] +
                                             flat[3 * n + 2] * flat[3 * n + 2]);
         CHECK(found() == largest);
+        const Vec3 origin(0.3, -0.2, 0.5);
+        const auto both = [&] {
+            return largest_squared_lengths(
+                count, [v = flat.data()](std::size_t i) { return v[i]; }, origin);
+        };
+        CHECK(both()[0] == largest);
+        CHECK(both()[1] == largest_squared_length(
+                               count, [&](std::size_t i) { return flat[i]; }, origin));
         for (const std::size_t place : {std::size_t{0}, flat.size() / 2, flat.size() - 1}) {
             if (count == 0) break;
             for (const Real bad : {not_a_number, -not_a_number, infinite, -infinite, 1e200}) {
                 const Real kept = std::exchange(flat[place], bad);
                 CHECK_FALSE(found() <= std::numeric_limits<Real>::max());
+                CHECK_FALSE(both()[0] <= std::numeric_limits<Real>::max());
+                CHECK_FALSE(both()[1] <= std::numeric_limits<Real>::max());
                 flat[place] = kept;
             }
         }
