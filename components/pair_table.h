@@ -66,6 +66,7 @@ struct PairTable {
     std::vector<Column<Candidate>> candidates;  // by pair, sorted by feature
     std::vector<Column<Real>>
         asleep_until;                 // m, by pair and candidate: it cannot touch while travel_bound is below this
+    Column<std::int64_t> work;        // by some pairs, what looking at them costs; then at those before
     Column<CandidatePlace> block;     // where the blocks of find_contacts start, and one past the last
     Column<std::size_t> block_first;  // row of ContactTable where the contacts of a block start
     std::vector<Column<ContactRow>> found;    // this step's contacts, by block, in candidate order
@@ -164,10 +165,11 @@ struct SearchMemory {
     std::vector<Column<Candidate>> candidates;  // on their way to the new order of pairs
     std::vector<Column<Real>> asleep_until;
     Column<Index> expired;             // rows of PairTable
+    Column<Index> near, far;           // of them: those that are searched, and those that are seen to be far apart
     Column<std::uint8_t> needs_refit;  // by body
     Column<std::uint8_t> rebase;  // by body: its displacement costs a pair much; measure_displacement sets it to zero
     Column<Index> refit;          // rows of BodyTable
-    std::vector<Column<FoundCandidate>> found;  // by expired pair
+    std::vector<Column<FoundCandidate>> found;  // by block of the search
 };
 
 /// When the broad search has to run again, and what the searches did. What was moved by hand is forgotten, and all

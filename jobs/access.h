@@ -78,6 +78,16 @@ public:
         note(object, Use::read);
         return object;
     }
+    /// A table without one of its columns, which another stage may write meanwhile.
+    template <Resource T, class Row>
+    const T& read_but(const T& table, const Column<Row>& column) const {
+        if (!list_) return table;
+        const auto begin = reinterpret_cast<std::uintptr_t>(std::addressof(table)), end = begin + sizeof(T);
+        const auto without = reinterpret_cast<std::uintptr_t>(std::addressof(column));
+        list_->push_back({begin, without, Use::read});
+        list_->push_back({without + sizeof column, end, Use::read});
+        return table;
+    }
     template <class T>
     std::span<T> write(Column<T>& column) const {
         note(column, Use::write);

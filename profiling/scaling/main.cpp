@@ -69,6 +69,7 @@ void add_options(CLI::App& app, ProgramOptions& options) {
     scalar("--workers", study.claimed_workers, "That work is cut for")->check(CLI::Range(2, 4096));
     scalar("--bytes-per-tetrahedron", study.bytes_per_tetrahedron, "That a step moves");
     app.add_option("--cores", study.cores, "Predicted; 1 is the base")->capture_default_str();
+    app.add_option("--costs", study.costs, "Cores for which the cost of each stage is printed")->capture_default_str();
     app.add_option("--threads", study.threads, "Measured; 1 is the base")->capture_default_str();
     scalar("--record", options.record, "Also write all blocks of the last scene to this file (CSV)");
     scalar("--out", options.out, "Folder for the tables");

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 namespace skerry::profiling {
 
@@ -31,6 +33,27 @@ void print_stages(const SceneStudy& study) {
             std::printf("    %-34s %10.1f %7.2f %10.1f %10.1f\n", name_of_row(study, s).c_str(),
                         per_step(study, sums[s].work), 100 * sums[s].work / work, per_step(study, sums[s].serial),
                         static_cast<double>(sums[s].blocks) / static_cast<double>(study.steps));
+}
+
+/// What stages cost on so many cores, dearest first.
+void print_costs(const SceneStudy& study, int cores, const std::vector<StageCost>& costs) {
+    std::vector<std::size_t> order(costs.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t s) { return costs[s].sum(); });
+    StageCost all;
+    for (const StageCost& cost : costs) all += cost;
+    const auto row = [&](const char* name, const StageCost& cost) {
+        std::printf("    %-34s", name);
+        for (const double seconds : {cost.sum(), cost.work, cost.exchange, cost.handing_out, cost.alone, cost.tail})
+            std::printf(" %10.1f", per_step(study, seconds));
+        std::printf("\n");
+    };
+    const std::string title = "us a step on " + std::to_string(cores) + " cores";
+    std::printf("    %-34s %10s %10s %10s %10s %10s %10s\n", title.c_str(), "all", "work", "exchange", "hand out",
+                "one alone", "tail");
+    row("all", all);
+    for (const std::size_t s : order)
+        if (costs[s].sum() > 0.003 * all.sum()) row(name_of_row(study, s).c_str(), costs[s]);
 }
 
 nlohmann::json to_json(const SceneStudy& study) {
@@ -120,6 +143,7 @@ void print(const SceneStudy& study) {
                     per_step(study, seconds));
     std::printf("; other programs took %.2f cores meanwhile\n", study.others);
     print_stages(study);
+    for (const auto& [cores, costs] : study.costs) print_costs(study, cores, costs);
     std::fflush(stdout);
 }
 

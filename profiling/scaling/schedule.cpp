@@ -44,10 +44,12 @@ public:
           machine_(machine),
           slowdown_(count, machine, traffic),
           transfer_(count > machine.cores_per_chiplet ? machine.far_line_transfer : machine.line_transfer),
-          workers_(static_cast<std::size_t>(count)) {}
+          workers_(static_cast<std::size_t>(count)),
+          costs_(recording.graph.stage_count() + 1) {}
 
     /// Begins when all has ended before, on worker 0. Returns when it ends, s.
     double run(std::span<const StageRun> part);
+    const std::vector<StageCost>& costs() const { return costs_; }
 
 private:
     /// The blocks of a loop that one worker begins with.
@@ -68,6 +70,8 @@ private:
         int loop = nobody;       // owner of the loop that it takes blocks from
         std::size_t share = 0;   // of that loop, from which it takes them
         bool idle = true, in_team = false;
+        bool handed_out = false;  // a loop of its stage
+        bool alone = false;       // with a serial piece
         double idle_since = 0;
     };
     struct Event {
@@ -84,7 +88,22 @@ private:
     int busy() const {
         return static_cast<int>(std::ranges::count_if(workers_, [](const Worker& w) { return !w.idle; }));
     }
-    double longer(double seconds, bool own) const { return seconds * slowdown_(busy(), own); }
+    /// Of a block or a serial piece of the stage.
+    double longer(double seconds, bool own, Index stage) {
+        const double slower = slowdown_(busy(), own);
+        add(stage, &StageCost::work, seconds);
+        add(stage, &StageCost::exchange, (slower - 1) * seconds);
+        return seconds * slower;
+    }
+    StageCost& cost_of(Index stage) {
+        const Index number = part_[static_cast<std::size_t>(stage)].stage;
+        return number == no_index ? costs_.back() : costs_[static_cast<std::size_t>(number)];
+    }
+    /// s, of one core.
+    void add(Index stage, double StageCost::*what, double seconds) {
+        cost_of(stage).*what += seconds / static_cast<double>(workers_.size());
+    }
+    void pass(double time);
     double seconds_of(Index block) const { return recording_.seconds[static_cast<std::size_t>(block)]; }
 
     void go_on(int w, double time);
@@ -115,6 +134,8 @@ private:
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     std::uint64_t event_count_ = 0;
     int team_leader_ = nobody;
+    std::vector<StageCost> costs_;  // as stage_costs
+    double passed_ = 0;             // s, until when cores that wait have been counted
 };
 
 double Cores::run(std::span<const StageRun> part) {
@@ -136,9 +157,28 @@ double Cores::run(std::span<const StageRun> part) {
     while (!events_.empty()) {
         const Event event = events_.top();
         events_.pop();
+        pass(event.time);
         go_on(event.worker, event.time);
     }
     return now_;
+}
+
+/// Counts the cores that wait until then.
+void Cores::pass(double time) {
+    const double seconds = time - passed_;
+    passed_ = time;
+    if (seconds <= 0) return;
+    const auto in_stage = [](const Worker& w) { return w.stage != no_index; };
+    const auto waits = [&](const Worker& w) { return w.idle || (in_stage(w) && w.handed_out && w.loop == nobody); };
+    const auto joins = [&](const Worker& w) { return !w.idle && !in_stage(w) && w.loop == nobody; };
+    const auto waiting = static_cast<double>(std::ranges::count_if(workers_, waits));
+    const auto joining = static_cast<double>(std::ranges::count_if(workers_, joins));
+    const double share = seconds / static_cast<double>(std::ranges::count_if(workers_, in_stage));
+    for (const Worker& w : workers_) {
+        if (!in_stage(w)) continue;
+        add(w.stage, w.alone ? &StageCost::alone : &StageCost::tail, waiting * share);
+        add(w.stage, &StageCost::handing_out, joining * share);
+    }
 }
 
 void Cores::go_on(int w, double time) {
@@ -158,14 +198,16 @@ void Cores::start_stage(int w, Index stage) {
 
 void Cores::next_piece(int w, double time) {
     Worker& self = worker(w);
+    self.handed_out = false;
     if (self.piece == part_[static_cast<std::size_t>(self.stage)].pieces.end) {
         end_stage(w, time);
         return;
     }
     const Piece& piece = recording_.pieces[static_cast<std::size_t>(self.piece++)];
+    self.alone = piece.kind == PieceKind::serial;
     switch (piece.kind) {
         case PieceKind::serial:
-            at(time + longer(seconds_of(piece.blocks.begin), false), w);
+            at(time + longer(seconds_of(piece.blocks.begin), false, self.stage), w);
             return;
         case PieceKind::loop:
             hand_out(w, piece, time);
@@ -184,6 +226,7 @@ void Cores::hand_out(int w, const Piece& piece, double time) {
         return piece.blocks.begin + static_cast<Index>(static_cast<std::size_t>(count) * share / loop.shares.size());
     };
     for (std::size_t s = 0; s < loop.shares.size(); ++s) loop.shares[s].blocks = {begin_of(s), begin_of(s + 1)};
+    worker(w).handed_out = true;
     enter(w, loop);
     wake(count - 1, time);
     take_block(w, time);
@@ -220,7 +263,9 @@ void Cores::take_block(int w, double time) {
         if (share.taker != nobody && share.taker != w)
             begin = share.counter_free = std::max(time, share.counter_free) + transfer_;
         share.taker = w;
-        at(begin + longer(seconds_of(share.blocks.begin++), worker(w).share == own), w);
+        const Index stage = worker(loop.owner).stage;
+        add(stage, &StageCost::handing_out, begin - time);
+        at(begin + longer(seconds_of(share.blocks.begin++), worker(w).share == own, stage), w);
         return;
     }
     const int owner = loop.owner;
@@ -305,16 +350,24 @@ double Cores::run_phase(int w, const Piece& piece, double time) {
     const auto at_work = std::min<std::ptrdiff_t>(members, count);
     std::priority_queue<double, std::vector<double>, std::greater<>> free;
     for (std::ptrdiff_t m = 0; m < at_work; ++m) free.push(time);
-    double end = time;
+    double end = time, work = 0;
     const double slower = slowdown_(static_cast<int>(at_work), true);
     for (Index block = piece.blocks.begin; block < piece.blocks.end; ++block) {
         const double done = free.top() + slower * seconds_of(block);
         free.pop();
         free.push(done);
         end = std::max(end, done);
+        work += seconds_of(block);
     }
     // all count their blocks on one line
-    return at_work == 1 ? end : end + machine_.barrier + static_cast<double>(at_work - 2) * transfer_;
+    const double barrier = at_work == 1 ? 0 : machine_.barrier + static_cast<double>(at_work - 2) * transfer_;
+    const Index stage = worker(w).stage;
+    add(stage, &StageCost::work, work);
+    add(stage, &StageCost::exchange, (slower - 1) * work);
+    add(stage, &StageCost::handing_out, barrier * static_cast<double>(at_work));
+    // pass counts members, as they have no stage, as if they waited all the time
+    add(stage, &StageCost::tail, end - time - slower * work - barrier * static_cast<double>(at_work - 1));
+    return end + barrier;
 }
 
 void Cores::dismiss_team(double time) {
@@ -335,11 +388,27 @@ MachineModel MachineModel::free_of_cost() {
     return machine;
 }
 
+StageCost& StageCost::operator+=(const StageCost& other) {
+    work += other.work;
+    exchange += other.exchange;
+    handing_out += other.handing_out;
+    alone += other.alone;
+    tail += other.tail;
+    return *this;
+}
+
 double predict_seconds(const Recording& recording, int cores, const MachineModel& machine, const Traffic& traffic) {
     Cores all(recording, cores, machine, traffic);
     double end = 0;
     for_each_part(recording, [&](std::span<const StageRun> part) { end = all.run(part); });
     return end;
+}
+
+std::vector<StageCost> stage_costs(const Recording& recording, int cores, const MachineModel& machine,
+                                   const Traffic& traffic) {
+    Cores all(recording, cores, machine, traffic);
+    for_each_part(recording, [&](std::span<const StageRun> part) { all.run(part); });
+    return all.costs();
 }
 
 }  // namespace skerry::profiling

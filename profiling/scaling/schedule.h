@@ -47,4 +47,20 @@ struct Traffic {
 /// Team::most_members.
 double predict_seconds(const Recording& recording, int cores, const MachineModel& machine, const Traffic& traffic = {});
 
+/// Where a stage's share of the time goes, s: of each the time of all cores by their number, so that all stages
+/// together are what the recording takes. Cores that have nothing to do wait for the stages that run meanwhile, in
+/// equal parts.
+struct StageCost {
+    double work = 0;         // as recorded
+    double exchange = 0;     // by what blocks take longer than alone
+    double handing_out = 0;  // until a core has its first block, counters, barriers
+    double alone = 0;        // others wait while one core does what is serial
+    double tail = 0;         // others wait for the last blocks of loops, and for phases
+    double sum() const { return work + exchange + handing_out + alone + tail; }
+    StageCost& operator+=(const StageCost& other);
+};
+/// By stage; the last is what lies between graphs.
+std::vector<StageCost> stage_costs(const Recording& recording, int cores, const MachineModel& machine,
+                                   const Traffic& traffic = {});
+
 }  // namespace skerry::profiling

@@ -153,6 +153,8 @@ SceneStudy study_scene(const std::string& name, World& world, double begin, doub
     study.traffic = {bytes * static_cast<double>(study.steps) / study.recording.work(), bytes};
     for (const int cores : options.cores)
         study.predicted[cores] = predict_seconds(study.recording, cores, options.machine, study.traffic);
+    for (const int cores : options.costs)
+        study.costs[cores] = stage_costs(study.recording, cores, options.machine, study.traffic);
     return study;
 }
 

@@ -19,6 +19,7 @@ struct StudyOptions {
     double wait = 30;          // s, for other programs to leave the cores alone, of all measurements of a window
     int claimed_workers = 64;  // that work is cut for
     std::vector<int> cores{1, 2, 4, 8, 16, 32, 64};
+    std::vector<int> costs{16, 64};  // cores for which it is said what each stage costs
     std::vector<int> threads{1, 2};  // measured
     MachineModel machine;
     // bytes that a step reads or writes for each tetrahedron, counted by the columns of a pile of balls with elements
@@ -35,9 +36,10 @@ struct SceneStudy {
     std::vector<std::string> stage_name;
     Recording recording;  // all windows, undisturbed
     Traffic traffic;
-    std::map<int, double> predicted;  // s, by cores
-    std::map<int, double> measured;   // s, by threads, undisturbed (quiet.h)
-    double others = 0;                // cores that other programs took meanwhile all the same, mean
+    std::map<int, double> predicted;              // s, by cores
+    std::map<int, std::vector<StageCost>> costs;  // s, by cores
+    std::map<int, double> measured;               // s, by threads, undisturbed (quiet.h)
+    double others = 0;                            // cores that other programs took meanwhile all the same, mean
 };
 
 /// Runs the world from `begin` to `end`, s, and looks at windows of steps in between. Recordings and measurements go on

@@ -18,9 +18,9 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t trees_per_block = 4, bounds_per_block = 32;  // a refit takes microseconds, a box and sphere less
+constexpr std::size_t trees_per_block = 2, bounds_per_block = 32;  // a refit takes microseconds, a box and sphere less
 // A block of either takes some microseconds.
-constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256;
+constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256, far_pairs_per_block = 64;
 
 /// Which rows nothing is known of. Returns whether there are any.
 bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Column<std::uint8_t>& forgotten) {
@@ -181,14 +181,22 @@ bool is_far(const PairToSearch& pair) {
     return pair.apart - pair.scale.zone >= pair.margin;
 }
 
-/// A tree that several expired pairs share is fitted once, and none of those that are far apart.
+/// Tells those that are searched from those that are far apart: a tree that several of them share is fitted once, and
+/// none of the latter.
 void list_refits(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box,
                  SearchMemory& memory, const PairTable& pairs) {
     memory.refit.clear();
     memory.needs_refit.assign(inputs.body.slot.size(), 0);
-    for (Index p : memory.expired)
-        if (pairs.kind[p] != PairKind::collider && !is_far(pair_to_search(inputs, settings, box, memory, pairs, p)))
-            memory.needs_refit[pairs.first[p]] = memory.needs_refit[pairs.second[p]] = 1;
+    memory.near.clear();
+    memory.far.clear();
+    memory.near.reserve(pairs.size());  // whichever expire in a later step
+    memory.far.reserve(pairs.size());
+    for (Index p : memory.expired) {
+        const bool surfaces = pairs.kind[p] != PairKind::collider;
+        const bool far = surfaces && is_far(pair_to_search(inputs, settings, box, memory, pairs, p));
+        (far ? memory.far : memory.near).push_back(p);
+        if (surfaces && !far) memory.needs_refit[pairs.first[p]] = memory.needs_refit[pairs.second[p]] = 1;
+    }
     list_bodies(memory);
 }
 
@@ -218,6 +226,24 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
         pairs.candidates[p][i] = found[i].candidate;
         pairs.asleep_until[p][i] = found[i].asleep_until;
     }
+}
+
+/// One that is near at a time, which takes some ten microseconds, and with each its part of those that are far, which
+/// take next to nothing: so every worker's share of the blocks is about as much work.
+void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
+                    const BvhBoxes& boxes, SearchMemory& memory, PairTable& pairs) {
+    const std::size_t near = memory.near.size(), far = memory.far.size();
+    const std::size_t blocks = std::max(near, (far + far_pairs_per_block - 1) / far_pairs_per_block);
+    if (memory.found.size() < blocks) memory.found.resize(blocks);
+    parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto search = [&](Index p) {
+                search_again(inputs, settings, boxes, p, memory, pairs, memory.found[k]);
+            };
+            if (k < near) search(memory.near[k]);
+            for (std::size_t i = far * k / blocks; i < far * (k + 1) / blocks; ++i) search(memory.far[i]);
+        }
+    });
 }
 
 std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
@@ -268,11 +294,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     list_refits(inputs, settings, box, memory, pairs);
     refit_trees(executor, inputs, box, leaf_box, memory);
     const BvhBoxes boxes{box, leaf_box};
-    if (memory.found.size() < memory.expired.size()) memory.found.resize(memory.expired.size());
-    parallel_for(executor, memory.expired.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            search_again(inputs, settings, boxes, memory.expired[i], memory, pairs, memory.found[i]);
-    });
+    search_expired(executor, inputs, settings, boxes, memory, pairs);
     ask_for_rebase(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();
     search.candidate_count = count_candidates(executor, pairs);

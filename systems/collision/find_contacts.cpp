@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
@@ -14,9 +16,11 @@ namespace skerry {
 
 namespace {
 
-// Candidates of one block, asleep or not; a pair counts as some more. Asleep it takes a microsecond, awake a hundred.
-constexpr Index candidates_per_block = 2048;
+// Of one block, asleep or not; a pair counts as some more, and a candidate against a collider as several: it
+// is looked at in every step, by itself. Asleep a block takes a microsecond, awake a hundred.
+constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index candidates_worth_of_a_pair = 16;
+constexpr Index candidates_worth_of_one_at_collider = 5;
 
 constexpr std::size_t rows_per_block = 256;
 constexpr Index pairs_ahead = 3;                      // lists are asked for, before they are looked at
@@ -31,44 +35,56 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
     return inputs.body.asleep[body] != 0;
 }
 
+/// Of one candidate, in candidates of two surfaces.
+Index work_of_one(const PairTable& pairs, std::size_t p) {
+    return pairs.kind[p] == PairKind::collider ? candidates_worth_of_one_at_collider : 1;
+}
+
+/// What a pair adds to the work of the blocks, in such candidates.
+std::int64_t work_of(const PairTable& pairs, std::size_t p) {
+    const Index count = pairs.looked_at[p];
+    return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
+}
+
 /// Pairs of which neither partner moves: what is between them is in equilibrium, or they would not rest. Of the others,
-/// how many candidates they have.
+/// how many candidates they have, and what work they are together.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.looked_at.resize(pairs.size());
+    pairs.work.resize((pairs.size() + counted_pairs_per_block - 1) / counted_pairs_per_block);
     parallel_for(executor, pairs.size(), counted_pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        std::int64_t work = 0;
         for (std::size_t p = begin; p < end; ++p) {
             pairs.idle[p] = inputs.body.asleep[pairs.first[p]] &&
                             (pairs.kind[p] == PairKind::collider ? collider_stands_still(inputs, pairs.second[p])
                                                                  : body_stands_still(inputs, pairs.second[p]));
             pairs.looked_at[p] = pairs.idle[p] ? 0 : static_cast<Index>(pairs.candidates[p].size());
+            work += work_of(pairs, p);
         }
+        pairs.work[begin / counted_pairs_per_block] = work;
     });
 }
 
-/// Cuts the concatenated candidate lists of the pairs that do not rest into blocks of about equal length. Returns their
-/// number.
-Index cut_blocks(PairTable& pairs) {
-    pairs.block.clear();
-    Index filled = candidates_per_block;
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-        const Index count = pairs.looked_at[p];
-        if (filled < candidates_per_block && filled + count <= candidates_per_block) {  // most pairs: nothing to cut
-            filled += count > 0 ? count + candidates_worth_of_a_pair : 0;
-            continue;
-        }
-        for (Index begin = 0; begin < count;) {
-            if (filled >= candidates_per_block) {
-                pairs.block.push_back({static_cast<Index>(p), begin});
-                filled = 0;
+/// Cuts the concatenated candidate lists of the pairs that do not rest into blocks of equal work. Returns their number.
+Index cut_blocks(Executor& executor, PairTable& pairs) {
+    std::int64_t total = 0;
+    for (std::int64_t& work : pairs.work) total += std::exchange(work, total);
+    const auto blocks = static_cast<Index>((total + candidates_per_block - 1) / candidates_per_block);
+    pairs.block.resize(static_cast<std::size_t>(blocks) + 1);
+    pairs.block[blocks] = {static_cast<Index>(pairs.size()), 0};
+    parallel_for(executor, pairs.size(), counted_pairs_per_block, [&](std::size_t begin, std::size_t end) {
+        std::int64_t before = pairs.work[begin / counted_pairs_per_block];
+        std::int64_t next = (before + candidates_per_block - 1) / candidates_per_block;  // block, where it begins
+        for (std::size_t p = begin; p < end; ++p) {
+            const std::int64_t until = before + work_of(pairs, p);
+            for (; next * candidates_per_block < until; ++next) {
+                const std::int64_t candidate = (next * candidates_per_block - before) / work_of_one(pairs, p);
+                pairs.block[next] = {static_cast<Index>(p),
+                                     static_cast<Index>(std::min<std::int64_t>(candidate, pairs.looked_at[p]))};
             }
-            const Index take = std::min(count - begin, candidates_per_block - filled);
-            begin += take;
-            filled += take + candidates_worth_of_a_pair;
+            before = until;
         }
-    }
-    const Index blocks = static_cast<Index>(pairs.block.size());
-    pairs.block.push_back({static_cast<Index>(pairs.size()), 0});
+    });
     return blocks;
 }
 
@@ -149,7 +165,7 @@ void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& c
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts) {
     mark_idle(executor, inputs, pairs);
-    const Index blocks = cut_blocks(pairs);
+    const Index blocks = cut_blocks(executor, pairs);
     if (blocks == 0) {
         contacts.resize(0);
         return false;

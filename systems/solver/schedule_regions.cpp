@@ -60,10 +60,10 @@ Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettin
 
 /// Large regions by cost; small ones need no sorting: a counting sort by size keeps equal sizes together, largest
 /// first.
-void sort_regions(const Column<Real>& cost, RegionTable& regions) {
+void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
     std::array<Index, largest_lane_region + 2> begin{};  // of each size; large ones first
-    const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contact_count(regions, r)); };
+    const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
     for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];
     const Index large = begin[1];
     for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
@@ -114,27 +114,30 @@ void schedule_regions(Executor& executor, const SolverSettings& settings, Region
             for (std::size_t r = begin; r < end; ++r) {
                 // regions that share a node see each other's result: their order must not depend on what is remembered
                 const Real average = regions.independent ? memory.present.sweeps[r] : no_history;
-                memory.cost[r] =
-                    predicted_cost(contact_count(regions, static_cast<Index>(r)), average, lanes, settings);
+                memory.cost[r] = predicted_cost(memory.present.contacts[r], average, lanes, settings);
                 sum += memory.cost[r];
             }
             return sum;
         },
         std::plus<>());
-    sort_regions(memory.cost, regions);
+    sort_regions(memory.present.contacts, memory.cost, regions);
     const int workers = executor.worker_count();
     const Real share = total / (tasks_per_worker * workers);
     const Real task_cost = workers == 1 ? total : std::clamp(share, smallest_task, largest_task);
-    memory.task.clear();
+    // without a branch, which is hard to predict
+    memory.task.resize(regions.size());
+    std::size_t tasks = 0;
     Index begin = 0;
     Real cost = 0;
     for (Index k = 0; k < count; ++k) {
         cost += memory.cost[regions.order[k]];
-        if (cost < task_cost && k + 1 < count) continue;
-        memory.task.push_back({begin, k + 1});
-        begin = k + 1;
-        cost = 0;
+        const bool full = !(cost < task_cost) || k + 1 == count;
+        memory.task[tasks] = {begin, k + 1};
+        tasks += full;
+        begin = full ? k + 1 : begin;
+        cost = full ? 0 : cost;
     }
+    memory.task.resize(tasks);
 }
 
 void remember_regions(RegionMemory& memory, const RegionTable& regions) {

@@ -131,6 +131,7 @@ struct StepScratch {
     Column<ExternalWork> work_parts;   // of measure_work
     InversionMemory inversions;        // of find_inversions
     Column<WatchPart> watch_parts;     // of watch_stable_steps
+    Column<WatchPieces> watch_pieces;  // of keep_shapes
     Column<Real> longest_impulse;      // s, by body, of limit_impulses
     Column<Real> impulse_parts;        // of the same
     Column<Real> viscous_parts;        // of measure_viscosity

@@ -248,7 +248,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         }
         const Real within = left_in_long_step(model, left, clock.long_step);
         const StepPlan plan = plan_step(model, clock.cycle, within, tries.at_most(), levels_of_call);
-        keep_shapes(model, steps_per_round(world));
+        keep_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;

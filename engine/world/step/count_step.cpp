@@ -7,18 +7,39 @@ namespace skerry {
 
 namespace {
 
-void count_shortcuts(const RegionTable& regions, std::size_t r, RunCounters& counters) {
-    const RegionShortcut shortcut = regions.shortcut[r];
-    counters.closed_form += (shortcut & shortcut_closed_form) != 0;
-    counters.certified += (shortcut & shortcut_certified) != 0;
-    counters.separating += (shortcut & shortcut_separating) != 0;
-    counters.frictionless += (shortcut & shortcut_frictionless) != 0;
-    counters.in_lanes += (shortcut & shortcut_in_lanes) != 0;
-    counters.frozen += static_cast<std::uint64_t>(regions.frozen[r]);
-    if ((shortcut & (shortcut_closed_form | shortcut_certified | shortcut_separating)) != 0) return;
-    ++counters.swept;
-    const Index size = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
-    counters.contact_steps += static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(regions.iterations[r]);
+/// Without branches: which regions take a shortcut nobody can foretell, and all cores wait.
+void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
+    std::uint64_t closed_form = 0, certified = 0, separating = 0, frictionless = 0, in_lanes = 0, swept = 0;
+    std::uint64_t frozen = 0, iterations = 0, unconverged = 0, contact_steps = 0;
+    Index largest = counters.largest_region;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        const unsigned shortcut = regions.shortcut[r];
+        const Index size = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
+        const auto sweeps = static_cast<std::uint64_t>(regions.iterations[r]);
+        const bool was_swept = (shortcut & (shortcut_closed_form | shortcut_certified | shortcut_separating)) == 0;
+        closed_form += (shortcut & shortcut_closed_form) != 0;
+        certified += (shortcut & shortcut_certified) != 0;
+        separating += (shortcut & shortcut_separating) != 0;
+        frictionless += (shortcut & shortcut_frictionless) != 0;
+        in_lanes += (shortcut & shortcut_in_lanes) != 0;
+        swept += was_swept;
+        contact_steps += static_cast<std::uint64_t>(was_swept) * static_cast<std::uint64_t>(size) * sweeps;
+        frozen += static_cast<std::uint64_t>(regions.frozen[r]);
+        iterations += sweeps;
+        unconverged += regions.status[r] == RegionStatus::iteration_limit;
+        largest = std::max(largest, size);
+    }
+    counters.closed_form += closed_form;
+    counters.certified += certified;
+    counters.separating += separating;
+    counters.frictionless += frictionless;
+    counters.in_lanes += in_lanes;
+    counters.swept += swept;
+    counters.contact_steps += contact_steps;
+    counters.frozen += frozen;
+    counters.iteration_sum += iterations;
+    counters.unconverged += unconverged;
+    counters.largest_region = largest;
 }
 
 }  // namespace
@@ -36,15 +57,11 @@ void count_step(const StepScratch& scratch, RunCounters& counters) {
     counters.solved += static_cast<std::uint64_t>(region_count);
     counters.max_contacts = std::max(counters.max_contacts, contact_count);
     counters.max_regions = std::max(counters.max_regions, region_count);
+    count_shortcuts(regions, counters);
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        const Index size = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
-        counters.largest_region = std::max(counters.largest_region, size);
-        counters.iteration_sum += static_cast<std::uint64_t>(regions.iterations[r]);
-        count_shortcuts(regions, r, counters);
-        counters.unconverged += regions.status[r] == RegionStatus::iteration_limit;
         if (!(regions.error[r] > counters.worst_error)) continue;
         counters.worst_error = regions.error[r];
-        counters.worst_region = size;
+        counters.worst_region = regions.contacts.offset[r + 1] - regions.contacts.offset[r];
     }
     counters.large_strain_steps += findings.strained.newton.solved;
     counters.newton_steps += findings.strained.newton.steps;

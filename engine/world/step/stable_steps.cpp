@@ -7,6 +7,7 @@
 
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
+#include "jobs/reduce.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -172,7 +173,7 @@ Real take_over_looks(Model& model, Column<Real>& stiffness_sum) {
     return looks.end();
 }
 
-void keep_shapes(Model& model, std::uint64_t round) {
+void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory) {
     const BodyTable& bodies = model.bodies;
     StepWatch& watch = model.watch;
     const auto rows = static_cast<Index>(bodies.slot.size());
@@ -181,29 +182,43 @@ void keep_shapes(Model& model, std::uint64_t round) {
         const auto b = static_cast<std::size_t>(row);
         return pieces_of_body(elements, bodies.blocks[b], bodies.level_count[b]);
     };
-    std::uint64_t total = 0, kept = 0;
-    watch.before = 0;
-    for (Index row = 0; row < rows; ++row) {
-        const std::uint64_t pieces = pieces_of(row);
-        if (row < watch.body) watch.before += pieces;
-        if (row < watch.kept) kept += pieces;
-        total += pieces;
-    }
+    // no step can begin before they are counted, and each body's first elements are elsewhere
+    constexpr std::size_t bodies_per_block = 64;
+    const WatchPieces all = reduce(
+        executor, bodies.slot.size(), bodies_per_block, pieces_memory, {},
+        [&](std::size_t begin, std::size_t end) {
+            WatchPieces some;
+            for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row) {
+                const std::uint64_t pieces = pieces_of(row);
+                if (row < watch.body) some.before += pieces;
+                if (row < watch.kept) some.kept += pieces;
+                some.total += pieces;
+            }
+            return some;
+        },
+        [](const WatchPieces& a, const WatchPieces& b) {
+            return WatchPieces{a.before + b.before, a.kept + b.kept, a.total + b.total};
+        });
+    watch.before = all.before;
+    std::uint64_t kept = all.kept;
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
-    watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(total)));
+    watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(all.total)));
     watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // a save has all rows
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());
-    for (; watch.kept < rows && (kept < watch.target || pieces_of(watch.kept) == 0); ++watch.kept) {
-        const auto b = static_cast<std::size_t>(watch.kept);
+    const auto first = static_cast<std::size_t>(watch.kept);
+    for (; watch.kept < rows && (kept < watch.target || pieces_of(watch.kept) == 0); ++watch.kept)
         kept += pieces_of(watch.kept);
-        const bool keeps_its_shape = bodies.asleep[b] || bodies.unstrained[b] > 0;
-        watch.step[b] = keeps_its_shape ? StepWatch::not_looked_at : 0;
-        if (keeps_its_shape) continue;
-        std::ranges::copy(rows_of(model.nodes.position, bodies.nodes[b]),
-                          rows_of(watch.position, bodies.nodes[b]).begin());
-        std::ranges::fill(rows_of(watch.stiffness_sum, bodies.nodes[b]), Real(0));
-    }
+    parallel_for(executor, static_cast<std::size_t>(watch.kept) - first, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = first + begin; b < first + end; ++b) {
+            const bool keeps_its_shape = bodies.asleep[b] || bodies.unstrained[b] > 0;
+            watch.step[b] = keeps_its_shape ? StepWatch::not_looked_at : 0;
+            if (keeps_its_shape) continue;
+            std::ranges::copy(rows_of(model.nodes.position, bodies.nodes[b]),
+                              rows_of(watch.position, bodies.nodes[b]).begin());
+            std::ranges::fill(rows_of(watch.stiffness_sum, bodies.nodes[b]), Real(0));
+        }
+    });
 }
 
 Real follow_stiffening(Model& model) {

@@ -36,7 +36,7 @@ Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum);
 /// the same energy.
 Real take_over_looks(Model& model, Column<Real>& stiffness_sum);
 /// Before a step, of a round of so many: keeps the shapes that are to be looked at beside it.
-void keep_shapes(Model& model, std::uint64_t round);
+void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory);
 
 /// Between steps: clusters follow what has stiffened, as they do in each step, and as after it they would in the next.
 /// Returns the energy that brings into the balance, J.

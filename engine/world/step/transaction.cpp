@@ -91,7 +91,8 @@ bool run_stages(WorldState& world) {
     scratch.awake_mass = model.note_rest();
     scratch.left_out = nothing_moves(world);
     if (!scratch.left_out) {
-        scratch.findings.verdict = check_distance(model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
+        scratch.findings.verdict =
+            check_distance(*world.executor, model.nodes.position, model.bodies.nodes, model.bodies.mean_edge);
         if (scratch.findings.verdict.fault != StepFault::none) return false;
     }
     scratch.pressed.clear();

@@ -33,7 +33,8 @@ struct CollisionInputs {
                                 const SurfaceTables& surface, const MaterialTable& material, const BvhTable& bvh,
                                 const BvhLeafTable& bvh_leaf, const NodeTable& node,
                                 const DisabledPairTable& disabled) {
-        return {.body = binder.read(body),
+        // find_inversions writes its budgets beside find_crossings
+        return {.body = binder.read_but(body, body.uninverted_until),
                 .collider = binder.read(collider),
                 .surface = binder.read(surface),
                 .inverse_mass = binder.read(node.inverse_mass),

@@ -15,7 +15,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t node_blocks_per_job = 8;
+constexpr std::size_t node_blocks_per_job = 8, bodies_per_job = 128;
 constexpr std::size_t element_blocks_per_job = 256;
 
 Vec3 motion(const CheckInputs& state, std::size_t node) {
@@ -293,20 +293,33 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
     StepVerdict verdict;
     beside_fast.resize(state.velocity_next.size());
     const Real looked_for = max_strain_step / std::max(h, longest);
+    // two nodes part at most at twice the highest speed
+    const auto may_be_fast = [&](std::size_t body) {
+        const Real altitude = state.body_min_altitude[body];
+        return altitude > 0 && 2 * speed.body_frame[body] > looked_for * altitude;
+    };
+    std::atomic<bool> to_look_at{false};
+    parallel_for(executor, body_count, bodies_per_job, [&](std::size_t begin, std::size_t end) {
+        bool any = false;
+        for (std::size_t body = begin; body < end; ++body) {
+            const Range blocks = state.body_node_blocks[body];
+            const auto first = static_cast<std::size_t>(blocks.begin), count = static_cast<std::size_t>(blocks.size());
+            speed.body[body] = greatest(speed.block_squared.subspan(first, count));
+            speed.body_frame[body] = greatest(speed.block_frame_squared.subspan(first, count));
+            any |= std::isnan(speed.body[body]) || may_be_fast(body);
+        }
+        if (any) to_look_at.store(true, std::memory_order_relaxed);
+    });
+    if (!to_look_at.load()) return verdict;
     for (std::size_t body = 0; body < body_count; ++body) {
         const Range blocks = state.body_node_blocks[body];
-        const auto first = static_cast<std::size_t>(blocks.begin), count = static_cast<std::size_t>(blocks.size());
-        speed.body[body] = greatest(speed.block_squared.subspan(first, count));
-        speed.body_frame[body] = greatest(speed.block_frame_squared.subspan(first, count));
-        if (verdict.fault == StepFault::not_finite) continue;  // but every speed is written
         if (std::isnan(speed.body[body])) {
             if (verdict.fault == StepFault::none)
                 verdict = {StepFault::not_finite, static_cast<Index>(body), first_not_finite(state, blocks), 0};
+            if (verdict.fault == StepFault::not_finite) break;
             continue;
         }
-        if (!(state.body_min_altitude[body] > 0) || blocks.size() == 0) continue;
-        // two nodes part at most at twice the highest speed
-        if (!(2 * speed.body_frame[body] > looked_for * state.body_min_altitude[body])) continue;
+        if (!may_be_fast(body) || blocks.size() == 0) continue;
         constexpr Real rounding = 1e-6;
         const Real rate =
             deformation_rate(executor, state, body, looked_for, (2 + rounding) * speed.body_frame[body], beside_fast);
@@ -334,16 +347,20 @@ StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, 
     return fastest;
 }
 
-StepVerdict check_distance(std::span<const Vec3> position, std::span<const Range> body_nodes,
+StepVerdict check_distance(Executor& executor, std::span<const Vec3> position, std::span<const Range> body_nodes,
                            std::span<const Real> body_mean_edge) {
-    for (std::size_t body = 0; body < body_nodes.size(); ++body) {
-        if (body_nodes[body].size() == 0 || !(body_mean_edge[body] > 0)) continue;
+    const auto spacing = [&](std::size_t body) {
         const Real distance = position[static_cast<std::size_t>(body_nodes[body].begin)].cwiseAbs().maxCoeff();
-        const Real spacing = std::numeric_limits<Real>::epsilon() * distance;
-        if (spacing > coarsest_place * body_mean_edge[body])
-            return {StepFault::too_far, static_cast<Index>(body), no_index, spacing / body_mean_edge[body]};
-    }
-    return {};
+        return std::numeric_limits<Real>::epsilon() * distance;
+    };
+    const auto is_too_far = [&](std::size_t body) {
+        return body_nodes[body].size() > 0 && body_mean_edge[body] > 0 &&
+               spacing(body) > coarsest_place * body_mean_edge[body];
+    };
+    if (!any_exceeds(executor, body_nodes.size(), bodies_per_job, is_too_far)) return {};
+    std::size_t body = 0;
+    while (!is_too_far(body)) ++body;
+    return {StepFault::too_far, static_cast<Index>(body), no_index, spacing(body) / body_mean_edge[body]};
 }
 
 }  // namespace skerry

@@ -107,7 +107,7 @@ inline constexpr Real implicit_leeway = 5;
 /// counted. Without `body_blocks` a node is compared with the mean velocity of its body instead, and its way with the
 /// smallest altitude of the body, which refuses a quick turn of a large body, too. How fast the fastest body deforms is
 /// said where it would be too fast for a step of `longest` (s). `beside_fast` is scratch, by node. Parallel over node
-/// blocks.
+/// blocks and bodies.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
                         const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
 
@@ -121,7 +121,7 @@ inline constexpr Real coarsest_place = 1e-6;
 
 /// Finds the first body that is too far from the origin for its size. Looks at one node a body: against such distances
 /// a body is small.
-StepVerdict check_distance(std::span<const Vec3> position, std::span<const Range> body_nodes,
+StepVerdict check_distance(Executor& executor, std::span<const Vec3> position, std::span<const Range> body_nodes,
                            std::span<const Real> body_mean_edge);
 
 }  // namespace skerry

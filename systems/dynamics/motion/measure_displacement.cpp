@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t bodies_per_job = 64;
+constexpr std::size_t bodies_per_job = 16;  // some microseconds, where origins move
 
 // Fraction of the mean edge at which the origins move to the nodes. A list of a pair made at drifts a and b holds for
 // skin - 2 (a + b) of travel (contact_reach.h): at most 4 x 0.01 = 0.04 of the skin of 0.375 mean edges is lost, and

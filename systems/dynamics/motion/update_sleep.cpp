@@ -1,12 +1,18 @@
 #include "systems/dynamics/motion/update_sleep.h"
 
+#include <algorithm>
+#include <atomic>
+
 #include "components/check.h"
+#include "jobs/parallel_for.h"
 #include "systems/dynamics/motion/stillness.h"
 #include "systems/dynamics/rigid/rigid_motion.h"
 
 namespace skerry {
 
 namespace {
+
+constexpr std::size_t watched_per_block = 64;  // bodies that move; one that is still takes some microseconds
 
 /// Joins what touches, and marks as restless what a moving collider touches.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
@@ -80,6 +86,8 @@ void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed) {
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time) {
+    // positions wait for this stage
+    if (std::ranges::all_of(asleep, [](std::uint8_t each) { return each == 0; })) return false;
     bool any = false;
     const auto wake = [&](Index body) {
         if (body == no_index || !asleep[body]) return;
@@ -105,8 +113,8 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
     return any;
 }
 
-TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, const SleepSettings& settings, Real h,
-                        SleepMemory& memory, const RestOutputs& state) {
+TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
+                        const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state) {
     const std::size_t count = bodies.kind.size();
     SKERRY_CHECK(state.asleep.size() == count && state.still_time.size() == count);
     // a body that moves is not ready even where no time is asked for
@@ -114,16 +122,20 @@ TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, co
         return state.still_time[b] >= settings.time && state.still_time[b] > 0;
     };
     TakenByRest taken;
-    bool ready = false;
-    for (std::size_t b = 0; b < count; ++b) {
-        if (state.asleep[b] || bodies.kind[b] == BodyKind::kinematic) continue;
-        if (settings.own_limits)
-            watch_stillness(bodies, settings, b, h, state);
-        else
-            state.still_time[b] = bodies.max_speed[b] < settings.speed ? state.still_time[b] + h : 0;
-        ready |= is_ready(b);
-    }
-    if (!ready) return taken;
+    std::atomic<bool> any_ready{false};
+    parallel_for(executor, count, watched_per_block, [&](std::size_t begin, std::size_t end) {
+        bool ready = false;
+        for (std::size_t b = begin; b < end; ++b) {
+            if (state.asleep[b] || bodies.kind[b] == BodyKind::kinematic) continue;
+            if (settings.own_limits)
+                watch_stillness(bodies, settings, b, h, state);
+            else
+                state.still_time[b] = bodies.max_speed[b] < settings.speed ? state.still_time[b] + h : 0;
+            ready |= is_ready(b);
+        }
+        if (ready) any_ready.store(true, std::memory_order_relaxed);
+    });
+    if (!any_ready.load()) return taken;
     memory.touching.start(count);
     memory.restless.assign(count, 0);
     for (std::size_t b = 0; b < count; ++b)

@@ -19,6 +19,7 @@
 #include "components/rigid_body_table.h"
 #include "components/union_find.h"
 #include "jobs/access.h"
+#include "jobs/executor.h"
 
 namespace skerry {
 
@@ -182,7 +183,7 @@ struct SleepMemory {
 /// directly or through others: their velocities become zero. What touches a collider, or is held by an attachment, that
 /// moves stays awake.
 /// Sequential, over bodies and, when a body is ready, contacts.
-TakenByRest rest_bodies(const TouchInputs& touches, const RestInputs& bodies, const SleepSettings& settings, Real h,
-                        SleepMemory& memory, const RestOutputs& state);
+TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
+                        const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 
 }  // namespace skerry

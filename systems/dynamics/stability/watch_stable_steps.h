@@ -32,6 +32,11 @@ struct WatchInputs {
 std::uint64_t pieces_of_body(const ElementInputs& elements, Range blocks,
                              const std::array<Index, element_level_count>& level_count);
 
+/// Pieces of looks at bodies: of those before the one whose look is under way, of those whose shape is kept, of all.
+struct WatchPieces {
+    std::uint64_t before = 0, kept = 0, total = 0;
+};
+
 /// A body that is looked at in a step.
 struct WatchPart {
     Index body = no_index;

@@ -1,5 +1,6 @@
 // The budgets of contact_reach.h must not change what is found: against the twin that searches everything in each step.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -237,4 +238,41 @@ TEST_CASE("a row of pairs in contact needs several blocks, and their contacts co
     REQUIRE(w.pairs.block.size() > 3);
     CHECK(w.contacts.size() == 11 * 50);
     for (std::size_t i = 1; i < w.contacts.size(); ++i) CHECK(w.contacts.key[i - 1] < w.contacts.key[i]);
+}
+
+TEST_CASE("blocks cover all candidates in order, with about a fifth as many of those against a collider", "[unit]") {
+    CollisionWorld w;
+    const test::SolidMesh slab = test::box_mesh({24, 24, 1}, {4, 4, 0.1});
+    w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at({0, 0, -0.055}));
+    for (int i = 0; i < 3; ++i) w.add_solid(slab, w.at({0, 0, 0.11 * i}), 0.01);
+    w.find(h);
+    const std::size_t blocks = w.pairs.block.size() - 1;
+    std::size_t seen = 0, most_of_surfaces = 0, most_of_collider = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        const CandidatePlace begin = w.pairs.block[b], end = w.pairs.block[b + 1];
+        std::size_t of_surfaces = 0, of_collider = 0;
+        for (Index p = begin.pair; p < static_cast<Index>(w.pairs.size()) && p <= end.pair; ++p) {
+            const Index from = p == begin.pair ? begin.candidate : 0;
+            const auto all = static_cast<Index>(w.pairs.candidates[static_cast<std::size_t>(p)].size());
+            const Index to = p == end.pair ? end.candidate : all;
+            REQUIRE((0 <= from && from <= to && to <= all));
+            const bool collider = w.pairs.kind[static_cast<std::size_t>(p)] == PairKind::collider;
+            (collider ? of_collider : of_surfaces) += static_cast<std::size_t>(to - from);
+        }
+        seen += of_surfaces + of_collider;
+        most_of_surfaces = std::max(most_of_surfaces, of_surfaces);
+        most_of_collider = std::max(most_of_collider, of_collider);
+    }
+    std::size_t all = 0, against_plane = 0;
+    for (std::size_t p = 0; p < w.pairs.size(); ++p) {
+        all += w.pairs.candidates[p].size();
+        if (w.pairs.kind[p] == PairKind::collider) against_plane += w.pairs.candidates[p].size();
+    }
+    CHECK(seen == all);
+    REQUIRE(most_of_surfaces > 1000);
+    CHECK(against_plane > most_of_collider);
+    CHECK(most_of_collider < most_of_surfaces / 4);
+    const CandidatePlace first = w.pairs.block[0], last = w.pairs.block[blocks];
+    CHECK((first.pair == 0 && first.candidate == 0));
+    CHECK((last.pair == static_cast<Index>(w.pairs.size()) && last.candidate == 0));
 }

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -38,13 +39,15 @@ public:
                 velocity_[n].x() = sign * (way(now) - way(now - h)) / h;
             }
             max_speed_[0] = std::abs(velocity_[1].x());
-            const TakenByRest taken = rest_bodies({}, inputs(), settings_, h, memory_, state());
+            const TakenByRest taken = rest_bodies(*executor_, {}, inputs(), settings_, h, memory_, state());
             if (taken.bodies > 0) return now;
         }
         return std::nullopt;
     }
 
 private:
+    std::unique_ptr<Executor> executor_ = make_executor(Backend::serial, 1);
+
     RestInputs inputs() const {
         RestInputs inputs;
         inputs.kind = kind_;

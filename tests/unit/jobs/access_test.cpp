@@ -111,6 +111,23 @@ bool conflict(const auto& a, const auto& b) {
 
 }  // namespace
 
+TEST_CASE("a table read without a column conflicts with who writes another, not with who writes that one", "[unit]") {
+    struct WithoutMass {
+        static WithoutMass bind(const Binder& binder, const NodeTable& nodes) {
+            binder.read_but(nodes, nodes.mass);
+            return {};
+        }
+    };
+    NodeTable nodes;
+    const auto table = inputs<WithoutMass>(nodes);
+    REQUIRE_FALSE(conflict(table, write(nodes.mass)));
+    REQUIRE(conflict(table, write(nodes.position)));
+    REQUIRE(conflict(table, write(nodes.velocity)));
+    REQUIRE(conflict(table, write(nodes.inverse_mass)));
+    REQUIRE(conflict(table, make(nodes)));
+    REQUIRE_FALSE(conflict(table, read(nodes)));
+}
+
 TEST_CASE("two reads never conflict, a write conflicts with both", "[unit]") {
     Column<Real> column, other;
     REQUIRE_FALSE(conflict(read(column), read(column)));

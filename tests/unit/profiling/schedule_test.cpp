@@ -137,6 +137,66 @@ TEST_CASE("cores share the bandwidth, and chiplets what they have written", "[un
     CHECK(predict_seconds(recording, 4, machine, {.bytes_per_second = 10e9, .working_set = 1e6}) / us == Approx(1.1));
 }
 
+TEST_CASE("costs of stages tell where the time goes", "[unit]") {
+    const auto costs = [](const Recording& recording, int cores, const MachineModel& machine) {
+        std::vector<StageCost> found = stage_costs(recording, cores, machine);
+        for (StageCost& cost : found) {
+            cost.work /= us;
+            cost.exchange /= us;
+            cost.handing_out /= us;
+            cost.alone /= us;
+            cost.tail /= us;
+        }
+        return found;
+    };
+    SECTION("what one does alone, and the last block of a loop, by cores that wait") {
+        const Recording recording =
+            graph_of({{serial(2 * us), loop({us, us, us, us, us})}, {serial(3 * us)}}, {{0, 1}});
+        const std::vector<StageCost> found = costs(recording, 4, MachineModel::free_of_cost());
+        REQUIRE(found.size() == 3);
+        CHECK(found[0].work == Approx(7.0 / 4));
+        CHECK(found[0].alone == Approx(2 * 3.0 / 4));
+        CHECK(found[0].tail == Approx(3.0 / 4));  // the fifth block
+        CHECK(found[0].sum() == Approx(4));
+        CHECK(found[1].work == Approx(3.0 / 4));
+        CHECK(found[1].alone == Approx(3 * 3.0 / 4));
+        CHECK(found[2].sum() == 0);
+    }
+    SECTION("a join is none of the waiting") {
+        MachineModel machine = MachineModel::free_of_cost();
+        machine.join = 0.5 * us;
+        const std::vector<StageCost> found = costs(graph_of({{loop(blocks(2, 10 * us))}}, {}), 2, machine);
+        CHECK(found[0].handing_out == Approx(0.25));
+        CHECK(found[0].tail == Approx(0.25));
+        CHECK(found[0].work == Approx(10));
+    }
+    SECTION("members that a team has no block for wait") {
+        MachineModel machine = MachineModel::free_of_cost();
+        machine.barrier = us;
+        const std::vector<StageCost> found = costs(graph_of({{phase(blocks(2, 4 * us))}}, {}), 4, machine);
+        CHECK(found[0].work == Approx(2));
+        CHECK(found[0].handing_out == Approx(0.5));
+        CHECK(found[0].tail == Approx(2 * 5.0 / 4));
+    }
+    SECTION("all together they are what is predicted") {
+        MachineModel machine;
+        machine.near_rate = 1e9;
+        const Traffic traffic{.bytes_per_second = 1e9, .working_set = 1e12};
+        for (unsigned seed = 0; seed < 40; ++seed) {
+            const Recording recording = random_recording(seed, true);
+            for (const int cores : {1, 3, 16, 64}) {
+                double sum = 0, work = 0;
+                for (const StageCost& cost : stage_costs(recording, cores, machine, traffic)) {
+                    sum += cost.sum();
+                    work += cost.work;
+                }
+                CHECK(sum == Approx(predict_seconds(recording, cores, machine, traffic)));
+                CHECK(work == Approx(recording.work() / cores));
+            }
+        }
+    }
+}
+
 TEST_CASE("what is between two graphs is done by one core", "[unit]") {
     Recording recording = graph_of({{loop(blocks(4, us))}}, {});
     Recording between;
