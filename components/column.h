@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -11,21 +10,20 @@
 
 #include "components/access_check.h"
 #include "components/range.h"
+#include "components/row_memory.h"
 
 namespace skerry {
 
-/// Allocates on cache-line boundaries, so that a column starts a vector register and shares no line with another.
+/// Allocates as row_memory.h says.
 template <class T>
 struct AlignedAllocator {
     using value_type = T;
-    static constexpr std::align_val_t alignment{64};
-
     AlignedAllocator() = default;
     template <class U>
     AlignedAllocator(const AlignedAllocator<U>&) {}
 
-    T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
-    void deallocate(T* memory, std::size_t) { ::operator delete(memory, alignment); }
+    T* allocate(std::size_t count) { return static_cast<T*>(allocate_rows(count * sizeof(T))); }
+    void deallocate(T* memory, std::size_t) { free_rows(memory); }
 
     template <class U>
     bool operator==(const AlignedAllocator<U>&) const {

@@ -2,6 +2,10 @@
 
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "components/types.h"
 
@@ -25,6 +29,40 @@ TEMPLATE_TEST_CASE("a column starts on a cache line, whatever its rows and howev
         REQUIRE(reinterpret_cast<std::uintptr_t>(column.data()) % 64 == 0);
     }
 }
+
+#ifdef __linux__
+namespace {
+
+/// Of the memory at an address, as the kernel lists it.
+std::string flags_of_memory(const void* at) {
+    const auto address = reinterpret_cast<std::uintptr_t>(at);
+    std::ifstream maps("/proc/self/smaps");
+    bool here = false;
+    for (std::string line; std::getline(maps, line);) {
+        std::uintptr_t begin = 0, end = 0;
+        char dash = 0;
+        std::istringstream range(line);
+        if (range >> std::hex >> begin >> dash >> end && dash == '-') here = begin <= address && address < end;
+        if (here && line.starts_with("VmFlags:")) return line + " ";
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("long columns ask for large pages, short ones do not", "[unit]") {
+    if (!std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"))
+        SUCCEED("this system has none");
+    else {
+        Column<Real> column;
+        column.resize(std::size_t{1} << 20);  // 8 MiB
+        CHECK(flags_of_memory(column.data() + column.size() / 2).find(" hg ") != std::string::npos);
+        Column<Real> small;
+        small.resize(1000);
+        CHECK(flags_of_memory(small.data()).find(" hg ") == std::string::npos);
+    }
+}
+#endif
 
 TEST_CASE("rows made by resize are zero, rows that were there stay", "[unit]") {
     Column<int> column = counting(3);
