@@ -3,11 +3,9 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 
 #include "components/column.h"
 #include "components/column_role.h"
-#include "components/lanes.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -32,10 +30,12 @@ inline constexpr int leaf_lanes = 8;
 /// The triangles of a leaf, rows of TriangleTable; no_index in lanes without one.
 using LeafTriangles = std::array<Index, leaf_lanes>;
 
-/// Their boxes, m, side by side: one is compared with all of them at once. Lanes without a triangle are far from
-/// everything.
-struct LeafBoxes {
-    std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
+/// The nodes of these triangles, in one place: whoever fits or gathers a leaf does not go by way of TriangleTable.
+struct LeafNodes {
+    static constexpr std::size_t most = 3 * leaf_lanes;
+    std::array<std::array<Index, leaf_lanes>, 3> corner;  // side by side; lanes without a triangle repeat the first
+    Index count = 0;
+    std::array<Index, most> node{};  // each once, ascending
 };
 
 /// The features that the triangles of a leaf own: a search has them in one place, not by way of rows of TriangleTable.
@@ -67,20 +67,14 @@ struct BvhTable {
 
 struct BvhLeafTable {
     Column<LeafTriangles> triangle;
+    Column<LeafNodes> nodes;
     Column<LeafFeatures> features;
-    Column<LeafBoxes> box;  // refit with those of the nodes
 
     void for_each_column(auto&& visit) {
         visit("triangle", triangle, ColumnRole::derived);
+        visit("nodes", nodes, ColumnRole::derived);
         visit("features", features, ColumnRole::derived);
-        visit("box", box, ColumnRole::scratch);
     }
-};
-
-/// The boxes of all trees.
-struct BvhBoxes {
-    std::span<const Aabb> node;
-    std::span<const LeafBoxes> leaf;
 };
 
 }  // namespace skerry

@@ -200,26 +200,24 @@ void list_refits(const CollisionInputs& inputs, const CollisionSettings& setting
     list_bodies(memory);
 }
 
-void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, std::span<LeafBoxes> leaf_box,
-                 const SearchMemory& memory) {
+void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, const SearchMemory& memory) {
     parallel_for(executor, memory.refit.size(), trees_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            refit_bvh(inputs.body.bvh_nodes[memory.refit[i]], inputs.bvh_node, inputs.leaf_triangle,
-                      inputs.surface.triangles.node, inputs.position, box, leaf_box);
+            refit_bvh(inputs.body.bvh_nodes[memory.refit[i]], inputs.bvh_node, inputs.leaf_nodes, inputs.position, box);
     });
 }
 
-void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, const BvhBoxes& boxes, Index p,
+void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box, Index p,
                   const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
-    PairToSearch pair = pair_to_search(inputs, settings, boxes.node, memory, pairs, p);
+    PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
         // before the search: what is apart is looked for less far
-        const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, boxes);
+        const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, box);
         pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
     }
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
-    pairs.valid_until[p] = search_pair(inputs, pair, boxes, found);
+    pairs.valid_until[p] = search_pair(inputs, pair, box, found);
     pairs.candidates[p].resize(found.size());
     pairs.asleep_until[p].resize(found.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -231,14 +229,14 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
 /// One that is near at a time, which takes some ten microseconds, and with each its part of those that are far, which
 /// take next to nothing: so every worker's share of the blocks is about as much work.
 void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
-                    const BvhBoxes& boxes, SearchMemory& memory, PairTable& pairs) {
+                    std::span<const Aabb> box, SearchMemory& memory, PairTable& pairs) {
     const std::size_t near = memory.near.size(), far = memory.far.size();
     const std::size_t blocks = std::max(near, (far + far_pairs_per_block - 1) / far_pairs_per_block);
     if (memory.found.size() < blocks) memory.found.resize(blocks);
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const auto search = [&](Index p) {
-                search_again(inputs, settings, boxes, p, memory, pairs, memory.found[k]);
+                search_again(inputs, settings, box, p, memory, pairs, memory.found[k]);
             };
             if (k < near) search(memory.near[k]);
             for (std::size_t i = far * k / blocks; i < far * (k + 1) / blocks; ++i) search(memory.far[i]);
@@ -274,7 +272,7 @@ void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& sett
 }  // namespace
 
 bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
-                     std::span<Aabb> box, std::span<LeafBoxes> leaf_box, SearchState& search, PairTable& pairs) {
+                     std::span<Aabb> box, SearchState& search, PairTable& pairs) {
     SearchMemory& memory = search.memory;
     const bool all = !settings.use_budgets;
     bool broad = mark_forgotten(inputs.body.slot.size(), all, search.body_valid_until, memory.body_forgotten);
@@ -292,9 +290,8 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
 
     fit_bounds(executor, inputs, box, memory);
     list_refits(inputs, settings, box, memory, pairs);
-    refit_trees(executor, inputs, box, leaf_box, memory);
-    const BvhBoxes boxes{box, leaf_box};
-    search_expired(executor, inputs, settings, boxes, memory, pairs);
+    refit_trees(executor, inputs, box, memory);
+    search_expired(executor, inputs, settings, box, memory, pairs);
     ask_for_rebase(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();
     search.candidate_count = count_candidates(executor, pairs);

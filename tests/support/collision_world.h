@@ -42,6 +42,7 @@ struct CollisionWorld {
                 material,
                 bvh.node,
                 bvh_leaves.triangle,
+                bvh_leaves.nodes,
                 bvh_leaves.features,
                 nodes.position,
                 nodes.velocity,
@@ -87,7 +88,7 @@ struct CollisionWorld {
 
     /// Both stages, as in a step.
     void find(Real h) {
-        find_candidates(*executor, inputs(), settings, h, bvh.box, bvh_leaves.box, search, pairs);
+        find_candidates(*executor, inputs(), settings, h, bvh.box, search, pairs);
         find_contacts(*executor, inputs(), settings, h, pairs, crossings, contacts);
     }
 

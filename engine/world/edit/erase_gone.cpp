@@ -78,6 +78,11 @@ private:
         }
         for (LeafTriangles& leaf : rows_of(model_.bvh_leaves.triangle, has_.bvh_leaves))
             for (Index& t : leaf) lower(t, down_.triangles);
+        for (LeafNodes& leaf : rows_of(model_.bvh_leaves.nodes, has_.bvh_leaves)) {
+            for (auto& corner : leaf.corner)
+                for (Index& node : corner) lower(node, down_.nodes);
+            for (Index i = 0; i < leaf.count; ++i) lower(leaf.node[static_cast<std::size_t>(i)], down_.nodes);
+        }
         for (LeafFeatures& features : rows_of(model_.bvh_leaves.features, has_.bvh_leaves)) {
             for (Index i = 0; i < features.edge_count; ++i) {
                 LeafFeatures::Edge& edge = features.edge[static_cast<std::size_t>(i)];

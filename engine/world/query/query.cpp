@@ -26,13 +26,11 @@ SurfaceTree tree_of(WorldState& world, std::size_t body) {
     QueryTrees& trees = world.query_trees;
     if (trees.fitted.size() != model.bodies.slot.size()) {
         trees.box.resize(model.bvh.node.size());
-        trees.leaf_box.resize(model.bvh_leaves.triangle.size());
         trees.fitted.assign(model.bodies.slot.size(), 0);
     }
     const Range tree = model.bodies.bvh_nodes[body];
     if (!trees.fitted[body] && tree.size() > 0)
-        refit_bvh(tree, model.bvh.node, model.bvh_leaves.triangle, model.surface.triangles.node, model.nodes.position,
-                  trees.box.span(), trees.leaf_box.span());
+        refit_bvh(tree, model.bvh.node, model.bvh_leaves.nodes, model.nodes.position, trees.box.span());
     trees.fitted[body] = 1;
     return {tree,      model.bodies.triangles[body], model.bvh.node,      model.bvh_leaves.triangle,
             trees.box, model.surface.triangles.node, model.nodes.position};

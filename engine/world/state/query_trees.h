@@ -9,7 +9,6 @@ namespace skerry {
 
 struct QueryTrees {
     Column<Aabb> box;             // m, by row of BvhTable
-    Column<LeafBoxes> leaf_box;   // m, by row of BvhLeafTable
     Column<std::uint8_t> fitted;  // by body; empty: none is
 
     /// After nodes have moved, or rows.

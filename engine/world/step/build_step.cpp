@@ -104,7 +104,7 @@ void list_contact_branch(WorldState& w, TaskGraph& g) {
     ContactTable& c = w.scratch.contacts;
     const StepParameters& p = w.scratch.parameters;
     g.stage("collision/find_candidates", kernels().find_candidates, collision_inputs(m), value(p.collision), value(p.h),
-            write(m.bvh.box), write(m.bvh_leaves.box), make(w.cache.search), make(w.cache.pairs));
+            write(m.bvh.box), make(w.cache.search), make(w.cache.pairs));
     g.stage("collision/find_contacts", kernels().find_contacts, collision_inputs(m), value(p.collision), value(p.h),
             make(w.cache.pairs), make(w.cache.crossings), make(c));
     const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));

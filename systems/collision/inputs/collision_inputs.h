@@ -23,6 +23,7 @@ struct CollisionInputs {
     std::span<const SurfaceProperties> material_surface;  // by material
     std::span<const BvhNode> bvh_node;
     std::span<const LeafTriangles> leaf_triangle;
+    std::span<const LeafNodes> leaf_nodes;
     std::span<const LeafFeatures> leaf_features;
     std::span<const Vec3> position;            // by node, start of the step
     std::span<const Vec3> velocity;            // by node, start of the step
@@ -41,6 +42,7 @@ struct CollisionInputs {
                 .material_surface = binder.read(material.surface),
                 .bvh_node = binder.read(bvh.node),
                 .leaf_triangle = binder.read(bvh_leaf.triangle),
+                .leaf_nodes = binder.read(bvh_leaf.nodes),
                 .leaf_features = binder.read(bvh_leaf.features),
                 .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity),

@@ -20,25 +20,13 @@ inline LaneVec3<Real8> load(const PointLanes& points) {
 inline LaneVec3<Real8> spread(const Vec3& point) {
     return {Real8{} + point[0], Real8{} + point[1], Real8{} + point[2]};
 }
-inline void set_lane(PointLanes& points, std::size_t lane, const Vec3& point) {
-    for (std::size_t i = 0; i < 3; ++i) points[i][lane] = point[static_cast<Index>(i)];
+
+[[gnu::always_inline]] inline Real8 lesser(const Real8& a, const Real8& b) {
+    return a < b ? a : b;
 }
-
-/// The corners of the triangles of a leaf. Lanes without a triangle repeat the first.
-struct LeafCorners {
-    Index leaf = no_index;  // row of BvhLeafTable
-    std::array<PointLanes, 3> corner;
-
-    void fill(const CollisionInputs& inputs, Index of_leaf) {
-        leaf = of_leaf;
-        const LeafTriangles& triangle = inputs.leaf_triangle[static_cast<std::size_t>(leaf)];
-        for (std::size_t l = 0; l < leaf_lanes; ++l) {
-            const Index row = triangle[l] == no_index ? triangle[0] : triangle[l];
-            for (std::size_t k = 0; k < 3; ++k)
-                set_lane(corner[k], l, inputs.position[inputs.surface.triangles.node[row][k]]);
-        }
-    }
-};
+[[gnu::always_inline]] inline Real8 greater(const Real8& a, const Real8& b) {
+    return a < b ? b : a;
+}
 
 /// Eight points of nodes.
 inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::array<Index, leaf_lanes>& node) {
@@ -51,6 +39,24 @@ inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::arr
     }
     return lanes;
 }
+
+/// The corners of the triangles of a leaf. Lanes without a triangle repeat the first.
+struct LeafCorners {
+    Index leaf = no_index;  // row of BvhLeafTable
+    std::array<PointLanes, 3> corner;
+    LeafBoxes box;  // of the triangles
+
+    void fill(const CollisionInputs& inputs, Index of_leaf) {
+        leaf = of_leaf;
+        const LeafNodes& nodes = inputs.leaf_nodes[static_cast<std::size_t>(leaf)];
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = lanes_of_points(inputs.position, nodes.corner[k]);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Real8 a = load(corner[0][i]), b = load(corner[1][i]), c = load(corner[2][i]);
+            store(lesser(lesser(a, b), c), box.lower[i]);
+            store(greater(greater(a, b), c), box.upper[i]);
+        }
+    }
+};
 
 /// m^2, by lane, of points and a box, 0 within it.
 inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
@@ -115,8 +121,8 @@ struct LeafEdges {
             for (std::size_t k = 0; k < 2; ++k) end[group][k] = lanes_of_points(inputs.position, node[k]);
             for (std::size_t i = 0; i < 3; ++i) {
                 const Real8 a = load(end[group][0][i]), b = load(end[group][1][i]);
-                store(a < b ? a : b, box[group].lower[i]);
-                store(a < b ? b : a, box[group].upper[i]);
+                store(lesser(a, b), box[group].lower[i]);
+                store(greater(a, b), box[group].upper[i]);
             }
         }
     }

@@ -9,6 +9,7 @@
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/search/leaf_features.h"
 #include "systems/collision/search/search_collider.h"
+#include "systems/collision/search/sort_found.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
 #include "systems/geometry/closest_lanes.h"
@@ -27,6 +28,9 @@ constexpr std::size_t kept_leaves = 16;
 template <class Features>
 using KeptLeaves = std::array<Features, kept_leaves>;
 
+// Pairs of leaves that are found before any is compared.
+constexpr std::size_t most_near = 32;
+
 constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
 
 template <std::size_t Size>
@@ -36,12 +40,12 @@ bool share_node(const std::array<Index, Size>& a, Index node) {
 
 class BodySearch {
 public:
-    BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+    BodySearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                Column<FoundCandidate>& found)
         : inputs_(inputs),
           triangle_(inputs.surface.triangles),
           pair_(pair),
-          boxes_(boxes),
+          box_(box),
           found_(found),
           radius_(pair.scale.zone + pair.margin),
           radius_squared_(radius_ * radius_),
@@ -59,6 +63,7 @@ public:
             else
                 split(a, b);
         }
+        compare_near();
     }
 
 private:
@@ -73,12 +78,26 @@ private:
     }
 
     void push_if_near(Index a, Index b) {
-        if (distance_squared(boxes_.node[a], boxes_.node[b]) < radius_squared_) push(a, b);
+        if (!(distance_squared(box_[a], box_[b]) < radius_squared_)) return;
+        push(a, b);
+    }
+
+    /// What leaves list lies further apart than caches reach: it is asked for when they are found, and they are
+    /// compared when some are.
+    void ask_for_leaf(Index a) const {
+        const auto ask = [](const void* first) { __builtin_prefetch(first); };
+        const LeafFeatures& features = inputs_.leaf_features[node(a).leaf];
+        ask(&features.edge_count);
+        ask(&features.edge[5]);
+        ask(&features.edge[10]);
+        ask(&features.point[0]);
+        ask(&inputs_.leaf_nodes[node(a).leaf].corner[0]);
+        ask(&inputs_.leaf_nodes[node(a).leaf].corner[2]);
     }
 
     void split_with_itself(Index a) {
         if (node(a).count > 0) {
-            compare_within(a);
+            add_near(a, a);
             return;
         }
         push(a + 1, a + 1);
@@ -90,7 +109,7 @@ private:
     void split(Index a, Index b) {
         const bool leaf_a = node(a).count > 0, leaf_b = node(b).count > 0;
         if (leaf_a && leaf_b) {
-            compare_leaves(a, b);
+            add_near(a, b);
         } else if (leaf_b || (!leaf_a && node(a).skip - a >= node(b).skip - b)) {
             push_if_near(a + 1, b);
             push_if_near(node(a).right, b);
@@ -100,8 +119,25 @@ private:
         }
     }
 
-    const LeafBoxes& leaf_box(Index a) const { return boxes_.leaf[node(a).leaf]; }
     const LeafTriangles& leaf_triangle(Index a) const { return inputs_.leaf_triangle[node(a).leaf]; }
+
+    void add_near(Index a, Index b) {
+        if (near_count_ == most_near) compare_near();
+        near_[near_count_++] = {a, b};
+        ask_for_leaf(a);
+        ask_for_leaf(b);
+    }
+
+    void compare_near() {
+        for (std::size_t i = 0; i < near_count_; ++i) {
+            const auto [a, b] = near_[i];
+            if (a == b)
+                compare_within(a);
+            else
+                compare_leaves(a, b);
+        }
+        near_count_ = 0;
+    }
 
     void compare_leaves(Index a, Index b) {
         // A sphere, or the ball around a cylinder, is the point that is held against faces and axes: where a node of
@@ -111,10 +147,10 @@ private:
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, edges_[0]), &other = features_of(b, edges_[1]);
         std::array<unsigned, 3> near;
-        if (!any_near(other, boxes_.node[a], near)) return;
+        if (!any_near(other, box_[a], near)) return;
         for (std::size_t group = 0; group < own.groups(); ++group)
             for_each_lane(
-                own.used(group) & lanes_below(distance_squared(own.box[group], boxes_.node[b]), edge_radius_squared_),
+                own.used(group) & lanes_below(distance_squared(own.box[group], box_[b]), edge_radius_squared_),
                 [&](std::size_t lane) { compare_edge(own, leaf_lanes * group + lane, other, near); });
     }
 
@@ -155,21 +191,22 @@ private:
         const LeafPoints& points = features_of(owner, points_[of_second]);
         for (std::size_t group = 0; group < points.groups(); ++group)
             for_each_lane(
-                points.used(group) &
-                    lanes_below(distance_squared(points.at[group], boxes_.node[other]), radius_squared_),
+                points.used(group) & lanes_below(distance_squared(points.at[group], box_[other]), radius_squared_),
                 [&](std::size_t lane) {
                     const LeafFeatures::Point& point = points.list->point[leaf_lanes * group + lane];
-                    const Vec3& at = position(point.node);
-                    const unsigned near = lanes_below(distance_squared(leaf_box(other), {at, at}), radius_squared_);
-                    if (near != 0) compare_point(point.node, point.row, near, other, of_second);
+                    compare_point(point.node, point.row, other, of_second);
                 });
     }
 
-    /// A point with some triangles of a leaf.
-    void compare_point(Index n, Index vertex, unsigned near, Index other, bool of_second) {
+    /// A point with the triangles of a leaf.
+    void compare_point(Index n, Index vertex, Index other, bool of_second) {
         const LeafCorners& corners = features_of(other, corners_[!of_second]);
+        const Vec3& at = position(n);
+        const unsigned near =
+            used_lanes(node(other).count, 0) & lanes_below(distance_squared(corners.box, {at, at}), radius_squared_);
+        if (near == 0) return;
         Lanes<Real, leaf_lanes> squared;
-        store(point_triangle_distance(spread(position(n)), load(corners.corner[0]), load(corners.corner[1]),
+        store(point_triangle_distance(spread(at), load(corners.corner[0]), load(corners.corner[1]),
                                       load(corners.corner[2]))
                   .distance_squared,
               squared);
@@ -236,7 +273,7 @@ private:
     const CollisionInputs& inputs_;
     const TriangleTable& triangle_;
     const PairToSearch& pair_;
-    const BvhBoxes& boxes_;
+    std::span<const Aabb> box_;
     Column<FoundCandidate>& found_;
     const Real radius_;
     const Real radius_squared_;
@@ -249,30 +286,29 @@ private:
     std::array<KeptLeaves<LeafCorners>, 2> corners_;
     std::array<std::array<Index, 2>, max_waiting> waiting_;
     std::size_t waiting_count_ = 0;
+    std::array<std::array<Index, 2>, most_near> near_;  // leaves that are to be compared
+    std::size_t near_count_ = 0;
 };
 
-Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                    Column<FoundCandidate>& found) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return infinite;
     const Real apart =
-        std::max(pair.apart, std::sqrt(distance_squared(boxes.node[first.begin], boxes.node[second.begin]))) -
-        pair.scale.zone;
+        std::max(pair.apart, std::sqrt(distance_squared(box[first.begin], box[second.begin]))) - pair.scale.zone;
     if (apart >= pair.margin) return pair.travel_base + apart;
-    BodySearch(inputs, pair, boxes, found).run();
-    std::sort(found.begin(), found.end(), [](const FoundCandidate& a, const FoundCandidate& b) {
-        return a.candidate.feature < b.candidate.feature;
-    });
+    BodySearch(inputs, pair, box, found).run();
+    sort_by_feature(found);
     return pair.travel_base + pair.margin;
 }
 
 }  // namespace
 
-Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found) {
     found.clear();
     if (pair.kind == PairKind::collider) return search_collider(inputs, pair, found);
-    return search_bodies(inputs, pair, boxes, found);
+    return search_bodies(inputs, pair, box, found);
 }
 
 }  // namespace skerry

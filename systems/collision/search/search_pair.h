@@ -21,7 +21,7 @@ struct PairToSearch {
 /// edges (by two trees whose boxes fit the present positions), or against a collider (search_collider). In a body's
 /// pair with itself features that share a node are left out, and those that are nearer than the contact distance at
 /// rest. Returns until which travel_bound the list is complete.
-Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes,
+Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found);
 
 }  // namespace skerry

@@ -12,12 +12,12 @@ namespace {
 
 class CrossingSearch {
 public:
-    CrossingSearch(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes)
-        : inputs_(inputs), pair_(pair), boxes_(boxes) {}
+    CrossingSearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box)
+        : inputs_(inputs), pair_(pair), box_(box) {}
 
     bool run(Index a, Index b) const {
         const bool same = pair_.kind == PairKind::self && a == b;
-        if (!same && distance_squared(boxes_.node[a], boxes_.node[b]) > 0) return false;
+        if (!same && distance_squared(box_[a], box_[b]) > 0) return false;
         const BvhNode &own = inputs_.bvh_node[a], &other = inputs_.bvh_node[b];
         if (own.count > 0 && other.count > 0) return leaves_cross(own, other, same);
         if (same) return run(a + 1, a + 1) || run(own.right, own.right) || run(a + 1, own.right);
@@ -30,7 +30,7 @@ private:
     bool leaves_cross(const BvhNode& own, const BvhNode& other, bool same) const {
         // squared distances are below this; denormal numbers may count as 0
         constexpr Real overlap = std::numeric_limits<Real>::min();
-        const LeafBoxes &first = boxes_.leaf[own.leaf], &second = boxes_.leaf[other.leaf];
+        const LeafBoxes first = boxes_of(own), second = boxes_of(other);
         bool crossing = false;
         for (std::size_t i = 0; i < static_cast<std::size_t>(own.count) && !crossing; ++i) {
             unsigned lanes = lanes_below(distance_squared(second, lane_of(first, i)), overlap);
@@ -41,6 +41,10 @@ private:
             });
         }
         return crossing;
+    }
+
+    LeafBoxes boxes_of(const BvhNode& node) const {
+        return boxes_of_triangles(inputs_.leaf_nodes[node.leaf], node.count, inputs_.position);
     }
 
     bool triangles_cross(Index a, Index b) const { return edges_pass(a, b) || edges_pass(b, a); }
@@ -60,15 +64,15 @@ private:
 
     const CollisionInputs& inputs_;
     const PairToSearch& pair_;
-    const BvhBoxes& boxes_;
+    std::span<const Aabb> box_;
 };
 
 }  // namespace
 
-bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, const BvhBoxes& boxes) {
+bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return false;
-    return CrossingSearch(inputs, pair, boxes).run(first.begin, second.begin);
+    return CrossingSearch(inputs, pair, box).run(first.begin, second.begin);
 }
 
 }  // namespace skerry

@@ -5,7 +5,6 @@
 
 #include "components/check.h"
 #include "systems/collision/tree/box.h"
-#include "systems/collision/tree/leaf_boxes.h"
 
 namespace skerry {
 
@@ -49,6 +48,18 @@ struct Build {
         bvh.node[row].skip = static_cast<Index>(bvh.node.size());
     }
 
+    LeafNodes nodes_of(const LeafTriangles& triangles) const {
+        LeafNodes nodes;
+        std::size_t corners = 0;
+        for (std::size_t l = 0; l < leaf_lanes; ++l) {
+            const auto& node = triangle_node[triangles[l] == no_index ? triangles[0] : triangles[l]];
+            for (std::size_t k = 0; k < 3; ++k) nodes.corner[k][l] = nodes.node[corners++] = node[k];
+        }
+        std::ranges::sort(nodes.node);
+        nodes.count = static_cast<Index>(std::ranges::unique(nodes.node).begin() - nodes.node.begin());
+        return nodes;
+    }
+
     void append_leaf(Index first, Index end, BvhNode& node) {
         node.leaf = static_cast<Index>(leaves.triangle.size());
         node.count = end - first;
@@ -56,54 +67,9 @@ struct Build {
         triangles.fill(no_index);
         std::copy(order.begin() + first, order.begin() + end, triangles.begin());
         leaves.triangle.push_back(triangles);
-        leaves.box.push_back(empty_leaf());
+        leaves.nodes.push_back(nodes_of(triangles));
     }
 };
-
-/// The lesser of both in each lane, a where b is not a number; the same for the greater.
-template <class T>
-[[gnu::always_inline]] inline T lesser(const T& a, const T& b) {
-    return b < a ? b : a;
-}
-template <class T>
-[[gnu::always_inline]] inline T greater(const T& a, const T& b) {
-    return b > a ? b : a;
-}
-
-/// The least of the lanes by `pick` of two. Written out: no loop is unrolled at -O2.
-[[gnu::always_inline]] inline Real pick_of(const Lanes<Real, leaf_lanes>& lanes, auto&& pick) {
-    const Real4 four = pick(half_at(lanes.lane), half_at(lanes.lane + leaf_lanes / 2));
-    return pick(pick(Real(four[0]), Real(four[1])), pick(Real(four[2]), Real(four[3])));
-}
-
-/// Fits the boxes of the first `count` lanes, side by side; the others stay empty. Returns the box around them.
-Aabb fit_leaf(const LeafTriangles& triangle, Index count, std::span<const std::array<Index, 3>> triangle_node,
-              std::span<const Vec3> position, LeafBoxes& boxes) {
-    std::array<std::array<const Real*, leaf_lanes>, 3> corner;
-    for (std::size_t l = 0; l < leaf_lanes; ++l) {
-        const std::array<Index, 3>& node = triangle_node[triangle[l] == no_index ? triangle[0] : triangle[l]];
-        corner[0][l] = position[node[0]].data();
-        corner[1][l] = position[node[1]].data();
-        corner[2][l] = position[node[2]].data();
-    }
-    const auto coordinate = [&](std::size_t k, int i) {
-        const auto& p = corner[k];
-        return Real8{p[0][i], p[1][i], p[2][i], p[3][i], p[4][i], p[5][i], p[6][i], p[7][i]};
-    };
-    Aabb all;
-    for (int i = 0; i < 3; ++i) {
-        const Real8 none = Real8{} + infinite, a = coordinate(0, i), b = coordinate(1, i), c = coordinate(2, i);
-        Lanes<Real, leaf_lanes>&lower = boxes.lower[static_cast<std::size_t>(i)],
-                    &upper = boxes.upper[static_cast<std::size_t>(i)];
-        store(lesser(lesser(lesser(none, a), b), c), lower);
-        store(greater(greater(greater(-none, a), b), c), upper);
-        // lanes without a triangle repeat the first here
-        all.lower[i] = pick_of(lower, [](const auto& x, const auto& y) { return lesser(x, y); });
-        all.upper[i] = pick_of(upper, [](const auto& x, const auto& y) { return greater(x, y); });
-    }
-    for (std::size_t l = static_cast<std::size_t>(count); l < leaf_lanes; ++l) set_lane(boxes, l, empty_box());
-    return all;
-}
 
 }  // namespace
 
@@ -117,7 +83,7 @@ BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> tria
     build.append(0, triangles.size());
     const BvhRanges ranges{{first_node, static_cast<Index>(bvh.node.size())},
                            {first_leaf, static_cast<Index>(leaves.triangle.size())}};
-    refit_bvh(ranges.nodes, bvh.node, leaves.triangle, triangle_node, position, bvh.box, leaves.box);
+    refit_bvh(ranges.nodes, bvh.node, leaves.nodes, position, bvh.box);
     return ranges;
 }
 
@@ -141,18 +107,20 @@ void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhL
     }
 }
 
-void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafTriangles> leaf_triangle,
-               std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, std::span<Aabb> box,
-               std::span<LeafBoxes> leaf_box) {
+void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
+               std::span<const Vec3> position, std::span<Aabb> box) {
     // Children follow their parent, so backwards is bottom-up.
     for (Index row = bvh_nodes.end - 1; row >= bvh_nodes.begin; --row) {
         const BvhNode& own = node[row];
+        Aabb around = own.count > 0 ? empty_box() : box[row + 1];
         if (own.count > 0) {
-            box[row] = fit_leaf(leaf_triangle[own.leaf], own.count, triangle_node, position, leaf_box[own.leaf]);
+            const LeafNodes& leaf = leaf_nodes[own.leaf];
+            for (std::size_t i = 0; i < static_cast<std::size_t>(leaf.count); ++i)
+                grow(around, position[static_cast<std::size_t>(leaf.node[i])]);
         } else {
-            box[row] = box[row + 1];
-            grow(box[row], box[own.right]);
+            grow(around, box[own.right]);
         }
+        box[row] = around;
     }
 }
 

@@ -15,8 +15,7 @@ struct BvhRanges {
 };
 
 /// Appends a tree over the triangles of one body, built from their present positions. A leaf holds up to eight
-/// triangles with their boxes side by side: a search compares one with all of them, and most of its time went into
-/// boxes.
+/// triangles: a search compares a feature with all of them at once.
 BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node,
                      std::span<const Vec3> position, BvhTable& bvh, BvhLeafTable& leaves);
 
@@ -24,8 +23,7 @@ BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> tria
 void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhLeafTable& leaves);
 
 /// Fits the boxes of one tree around the present positions, bottom-up.
-void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafTriangles> leaf_triangle,
-               std::span<const std::array<Index, 3>> triangle_node, std::span<const Vec3> position, std::span<Aabb> box,
-               std::span<LeafBoxes> leaf_box);
+void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
+               std::span<const Vec3> position, std::span<Aabb> box);
 
 }  // namespace skerry

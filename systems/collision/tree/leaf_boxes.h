@@ -1,12 +1,21 @@
 // Eight boxes against one. Boxes that stand numbers which are not finite, as in box.h.
 #pragma once
 
+#include <array>
+#include <span>
+
+#include "components/lanes.h"
 #include "systems/collision/tree/box.h"
 #include "systems/geometry/lane_mask.h"
 
 namespace skerry {
 
 static_assert(leaf_lanes == element_lanes, "a leaf fills the lanes of Real8");
+
+/// Boxes, m, side by side: one is compared with all of them at once. Empty ones are far from everything.
+struct LeafBoxes {
+    std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
+};
 
 inline void set_lane(LeafBoxes& boxes, std::size_t lane, const Aabb& box) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -23,6 +32,17 @@ inline Aabb lane_of(const LeafBoxes& boxes, std::size_t lane) {
 inline LeafBoxes empty_leaf() {
     LeafBoxes boxes;
     for (std::size_t l = 0; l < leaf_lanes; ++l) set_lane(boxes, l, empty_box());
+    return boxes;
+}
+
+/// Those of the first `count` triangles of a leaf; the others are empty.
+inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::span<const Vec3> position) {
+    LeafBoxes boxes = empty_leaf();
+    for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) {
+        Aabb box = empty_box();
+        for (const auto& corner : nodes.corner) grow(box, position[static_cast<std::size_t>(corner[l])]);
+        set_lane(boxes, l, box);
+    }
     return boxes;
 }
 

@@ -59,16 +59,16 @@ TEST_CASE("figures of the collision stages", "[.benchmark]") {
         for (std::size_t b = 0; b < w.body.slot.size(); ++b) w.body.max_speed[b] = w.body.frame_speed[b] = 0.2;
         const auto afresh = [&] {
             w.search.body_valid_until.clear();
-            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);
+            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
         };
         const double search = time_of(20, afresh);
         const auto expire = [&] {
             for (std::size_t p = 0; p < w.pairs.size(); ++p) w.pairs.valid_until[p] = -1;
-            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);
+            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
         };
         const double narrow = time_of(20, expire);
         const double check = time_of(200, [&] {
-            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);
+            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
         });
         const auto contacts = [&] {
             find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts);
@@ -136,7 +136,7 @@ TEST_CASE("figures of a fall", "[.benchmark]") {
     std::size_t found = 0;
     for (int s = 0; s < steps; ++s) {
         const double t0 = cpu_time();
-        find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);
+        find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
         const double t1 = cpu_time();
         find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts);
         const double t2 = cpu_time();

@@ -55,7 +55,7 @@ void check_order(const PairTable& pairs) {
 }
 
 bool search(CollisionWorld& w) {
-    return find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.bvh_leaves.box, w.search, w.pairs);
+    return find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ struct Surface {
         const Range all{0, static_cast<Index>(triangle.size())};
         const BvhRanges ranges = append_bvh(all, triangle, position, bvh, leaves);
         for (Vec3& x : position) x += 0.05 * random.vector();  // it deforms, the tree stays
-        refit_bvh(ranges.nodes, bvh.node, leaves.triangle, triangle, position, bvh.box.span(), leaves.box.span());
+        refit_bvh(ranges.nodes, bvh.node, leaves.nodes, position, bvh.box.span());
         tree = {ranges.nodes, all, bvh.node, leaves.triangle, bvh.box, triangle, position};
     }
 };

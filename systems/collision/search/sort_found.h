@@ -1,0 +1,72 @@
+// The order of what a search has found.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "components/pair_table.h"
+#include "systems/geometry/lane_mask.h"
+
+namespace skerry {
+
+/// As many are put in order by counting for each which others of its kind come before it: a pair of bodies has some
+/// hundreds, and what sorting guesses wrong of these takes longer than comparing all, eight at a time.
+inline constexpr std::size_t counted_at_most = 512;
+
+namespace sort_found_detail {
+
+inline bool before(const FoundCandidate& a, const FoundCandidate& b) {
+    return a.candidate.feature < b.candidate.feature;
+}
+
+/// The kind is in the two highest bits; what is below them ascends as features of one kind do.
+inline constexpr int kind_shift = 62;
+inline std::size_t kind_of(const FoundCandidate& found) {
+    return static_cast<std::size_t>(found.candidate.feature >> kind_shift);
+}
+inline std::int64_t order_of(const FoundCandidate& found) {
+    return static_cast<std::int64_t>(found.candidate.feature & ((std::uint64_t{1} << kind_shift) - 1));
+}
+
+inline void sort_by_counting(Column<FoundCandidate>& found) {
+    constexpr std::size_t lanes = element_lanes, kinds = 4;
+    std::array<std::array<std::uint16_t, counted_at_most>, kinds> row;
+    std::array<std::size_t, kinds> count{};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const std::size_t kind = kind_of(found[i]);
+        row[kind][count[kind]++] = static_cast<std::uint16_t>(i);
+    }
+    std::array<LaneBits, counted_at_most / lanes> order;
+    std::array<FoundCandidate, counted_at_most> sorted;
+    std::size_t first = 0;
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+        const std::size_t blocks = (count[kind] + lanes - 1) / lanes;
+        for (std::size_t i = 0; i < lanes * blocks; ++i)  // what is beyond the last comes before none
+            order[i / lanes][i % lanes] =
+                i < count[kind] ? order_of(found[row[kind][i]]) : std::numeric_limits<std::int64_t>::max();
+        for (std::size_t i = 0; i < count[kind]; ++i) {
+            const LaneBits own = LaneBits{} + order[i / lanes][i % lanes];
+            LaneBits less{};  // -1 for each that comes before
+            for (std::size_t b = 0; b < blocks; ++b) less += order[b] < own;
+            std::int64_t rank = 0;
+            for (std::size_t l = 0; l < lanes; ++l) rank -= less[l];
+            sorted[first + static_cast<std::size_t>(rank)] = found[row[kind][i]];
+        }
+        first += count[kind];
+    }
+    std::copy_n(sorted.begin(), first, found.begin());
+}
+
+}  // namespace sort_found_detail
+
+/// Into feature order. No feature is found twice.
+inline void sort_by_feature(Column<FoundCandidate>& found) {
+    if (found.size() <= counted_at_most)
+        sort_found_detail::sort_by_counting(found);
+    else
+        std::sort(found.begin(), found.end(), sort_found_detail::before);
+}
+
+}  // namespace skerry
