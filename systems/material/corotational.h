@@ -11,7 +11,7 @@ namespace skerry {
 struct Corotational {
     static constexpr bool has_frame = true;
     static constexpr bool stiffness_varies = false;
-    static constexpr int stress_flops = 54;
+    static constexpr int stress_flops = 47;
 
     /// Elastic energy per rest volume, J/m^3: mu |F - R|^2 + lambda/2 (tr(R^T F) - 3)^2, R the rotation nearest to F.
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
@@ -37,11 +37,12 @@ struct Corotational {
     }
 
     template <class T>
-    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
-        const LaneMat3<T> strain = F - R;
-        // R : (F - R) = tr(R^T F) - 3 without the cancellation
-        const T pressure = material.lame_lambda * inner_product(R, strain);
-        return (2 * material.shear_modulus) * strain + pressure * R;
+    [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& F,
+                                                        const LaneMat3<T>& R) {
+        // what cancels near rest is as large as the rounding of F and R
+        const Real two_mu = 2 * material.shear_modulus;
+        const T pressure = material.lame_lambda * (inner_product(R, F) - 3.0);
+        return {T{} + two_mu, (pressure - two_mu) * R};
     }
 
     /// Above dP/dF: 2 mu X + lambda (R : X) R, and what turning the frame adds, kappa (X - R X^T R).

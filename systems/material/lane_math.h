@@ -77,6 +77,29 @@ template <class T>
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
+/// A stress of_F F + rest, Pa: whoever multiplies F by more does both at once. Laws without such a part give a matrix.
+template <class T>
+struct SplitStress {
+    T of_F;
+    LaneMat3<T> rest;
+};
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> whole(const SplitStress<T>& P, const LaneMat3<T>& F) {
+    return P.of_F * F + P.rest;
+}
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> whole(const LaneMat3<T>& P, const LaneMat3<T>&) {
+    return P;
+}
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T>& rest_of(SplitStress<T>& P) {
+    return P.rest;
+}
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T>& rest_of(LaneMat3<T>& P) {
+    return P;
+}
+
 /// The identity, known when compiling: no arithmetic.
 struct IdentityMatrix {};
 template <class T>

@@ -45,6 +45,21 @@ template <class T>
             S.zx * F.c0 + S.yz * F.c1 + S.zz * F.c2};
 }
 
+/// F S + P, of a law's stress P.
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> multiply_and_add(const LaneMat3<T>& F, const LaneSymmetric<T>& S,
+                                                           const LaneMat3<T>& P) {
+    return multiply(F, S) + P;
+}
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> multiply_and_add(const LaneMat3<T>& F, LaneSymmetric<T> S,
+                                                           const SplitStress<T>& P) {
+    S.xx += P.of_F;
+    S.yy += P.of_F;
+    S.zz += P.of_F;
+    return multiply(F, S) + P.rest;
+}
+
 /// What stretches the springs of the two viscous parts: the strain less what the dashpots have taken.
 template <class T>
 struct ViscousStretch {

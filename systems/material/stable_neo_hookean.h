@@ -57,12 +57,12 @@ struct StableNeoHookean {
     }
 
     template <class T>
-    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
+    static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
         const auto [mu, la] = model_moduli(material);
         const LaneMat3<T> cof = cofactor(F);
         const T shear = mu - mu / (inner_product(F, F) + 1.0);
         const T pressure = la * (dot(F.c0, cof.c0) - 1.0) - 0.75 * mu;
-        return shear * F + pressure * cof;
+        return {shear, pressure * cof};
     }
 
     template <class T>

@@ -18,7 +18,7 @@ namespace skerry {
 ///     stress_flops        of stress by lanes, a tetrahedron: what profile_elements compares times with
 ///     energy_density, stress, stiffness_bound (material, F)     one element, the plain twin of the kernels
 ///     tangent (material, F)                                     one element, for Newton steps
-///     energy_density, stress (material, F[, R])                 by lanes
+///     energy_density, stress (material, F[, R])                 by lanes; the stress may be a SplitStress
 ///     rough_stiffness_bound (material, |F|^2, det F)            by lanes, where stiffness_varies: not below the other
 ///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or something above it, as terms
 ///                                                               (dynamics/stability/element_stiffness.cpp)

@@ -12,40 +12,12 @@
 #include "systems/dynamics/elements/quick_stiffness.h"
 #include "systems/material/extract_rotation.h"
 #include "systems/material/relaxation.h"
+#include "systems/material/viscous_stress.h"
 #include "systems/material/with_law.h"
 
 namespace skerry {
 
 namespace {
-
-template <class T>
-[[gnu::always_inline]] inline LaneMat3<T> transposed(const LaneMat3<T>& a) {
-    return {{a.c0.x, a.c1.x, a.c2.x}, {a.c0.y, a.c1.y, a.c2.y}, {a.c0.z, a.c1.z, a.c2.z}};
-}
-
-/// Stress of the strain rate, F S with S = time (2 mu E' + lambda tr(E') I) and E' = (F^T F' + F'^T F) / 2: nothing in
-/// rigid motion, and no torque, since F S F^T is symmetric.
-template <class T>
-LaneMat3<T> viscous_stress(const MaterialConstants& material, Real time, const LaneMat3<T>& F,
-                           const LaneMat3<T>& F_rate) {
-    const LaneMat3<T> product = multiply(transposed(F), F_rate);
-    LaneMat3<T> S = (time * material.shear_modulus) * (product + transposed(product));
-    const T pressure = (time * material.lame_lambda) * (product.c0.x + product.c1.y + product.c2.z);
-    S.c0.x += pressure;
-    S.c1.y += pressure;
-    S.c2.z += pressure;
-    return multiply(F, S);
-}
-
-/// Stress of the strain rate in implicit elements, F E' viscosity/|F|^2: at most viscosity |F'| however much they are
-/// deformed, which their inertia is made for (docs/methods/clusters.md 2).
-template <class T>
-LaneMat3<T> bounded_viscous_stress(const T& viscosity, const LaneMat3<T>& F, const LaneMat3<T>& F_rate) {
-    constexpr Real tiny = 1e-6;  // |F|^2 of a point, and of lanes that are left over
-    const LaneMat3<T> product = multiply(transposed(F), F_rate);
-    const T scale = viscosity / (2.0 * inner_product(F, F) + tiny);
-    return multiply(F, scale * (product + transposed(product)));
-}
 
 // Blocks between the one that is computed and the one whose rows are asked for.
 constexpr std::size_t blocks_ahead = 6;
@@ -123,11 +95,11 @@ struct Run {
         return {over_both * less_volume, over_both * less};
     }
 
-    /// The dashpots give way, then the springs push. Returns the stress, Pa, and writes what the dashpots have taken
-    /// and what they dissipated, J.
+    /// The dashpots give way, then the springs push. Returns the second Piola-Kirchhoff stress, Pa, and writes what the
+    /// dashpots have taken and what they dissipated, J.
     template <Kicks kicks, class T>
-    [[gnu::always_inline]] LaneMat3<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, std::size_t block,
-                                             std::size_t part, T& dissipated) const {
+    [[gnu::always_inline]] LaneSymmetric<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, std::size_t block,
+                                                  std::size_t part, T& dissipated) const {
         ElementStrain& forgotten_next = next.viscous_strain[block];
         const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
         const LaneSymmetric<T> strain = green_strain(F);
@@ -159,24 +131,23 @@ struct Run {
         store_part(taken.yz, forgotten_next[4], part);
         store_part(taken.zx, forgotten_next[5], part);
         store_part(taken_volume, forgotten_next[6], part);
-        return multiply(F, S);
+        return S;
     }
 
     /// Out of line, as all that is rare: by value, so that what it is given need not be in memory when it is not
     /// called.
     template <class T>
-    [[gnu::noinline]] static LaneMat3<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, std::size_t block,
-                                                      std::size_t part, T& dissipated) {
+    [[gnu::noinline]] static LaneSymmetric<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, std::size_t block,
+                                                           std::size_t part, T& dissipated) {
         return run.relax<Kicks::any>(F, kept, block, part, dissipated);
     }
 
     /// Elastic stress, Pa. Frames are extracted from all parts at once: how often their steps are repeated does not
     /// depend on the width of a part.
     template <class Law>
-    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> elastic_stress(const Law& law, std::size_t block,
-                                                                      const Parts<LaneMat3<KernelReal>>& F) const {
+    [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block,
+                                               const Parts<LaneMat3<KernelReal>>& F) const {
         using T = KernelReal;
-        Parts<LaneMat3<T>> P;
         if constexpr (Law::has_frame) {
             Parts<LaneQuaternion<T>> q;
             Parts<T> volume;
@@ -185,14 +156,17 @@ struct Run {
                 volume[part] = part_of<T>(elements.volume, block, part);
             }
             extract_rotations(F, volume, q);
+            Parts<decltype(law.stress(material, F[0], rotation_of(q[0])))> P;
             for (std::size_t part = 0; part < kernel_parts; ++part) {
                 store_part(q[part], next.rotation[block], part);
                 P[part] = law.stress(material, F[part], rotation_of(q[part]));
             }
+            return P;
         } else {
+            Parts<decltype(law.stress(material, F[0]))> P;
             for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = law.stress(material, F[part]);
+            return P;
         }
-        return P;
     }
 
     /// Of implicit elements of this |F|^2 and det F: whether they are near enough to rest to have no viscosity.
@@ -295,29 +269,37 @@ struct Run {
         Parts<Kept<KernelReal>> kept{};
         if (relaxes)  // before all else: a division takes long
             for (std::size_t part = 0; part < kernel_parts; ++part) kept[part] = kept_of<KernelReal>(block, part);
-        Parts<LaneMat3<KernelReal>> P = elastic_stress(law, block, F);
+        auto elastic = elastic_stress(law, block, F);
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
             if (rests_easy(block, F)) {
                 note(block, false, false);
             } else {
                 // copies for the call alone: what has an address is in memory, whether it is called or not
+                Parts<LaneMat3<KernelReal>> rest;
+                for (std::size_t part = 0; part < kernel_parts; ++part) rest[part] = rest_of(elastic[part]);
                 const Parts<LaneMat3<KernelReal>> all =
-                    with_viscous_stress(*this, block, copy_of_parts(F), copy_of_parts(P));
-                P = copy_of_parts(all);
+                    with_viscous_stress(*this, block, copy_of_parts(F), copy_of_parts(rest));
+                for (std::size_t part = 0; part < kernel_parts; ++part) rest_of(elastic[part]) = all[part];
             }
         }
-        if (relaxes)
-            for (std::size_t part = 0; part < kernel_parts; ++part) {
-                KernelReal dissipated;
-                if (kick_over_last == 1) {
-                    P[part] = P[part] + relax<Kicks::alike>(F[part], kept[part], block, part, dissipated);
-                } else {
-                    KernelReal unlike;  // for the call alone: what has an address is in memory
-                    P[part] = P[part] + relax_unlike(*this, F[part], kept[part], block, part, unlike);
-                    dissipated = unlike;
-                }
-                relaxed[part] = relaxed[part] + dissipated;
+        Parts<LaneMat3<KernelReal>> P;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            if (!relaxes) {
+                P[part] = whole(elastic[part], F[part]);
+                continue;
             }
+            KernelReal dissipated;
+            LaneSymmetric<KernelReal> S;
+            if (kick_over_last == 1) {
+                S = relax<Kicks::alike>(F[part], kept[part], block, part, dissipated);
+            } else {
+                KernelReal unlike;  // for the call alone: what has an address is in memory
+                S = relax_unlike(*this, F[part], kept[part], block, part, unlike);
+                dissipated = unlike;
+            }
+            P[part] = multiply_and_add(F[part], S, elastic[part]);
+            relaxed[part] = relaxed[part] + dissipated;
+        }
         return P;
     }
 

@@ -55,9 +55,9 @@ void put_cauchy_stress(const Real8& volume, const LaneMat3<Real8>& F, const Lane
 LaneMat3<Real8> stress_of(const MaterialConstants& material, const LaneMat3<Real8>& F, const LaneMat3<Real8>& R) {
     return with_law(material.model, [&](auto law) {
         if constexpr (law.has_frame)
-            return law.stress(material, F, R);
+            return whole(law.stress(material, F, R), F);
         else
-            return law.stress(material, F);
+            return whole(law.stress(material, F), F);
     });
 }
 

@@ -50,9 +50,9 @@ LaneMat3<Real8> lane_frame(const LaneMat3<Real8>& F) {
 LaneMat3<Real8> lane_stress(const MaterialConstants& material, const LaneMat3<Real8>& F) {
     return with_law(material.model, [&](auto law) {
         if constexpr (law.has_frame)
-            return law.stress(material, F, lane_frame(F));
+            return whole(law.stress(material, F, lane_frame(F)), F);
         else
-            return law.stress(material, F);
+            return whole(law.stress(material, F), F);
     });
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("a lane has the bits that its element gives alone", "[unit]") {
                 if constexpr (law.has_frame)
                     return f;
                 else
-                    return law.stress(material, f);
+                    return whole(law.stress(material, f), f);
             });
             CHECK(lane_of(P, l) == to_matrix(alone));
         }
