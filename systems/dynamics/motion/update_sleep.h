@@ -182,7 +182,7 @@ struct SleepMemory {
 /// Counts for how long each body has been still, and puts those to rest that are still with all that they touch,
 /// directly or through others: their velocities become zero. What touches a collider, or is held by an attachment, that
 /// moves stays awake.
-/// Sequential, over bodies and, when a body is ready, contacts.
+/// Parallel over bodies; sequential over contacts when a body is ready.
 TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 
