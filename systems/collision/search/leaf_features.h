@@ -21,10 +21,10 @@ inline LaneVec3<Real8> spread(const Vec3& point) {
     return {Real8{} + point[0], Real8{} + point[1], Real8{} + point[2]};
 }
 
-[[gnu::always_inline]] inline Real8 lesser(const Real8& a, const Real8& b) {
+[[gnu::always_inline]] inline Real8 lane_min(const Real8& a, const Real8& b) {
     return a < b ? a : b;
 }
-[[gnu::always_inline]] inline Real8 greater(const Real8& a, const Real8& b) {
+[[gnu::always_inline]] inline Real8 lane_max(const Real8& a, const Real8& b) {
     return a < b ? b : a;
 }
 
@@ -52,8 +52,8 @@ struct LeafCorners {
         for (std::size_t k = 0; k < 3; ++k) corner[k] = lanes_of_points(inputs.position, nodes.corner[k]);
         for (std::size_t i = 0; i < 3; ++i) {
             const Real8 a = load(corner[0][i]), b = load(corner[1][i]), c = load(corner[2][i]);
-            store(lesser(lesser(a, b), c), box.lower[i]);
-            store(greater(greater(a, b), c), box.upper[i]);
+            store(lane_min(lane_min(a, b), c), box.lower[i]);
+            store(lane_max(lane_max(a, b), c), box.upper[i]);
         }
     }
 };
@@ -121,8 +121,8 @@ struct LeafEdges {
             for (std::size_t k = 0; k < 2; ++k) end[group][k] = lanes_of_points(inputs.position, node[k]);
             for (std::size_t i = 0; i < 3; ++i) {
                 const Real8 a = load(end[group][0][i]), b = load(end[group][1][i]);
-                store(lesser(a, b), box[group].lower[i]);
-                store(greater(a, b), box[group].upper[i]);
+                store(lane_min(a, b), box[group].lower[i]);
+                store(lane_max(a, b), box[group].upper[i]);
             }
         }
     }

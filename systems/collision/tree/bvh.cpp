@@ -56,7 +56,7 @@ struct Build {
             for (std::size_t k = 0; k < 3; ++k) nodes.corner[k][l] = nodes.node[corners++] = node[k];
         }
         std::ranges::sort(nodes.node);
-        nodes.count = static_cast<Index>(std::ranges::unique(nodes.node).begin() - nodes.node.begin());
+        nodes.count = static_cast<Index>(std::unique(nodes.node.begin(), nodes.node.end()) - nodes.node.begin());
         return nodes;
     }
 

@@ -67,9 +67,8 @@ TEST_CASE("figures of the collision stages", "[.benchmark]") {
             find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
         };
         const double narrow = time_of(20, expire);
-        const double check = time_of(200, [&] {
-            find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs);
-        });
+        const double check = time_of(
+            200, [&] { find_candidates(*w.executor, w.inputs(), w.settings, h, w.bvh.box, w.search, w.pairs); });
         const auto contacts = [&] {
             find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts);
         };

@@ -17,8 +17,7 @@ bool contains(const Aabb& box, const Vec3& p) {
 }
 
 void refit(test::CollisionWorld& world, Index body) {
-    refit_bvh(world.body.bvh_nodes[body], world.bvh.node, world.bvh_leaves.nodes, world.nodes.position,
-              world.bvh.box);
+    refit_bvh(world.body.bvh_nodes[body], world.bvh.node, world.bvh_leaves.nodes, world.nodes.position, world.bvh.box);
 }
 
 }  // namespace
