@@ -1,11 +1,11 @@
 // Stress, strain and steps of bodies, by tetrahedron or node.
 #include <algorithm>
 #include <limits>
-#include <string>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
+#include "engine/world/validate.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/elements/element_energy.h"
@@ -130,16 +130,7 @@ std::vector<Mat3> World::node_stress(BodyHandle body) const {
 std::vector<Mat3> World::node_stress(BodyHandle body, std::span<const Index> nodes) const {
     const Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(body, "node_stress"));
-    const Index count = model.bodies.nodes[row].size();
-    for (const Index n : nodes)
-        if (n < 0 || n >= count)
-            Complaint{.file = {},
-                      .object = "node_stress",
-                      .field = "nodes",
-                      .found = "node " + std::to_string(n),
-                      .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
-                      .hint = {}}
-                .raise();
+    require_nodes("node_stress", nodes, model.bodies.nodes[row].size());
     std::vector<Index> once(nodes.begin(), nodes.end());
     std::ranges::sort(once);
     once.erase(std::unique(once.begin(), once.end()), once.end());

@@ -114,6 +114,13 @@ void require_surface(const std::optional<Real>& friction, const std::optional<Re
 
 }  // namespace
 
+void require_nodes(const std::string& object, std::span<const Index> nodes, Index count) {
+    for (const Index node : nodes)
+        if (node < 0 || node >= count)
+            refuse(object, "nodes", "node " + std::to_string(node),
+                   "nodes of the body, 0 to " + std::to_string(count - 1));
+}
+
 void require_finite(const std::string& object, const char* field, const Vec3& found) {
     if (!found.allFinite()) refuse(object, field, shown(found), "three finite numbers");
 }

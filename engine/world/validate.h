@@ -1,6 +1,7 @@
 // What may be asked of a world. Every complaint names the object, the field, what was found and what was expected.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "engine/world/state/model.h"
@@ -23,6 +24,8 @@ void validate(const Motion& motion, const Vec3& pivot);
 void validate(const SurfaceSettings& surface, const std::string& object, const Settings& settings);
 /// Of `object`, three numbers each.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
+/// Of `object`: numbers of a body's nodes, of which there are `count`.
+void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);
 void validate(const Pose& pose, const std::string& object);
 
 }  // namespace skerry

@@ -265,15 +265,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     const auto b = static_cast<std::size_t>(row);
     validate(motion, pivot);
     const Index count = model.bodies.nodes[b].size();
-    for (Index node : nodes)
-        if (node < 0 || node >= count)
-            Complaint{.file = {},
-                      .object = "attach",
-                      .field = "nodes",
-                      .found = "node " + std::to_string(node),
-                      .expected = "nodes of the body, 0 to " + std::to_string(count - 1),
-                      .hint = {}}
-                .raise();
+    require_nodes("attach", nodes, count);
     if (model.bodies.core_nodes[b] > 0)
         Complaint{.file = {},
                   .object = "attach",

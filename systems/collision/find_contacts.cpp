@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "components/ask_for_lines.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
 #include "systems/collision/cylinders/cylinder_row.h"
@@ -91,10 +92,8 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
 /// Has the beginning of a pair's list fetched, the rest follows by itself: each lies elsewhere, and waiting for them
 /// was a good part of the stage.
 void ask_for_list(const PairTable& pairs, Index p) {
-    constexpr std::size_t begin = 256, line = 64;  // bytes
-    if (p >= static_cast<Index>(pairs.size())) return;
-    const auto* const list = reinterpret_cast<const std::byte*>(pairs.asleep_until[p].data());
-    for (std::size_t i = 0; i < begin; i += line) __builtin_prefetch(list + i);
+    constexpr std::size_t begin = 32;
+    if (p < static_cast<Index>(pairs.size())) ask_for_lines(pairs.asleep_until[p].data(), begin);
 }
 
 /// Whether features of two surfaces are held against each other, as they are of most pairs.

@@ -118,6 +118,7 @@ public:
     std::vector<Mat3> node_stress(BodyHandle body) const;  // by node
     std::vector<Mat3> node_strain(BodyHandle body) const;  // by node
     /// node_stress of some nodes alone, in their order, from the elements around them: to the bit what it is of all.
+    /// Throws where the body has no such node.
     std::vector<Mat3> node_stress(BodyHandle body, std::span<const Index> nodes) const;
     std::vector<Real> von_mises_stress(BodyHandle body) const;  // Pa, by tetrahedron
     /// The step that each tetrahedron allows as the body is now, s: that of the stiffest element that covers it. The

@@ -6,6 +6,7 @@
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/search/sort_found.h"
 #include "systems/collision/tree/box.h"
 
 namespace skerry {
@@ -95,9 +96,7 @@ private:
                                   pair_.travel_base + std::max(nearest - face_zone_, flat)});
             }
         }
-        std::sort(
-            found_.begin() + static_cast<std::ptrdiff_t>(first), found_.end(),
-            [](const FoundCandidate& a, const FoundCandidate& b) { return a.candidate.feature < b.candidate.feature; });
+        std::sort(found_.begin() + static_cast<std::ptrdiff_t>(first), found_.end(), feature_before);
     }
 
     void add_edges() {

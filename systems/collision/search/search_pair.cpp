@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "components/ask_for_lines.h"
 #include "components/check.h"
 #include "components/node_block_table.h"
 #include "systems/collision/inputs/contact_key.h"
@@ -78,21 +79,18 @@ private:
     }
 
     void push_if_near(Index a, Index b) {
-        if (!(distance_squared(box_[a], box_[b]) < radius_squared_)) return;
-        push(a, b);
+        if (distance_squared(box_[a], box_[b]) < radius_squared_) push(a, b);
     }
 
     /// What leaves list lies further apart than caches reach: it is asked for when they are found, and they are
     /// compared when some are.
     void ask_for_leaf(Index a) const {
-        const auto ask = [](const void* first) { __builtin_prefetch(first); };
+        constexpr std::size_t owned_edges = 12, owned_points = 4;  // of eight triangles
         const LeafFeatures& features = inputs_.leaf_features[node(a).leaf];
-        ask(&features.edge_count);
-        ask(&features.edge[5]);
-        ask(&features.edge[10]);
-        ask(&features.point[0]);
-        ask(&inputs_.leaf_nodes[node(a).leaf].corner[0]);
-        ask(&inputs_.leaf_nodes[node(a).leaf].corner[2]);
+        const LeafNodes& nodes = inputs_.leaf_nodes[node(a).leaf];
+        ask_for_lines(features.edge.data(), owned_edges);
+        ask_for_lines(features.point.data(), owned_points);
+        ask_for_lines(nodes.corner.data(), nodes.corner.size());
     }
 
     void split_with_itself(Index a) {

@@ -15,11 +15,11 @@ namespace skerry {
 /// hundreds, and what sorting guesses wrong of these takes longer than comparing all, eight at a time.
 inline constexpr std::size_t counted_at_most = 512;
 
-namespace sort_found_detail {
-
-inline bool before(const FoundCandidate& a, const FoundCandidate& b) {
+inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
     return a.candidate.feature < b.candidate.feature;
 }
+
+namespace sort_found_detail {
 
 /// The kind is in the two highest bits; what is below them ascends as features of one kind do.
 inline constexpr int kind_shift = 62;
@@ -66,7 +66,7 @@ inline void sort_by_feature(Column<FoundCandidate>& found) {
     if (found.size() <= counted_at_most)
         sort_found_detail::sort_by_counting(found);
     else
-        std::sort(found.begin(), found.end(), sort_found_detail::before);
+        std::sort(found.begin(), found.end(), feature_before);
 }
 
 }  // namespace skerry

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <type_traits>
 
+#include "components/ask_for_lines.h"
 #include "components/check.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
@@ -58,21 +59,15 @@ struct Run {
         const std::size_t block = current + blocks_ahead;
         if (block >= elements.blocks()) return;
         const auto row = static_cast<std::size_t>(elements.first[block]);
-        const int rows = known_rows > 0 ? known_rows : elements.count[block];
-        const auto ask = [](const auto* first, int count) {
-            const auto* const line = reinterpret_cast<const char*>(first);
-            const int lines = count * static_cast<int>(sizeof *first) / 64;
-#pragma GCC unroll 16
-            for (int i = 0; i < lines; ++i) __builtin_prefetch(line + 64 * i);
-        };
-        ask(elements.gradient.data() + row + 1, rows - 1);
-        ask(patches.slot.data() + row, rows);
-        ask(elements.volume.data() + block, 1);
+        const auto rows = static_cast<std::size_t>(known_rows > 0 ? known_rows : elements.count[block]);
+        ask_for_lines(elements.gradient.data() + row + 1, rows - 1);
+        ask_for_lines(patches.slot.data() + row, rows);
+        ask_for_lines(elements.volume.data() + block, 1);
         if (!material.relaxes() || next.viscous_strain.empty()) return;
-        ask(elements.viscous_strain.data() + block, 1);
-        ask(next.viscous_strain.data() + block, 1);
-        ask(elements.relaxation_rate.data() + block, 1);
-        ask(elements.own_frequency.data() + block, 1);
+        ask_for_lines(elements.viscous_strain.data() + block, 1);
+        ask_for_lines(next.viscous_strain.data() + block, 1);
+        ask_for_lines(elements.relaxation_rate.data() + block, 1);
+        ask_for_lines(elements.own_frequency.data() + block, 1);
     }
 
     template <class T>

@@ -114,14 +114,14 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
 }
 
 /// What the velocities of a block are taken towards, and by which part.
-struct RigidMotion {
+struct DampedTowards {
     Vec3 linear, angular, origin, centre;
     Real lag, fraction;
 };
 
 /// Adds to velocity_next what takes the velocities of nodes, none of which is held, towards a rigid motion; work[n]:
 /// the kinetic energy that this takes out of a node, J. Several nodes at a time.
-void damp_free(const RigidMotion& rigid, std::size_t count, const Vec3* position, const Vec3* velocity,
+void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* position, const Vec3* velocity,
                const Real* mass, Vec3* velocity_next, Real* work) {
     const Real *const x = position->data(), *const v = velocity->data();
     Real* const next = velocity_next->data();
@@ -151,12 +151,12 @@ Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, c
     const bool keeps = keeps_rigid_motion(bodies, body);
     if (keeps && !(total.mass > 0)) return 0;
     const Vec3 none = Vec3::Zero();
-    const RigidMotion rigid{keeps ? Vec3(total.momentum / total.mass) : none,
-                            keeps ? angular_velocity_of(total) : none,
-                            bodies.position[first_node(bodies, body)],
-                            keeps ? Vec3(total.first_moment / total.mass) : none,
-                            bodies.lag,
-                            fraction};
+    const DampedTowards rigid{keeps ? Vec3(total.momentum / total.mass) : none,
+                              keeps ? angular_velocity_of(total) : none,
+                              bodies.position[first_node(bodies, body)],
+                              keeps ? Vec3(total.first_moment / total.mass) : none,
+                              bodies.lag,
+                              fraction};
     const auto begin = static_cast<std::size_t>(bodies.block_begin[block]),
                end = static_cast<std::size_t>(bodies.block_end[block]);
     std::array<Real, nodes_per_block> work;
