@@ -5,12 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include "engine/mesh/labels.h"
 #include "engine/mesh/require_positive.h"
+#include "systems/collision/build_surface.h"
 
 namespace skerry {
 
@@ -191,42 +190,24 @@ void validate(const MaterialSettings& material, const Settings& settings) {
 
 namespace {
 
-/// A side of a tetrahedron: its nodes ascending, and which way round they are seen from outside.
-struct OutwardSide {
-    std::array<Index, 3> node;
-    bool turned;
-    Index tetrahedron;
-
-    bool operator<(const OutwardSide& other) const {
-        return std::tie(node, turned) < std::tie(other.node, other.turned);
-    }
-};
-
 /// On each side of a face lies at most one tetrahedron: otherwise they lie in each other, and the face, which more than
 /// one of them has, would be no surface that anything could touch.
 void require_apart(const Mesh& mesh, const std::string& object) {
-    constexpr std::array<std::array<std::size_t, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-    std::vector<OutwardSide> sides;
-    sides.reserve(4 * mesh.tetrahedra.size());
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        for (const auto& corner : outward) {
-            OutwardSide side{{}, false, static_cast<Index>(t)};
-            for (std::size_t k = 0; k < 3; ++k) side.node[k] = mesh.tetrahedra[t][corner[k]];
-            for (const auto& [low, high] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)})
-                if (auto& a = side.node[static_cast<std::size_t>(low)], &b = side.node[static_cast<std::size_t>(high)];
-                    a > b) {
-                    std::swap(a, b);
-                    side.turned = !side.turned;
-                }
-            sides.push_back(side);
+    const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
+    for (std::size_t first = 0; first < faces.size();) {
+        std::array<Index, 2> seen{no_index, no_index};  // tetrahedra, by the side they lie on
+        std::size_t i = first;
+        for (; i < faces.size() && faces[i].node == faces[first].node; ++i) {
+            Index& on_side = seen[faces[i].turned ? 1 : 0];
+            if (on_side != no_index)
+                refuse(object, "mesh",
+                       "tetrahedra " + std::to_string(on_side) + " and " + std::to_string(faces[i].tetrahedron) +
+                           " on the same side of a face that both have",
+                       "one on each side at most");
+            on_side = faces[i].tetrahedron;
         }
-    std::ranges::stable_sort(sides, std::less<>());
-    for (std::size_t i = 1; i < sides.size(); ++i)
-        if (!(sides[i - 1] < sides[i]))
-            refuse(object, "mesh",
-                   "tetrahedra " + std::to_string(sides[i - 1].tetrahedron) + " and " +
-                       std::to_string(sides[i].tetrahedron) + " on the same side of a face that both have",
-                   "one on each side at most");
+        first = i;
+    }
 }
 
 /// Where a body is put, and how it starts.

@@ -1,6 +1,9 @@
 #include "systems/collision/build_surface.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "components/counting_sort.h"
 
 namespace skerry {
 
@@ -9,12 +12,6 @@ namespace {
 Index rows(std::size_t count) {
     return static_cast<Index>(count);
 }
-
-struct Face {
-    std::array<Index, 3> sorted;
-    Index element;
-    Index corner;  // the one it lies opposite of
-};
 
 // Faces of a tetrahedron of positive volume, counter-clockwise seen from outside; face k lies opposite of corner k.
 constexpr std::array<std::array<std::size_t, 3>, 4> face_corner{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
@@ -29,17 +26,55 @@ bool has_edge(const std::array<Index, 3>& node, std::size_t k) {
     return !is_core(node) || (k == 0 && node[0] != node[1]);
 }
 
-/// Rows of `sorted` start at `first`.
-template <class T>
-Index row_of(const std::vector<T>& sorted, const T& value, Index first) {
-    return first + static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
+/// One more than the highest node.
+Index end_of(std::span<const BoundaryTriangle> triangles) {
+    Index end = 0;
+    for (const BoundaryTriangle& triangle : triangles)
+        for (const Index n : triangle.node) end = std::max(end, n + 1);
+    return end;
 }
 
-template <class T>
-void keep_unique(std::vector<T>& values) {
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
+/// Nodes of a boundary, ascending, and the place of each among them.
+struct BoundaryNodes {
+    std::vector<Index> node, place;
+
+    BoundaryNodes(std::span<const BoundaryTriangle> triangles, Index end)
+        : place(static_cast<std::size_t>(end), no_index) {
+        for (const BoundaryTriangle& triangle : triangles)
+            for (const Index n : triangle.node) place[static_cast<std::size_t>(n)] = 0;
+        for (Index n = 0; n < end; ++n) {
+            if (place[static_cast<std::size_t>(n)] == no_index) continue;
+            place[static_cast<std::size_t>(n)] = rows(node.size());
+            node.push_back(n);
+        }
+    }
+};
+
+/// Edges of a boundary by their nodes, and which of them each triangle has.
+struct BoundaryEdges {
+    std::vector<std::array<Index, 2>> node;
+    std::vector<std::array<Index, 3>> of_triangle;  // no_index of a side that is none
+
+    BoundaryEdges(std::span<const BoundaryTriangle> triangles, Index end)
+        : of_triangle(triangles.size(), {no_index, no_index, no_index}) {
+        struct Side {
+            std::array<Index, 2> node;
+            Index triangle, k;
+        };
+        std::vector<Side> sides;
+        sides.reserve(3 * triangles.size());
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            for (std::size_t k = 0; k < 3; ++k)
+                if (has_edge(triangles[t].node, k))
+                    sides.push_back({edge_nodes(triangles[t].node, k), rows(t), static_cast<Index>(k)});
+        for (const std::size_t i : {1, 0}) counting_sort(sides, end, [i](const Side& side) { return side.node[i]; });
+        for (const Side& side : sides) {
+            if (node.empty() || node.back() != side.node) node.push_back(side.node);
+            of_triangle[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.k)] =
+                rows(node.size()) - 1;
+        }
+    }
+};
 
 void append_vertices(const std::vector<Index>& node, Range triangles, Index first_vertex, Index first_node,
                      SurfaceTables& surface) {
@@ -85,63 +120,68 @@ void append_edges(const std::vector<std::array<Index, 2>>& node, Range triangles
 
 }  // namespace
 
-std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra) {
-    std::vector<Face> faces;
+std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> tetrahedra) {
+    std::vector<TetrahedronFace> faces;
     faces.reserve(4 * tetrahedra.size());
-    for (std::size_t e = 0; e < tetrahedra.size(); ++e)
+    Index end = 0;
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
         for (std::size_t k = 0; k < 4; ++k) {
-            std::array<Index, 3> node;
-            for (std::size_t i = 0; i < 3; ++i) node[i] = tetrahedra[e][face_corner[k][i]];
-            std::sort(node.begin(), node.end());
-            faces.push_back({node, rows(e), rows(k)});
+            TetrahedronFace face{{}, rows(t), static_cast<std::uint8_t>(k), false};
+            for (std::size_t i = 0; i < 3; ++i) face.node[i] = tetrahedra[t][face_corner[k][i]];
+            for (const auto& [low, high] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)})
+                if (Index& a = face.node[static_cast<std::size_t>(low)], &b = face.node[static_cast<std::size_t>(high)];
+                    a > b) {
+                    std::swap(a, b);
+                    face.turned = !face.turned;
+                }
+            end = std::max(end, face.node[2] + 1);
+            faces.push_back(face);
         }
-    std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.sorted < b.sorted; });
+    for (const std::size_t i : {2, 1, 0})
+        counting_sort(faces, end, [i](const TetrahedronFace& face) { return face.node[i]; });
+    return faces;
+}
 
-    std::vector<Face> single;
+std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra) {
+    const std::vector<TetrahedronFace> faces = sorted_faces(tetrahedra);
+    std::vector<std::uint8_t> is_single(faces.size(), 0);  // by tetrahedron and corner
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;
-        while (end < faces.size() && faces[end].sorted == faces[i].sorted) ++end;
-        if (end == i + 1) single.push_back(faces[i]);
+        while (end < faces.size() && faces[end].node == faces[i].node) ++end;
+        if (end == i + 1) is_single[4 * static_cast<std::size_t>(faces[i].tetrahedron) + faces[i].corner] = 1;
         i = end;
     }
-    std::sort(single.begin(), single.end(), [](const Face& a, const Face& b) {
-        return a.element != b.element ? a.element < b.element : a.corner < b.corner;
-    });
 
     std::vector<BoundaryTriangle> triangles;
-    triangles.reserve(single.size());
-    for (const Face& face : single) {
-        const auto& corner = face_corner[face.corner];
-        const auto& node = tetrahedra[face.element];
-        triangles.push_back({{node[corner[0]], node[corner[1]], node[corner[2]]}, face.element});
-    }
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (!is_single[4 * t + k]) continue;
+            const auto& corner = face_corner[k];
+            const auto& node = tetrahedra[t];
+            triangles.push_back({{node[corner[0]], node[corner[1]], node[corner[2]]}, rows(t)});
+        }
     return triangles;
 }
 
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface) {
-    std::vector<Index> vertex;
-    std::vector<std::array<Index, 2>> edge;
-    for (const BoundaryTriangle& triangle : triangles)
-        for (std::size_t k = 0; k < 3; ++k) {
-            vertex.push_back(triangle.node[k]);
-            if (has_edge(triangle.node, k)) edge.push_back(edge_nodes(triangle.node, k));
-        }
-    keep_unique(vertex);
-    keep_unique(edge);
+    const Index end = end_of(triangles);
+    const BoundaryNodes nodes(triangles, end);
+    const BoundaryEdges edges(triangles, end);
 
     SurfaceRanges ranges;
     ranges.triangles = {rows(surface.triangles.node.size()), rows(surface.triangles.node.size() + triangles.size())};
-    ranges.edges = {rows(surface.edges.node.size()), rows(surface.edges.node.size() + edge.size())};
-    ranges.vertices = {rows(surface.vertices.node.size()), rows(surface.vertices.node.size() + vertex.size())};
+    ranges.edges = {rows(surface.edges.node.size()), rows(surface.edges.node.size() + edges.node.size())};
+    ranges.vertices = {rows(surface.vertices.node.size()), rows(surface.vertices.node.size() + nodes.node.size())};
 
-    for (const BoundaryTriangle& triangle : triangles) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const BoundaryTriangle& triangle = triangles[t];
         std::array<Index, 3> node, edge_row, vertex_row;
         for (std::size_t k = 0; k < 3; ++k) {
+            const Index edge = edges.of_triangle[t][k];
             node[k] = first_node + triangle.node[k];
-            edge_row[k] =
-                has_edge(triangle.node, k) ? row_of(edge, edge_nodes(triangle.node, k), ranges.edges.begin) : no_index;
-            vertex_row[k] = row_of(vertex, triangle.node[k], ranges.vertices.begin);
+            edge_row[k] = edge == no_index ? no_index : ranges.edges.begin + edge;
+            vertex_row[k] = ranges.vertices.begin + nodes.place[static_cast<std::size_t>(triangle.node[k])];
         }
         surface.triangles.node.push_back(node);
         surface.triangles.edge.push_back(edge_row);
@@ -150,8 +190,8 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
         surface.triangles.owned_edges.push_back(0);
         surface.triangles.element.push_back(first_element == no_index ? no_index : first_element + triangle.element);
     }
-    append_vertices(vertex, ranges.triangles, ranges.vertices.begin, first_node, surface);
-    append_edges(edge, ranges.triangles, first_node, surface);
+    append_vertices(nodes.node, ranges.triangles, ranges.vertices.begin, first_node, surface);
+    append_edges(edges.node, ranges.triangles, first_node, surface);
     return ranges;
 }
 

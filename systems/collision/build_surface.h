@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,16 @@
 #include "components/surface_table.h"
 
 namespace skerry {
+
+/// A face of a tetrahedron.
+struct TetrahedronFace {
+    std::array<Index, 3> node;  // ascending
+    Index tetrahedron;
+    std::uint8_t corner;  // the one it lies opposite of
+    bool turned;          // seen from outside its nodes come clockwise
+};
+/// Those of all tetrahedra by their nodes; those with the same nodes in the order of the tetrahedra.
+std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> tetrahedra);
 
 /// The boundary triangles of a tetrahedral mesh (faces of exactly one tetrahedron), counter-clockwise seen from
 /// outside, in element order.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/check.h"
+#include "components/counting_sort.h"
 #include "components/element_table.h"
 
 namespace skerry {
@@ -14,7 +15,7 @@ constexpr std::size_t longest_fan = 6;
 
 /// An element beside one of its edges.
 struct AroundEdge {
-    Index a, b;          // the edge, a < b
+    Index a, b;          // the edge, a < b, by places among the nodes of the group
     Index element;       // place among those that are sorted
     NodeOrder order;     // a, b, then the other two
     std::uint8_t taken;  // 1: on the way that is being looked for
@@ -27,11 +28,20 @@ class FanSearch {
 public:
     FanSearch(const ElementList& list, std::span<const Index> elements)
         : list_(list), elements_(elements), free_(elements.size(), 1) {
+        for (const Index e : elements)
+            for (std::size_t k = 0; k < 4; ++k)
+                nodes_.push_back(list.node[list.first_node[static_cast<std::size_t>(e)] + k]);
+        std::ranges::sort(nodes_);
+        nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
         around_.reserve(6 * elements.size());
-        for (std::size_t e = 0; e < elements.size(); ++e)
+        for (std::size_t e = 0; e < elements.size(); ++e) {
+            const std::array<Index, 4> place = places_of_corners(elements[e]);
             for (std::uint8_t i = 0; i < 4; ++i)
-                for (std::uint8_t j = i + 1; j < 4; ++j) add_edge(static_cast<Index>(e), i, j);
-        std::ranges::stable_sort(around_, {}, [](const AroundEdge& at) { return std::pair(at.a, at.b); });
+                for (std::uint8_t j = i + 1; j < 4; ++j) add_edge(static_cast<Index>(e), place, i, j);
+        }
+        const auto count = static_cast<Index>(nodes_.size());
+        counting_sort(around_, count, [](const AroundEdge& at) { return at.b; });
+        counting_sort(around_, count, [](const AroundEdge& at) { return at.a; });
     }
 
     /// Takes fans of `length` for as long as some edge has one.
@@ -63,14 +73,23 @@ private:
         return list_.node[list_.first_node[element] + at.order[k]];
     }
 
-    void add_edge(Index element, std::uint8_t i, std::uint8_t j) {
+    std::array<Index, 4> places_of_corners(Index element) const {
+        std::array<Index, 4> place;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Index node = list_.node[list_.first_node[static_cast<std::size_t>(element)] + k];
+            place[k] = static_cast<Index>(std::ranges::lower_bound(nodes_, node) - nodes_.begin());
+        }
+        return place;
+    }
+
+    void add_edge(Index element, const std::array<Index, 4>& place, std::uint8_t i, std::uint8_t j) {
         AroundEdge at{0, 0, element, {i, j, 0, 0}, 0};
         std::size_t others = 2;
         for (std::uint8_t k = 0; k < 4; ++k)
             if (k != i && k != j) at.order[others++] = k;
-        if (node(at, 0) > node(at, 1)) std::swap(at.order[0], at.order[1]);
-        at.a = node(at, 0);
-        at.b = node(at, 1);
+        if (place[i] > place[j]) std::swap(at.order[0], at.order[1]);
+        at.a = std::min(place[i], place[j]);
+        at.b = std::max(place[i], place[j]);
         around_.push_back(at);
     }
 
@@ -122,6 +141,7 @@ private:
     const ElementList& list_;
     std::span<const Index> elements_;
     std::vector<std::uint8_t> free_;
+    std::vector<Index> nodes_;        // of the group, ascending
     std::vector<AroundEdge> around_;  // edge after edge
     Fan way_;
 };

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
+#include <random>
 #include <set>
+#include <tuple>
 
 #include "tests/support/meshes.h"
 
@@ -63,6 +65,67 @@ TEST_CASE("each vertex and each edge is owned once, by the lowest triangle that 
         }
     CHECK(static_cast<Index>(vertex_owner.size()) == b.ranges.vertices.size());
     CHECK(static_cast<Index>(edge_owner.size()) == b.ranges.edges.size());
+}
+
+TEST_CASE("faces, nodes and edges stand as sorting by comparison has them", "[unit]") {
+    std::mt19937_64 random(2);
+    for (const std::size_t count : {0, 1, 40, 300}) {
+        // No mesh that a body may have: tetrahedra lie on each other, faces have more than two.
+        std::vector<std::array<Index, 4>> tetrahedra(count);
+        for (auto& tetrahedron : tetrahedra)
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto is_there = [&](Index n) {
+                    return std::find(tetrahedron.begin(), tetrahedron.begin() + k, n) != tetrahedron.begin() + k;
+                };
+                do tetrahedron[k] = static_cast<Index>(random() % 17);
+                while (is_there(tetrahedron[k]));
+            }
+        constexpr std::array<std::array<std::size_t, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+        using Face = std::tuple<std::array<Index, 3>, Index, int, bool>;
+        std::vector<Face> by_comparison, found;
+        std::map<std::array<Index, 3>, int> times;
+        for (std::size_t t = 0; t < count; ++t)
+            for (std::size_t k = 0; k < 4; ++k) {
+                std::array<Index, 3> node;
+                for (std::size_t i = 0; i < 3; ++i) node[i] = tetrahedra[t][outward[k][i]];
+                const auto [a, b, c] = node;
+                std::ranges::sort(node);
+                const bool even =
+                    node == std::array{a, b, c} || node == std::array{b, c, a} || node == std::array{c, a, b};
+                by_comparison.emplace_back(node, static_cast<Index>(t), static_cast<int>(k), !even);
+                ++times[node];
+            }
+        std::ranges::sort(by_comparison);
+        for (const TetrahedronFace& face : sorted_faces(tetrahedra))
+            found.emplace_back(face.node, face.tetrahedron, face.corner, face.turned);
+        CHECK(found == by_comparison);
+
+        const std::vector<BoundaryTriangle> triangles = boundary_triangles(tetrahedra);
+        std::vector<std::array<Index, 3>> single;
+        for (std::size_t t = 0; t < count; ++t)
+            for (const auto& corner : outward) {
+                const std::array<Index, 3> node{tetrahedra[t][corner[0]], tetrahedra[t][corner[1]],
+                                                tetrahedra[t][corner[2]]};
+                std::array<Index, 3> sorted = node;
+                std::ranges::sort(sorted);
+                if (times[sorted] == 1) single.push_back(node);
+            }
+        REQUIRE(triangles.size() == single.size());
+        std::set<Index> nodes;
+        std::set<std::array<Index, 2>> edges;
+        for (std::size_t t = 0; t < single.size(); ++t) {
+            CHECK(triangles[t].node == single[t]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                nodes.insert(single[t][k]);
+                edges.insert(
+                    {std::min(single[t][k], single[t][(k + 1) % 3]), std::max(single[t][k], single[t][(k + 1) % 3])});
+            }
+        }
+        SurfaceTables surface;
+        append_surface(triangles, 0, 0, surface);
+        CHECK(std::ranges::equal(surface.vertices.node, nodes));
+        CHECK(std::ranges::equal(surface.edges.node, edges));
+    }
 }
 
 TEST_CASE("triangles, edges and vertices refer to each other", "[unit]") {
