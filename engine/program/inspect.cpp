@@ -206,12 +206,14 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
 /// Each kind of body in a world of its own: that is the step it would allow. `became`: what each body of the plan is in
 /// the world; empty: what the plan says.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std::span<const BodyDynamics> became = {}) {
-    std::map<std::tuple<std::size_t, std::size_t, BodyDynamics>, std::size_t> row;
+    using Labels = std::vector<std::pair<int, std::size_t>>;
+    std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;
     std::vector<BodyKindReport> kinds;
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
         const BodyDynamics dynamics = became.empty() ? body.settings.dynamics : became[b];
-        const auto [at, is_new] = row.try_emplace({body.mesh, body.material, dynamics}, kinds.size());
+        const auto [at, is_new] =
+            row.try_emplace({body.mesh, body.material, body.materials, body.settings.element, dynamics}, kinds.size());
         if (is_new) {
             const MeshReport mesh = inspect(plan.meshes[body.mesh]);
             kinds.push_back(

@@ -151,10 +151,10 @@ private:
 /// One of each mesh. Contacts find the way out of a body by its surface: where that has no two sides they may not.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan) {
     std::vector<std::string> found;
-    std::size_t last = plan.meshes.size();
+    std::vector<bool> seen(plan.meshes.size(), false);
     for (const BodyPlan& body : plan.bodies) {
-        if (body.mesh == last) continue;
-        last = body.mesh;
+        if (seen[body.mesh]) continue;
+        seen[body.mesh] = true;
         const std::string fault = mesh::manifold_fault(boundary_triangles(plan.meshes[body.mesh].tetrahedra));
         if (!fault.empty())
             found.push_back("the boundary of body '" + body.settings.name + "' is not a closed manifold: " + fault);

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "components/split_mix.h"
 #include "engine/mesh/labels.h"
@@ -121,10 +122,28 @@ std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan
     return found;
 }
 
-/// `names` are those of the bodies so far.
-void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>& names, ScenePlan& plan) {
+/// What bodies have so far.
+struct PlannedBodies {
+    std::set<std::string> names;
+    std::map<std::pair<std::filesystem::path, Real>, std::size_t> mesh_of_file;  // by path and scale
+};
+
+/// Place in plan.meshes; a file is read once.
+std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& plan) {
+    const std::size_t next = plan.meshes.size();
+    if (entry.mesh && entry.mesh->file) {
+        const auto known = so_far.mesh_of_file.find({entry.mesh->file->path, entry.mesh->scale});
+        if (known != so_far.mesh_of_file.end()) return known->second;
+    }
+    plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh) : picture_of(*entry.shape));
+    if (entry.mesh && entry.mesh->file) so_far.mesh_of_file[{entry.mesh->file->path, entry.mesh->scale}] = next;
+    return next;
+}
+
+void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t material = find_material(plan, entry.material, entry.place.key("material"));
-    const Mesh& mesh = plan.meshes.emplace_back(entry.mesh ? make_mesh(*entry.mesh) : picture_of(*entry.shape));
+    const std::size_t of_plan = plan_mesh(entry, so_far, plan);
+    const Mesh& mesh = plan.meshes[of_plan];
     const std::vector<std::pair<int, std::size_t>> materials = find_materials_by_label(plan, entry, mesh);
     std::vector<PinPlan> pins;
     for (const PinEntry& pin : entry.pin.items) pins.push_back(plan_pin(pin, mesh));
@@ -148,13 +167,13 @@ void plan_body(const BodyEntry& entry, std::size_t number, std::set<std::string>
         body.settings.collision_mask = entry.collision_mask;
         body.settings.element = entry.element;
         body.settings.name = copies ? name + "_" + std::to_string(copy) : name;
-        body.mesh = plan.meshes.size() - 1;
+        body.mesh = of_plan;
         if (entry.shape) body.shape = *entry.shape;
         body.material = material;
         body.materials = materials;
         body.pins = pins;
         body.place = entry.place;
-        if (!names.insert(body.settings.name).second)
+        if (!so_far.names.insert(body.settings.name).second)
             entry.place.key("name").refuse(in_quotes(body.settings.name) + " again",
                                            "a name of its own for every body");
         plan.bodies.push_back(std::move(body));
@@ -233,8 +252,8 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
     plan.settings = scene.settings;
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
-    std::set<std::string> names;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, names, plan);
+    PlannedBodies so_far;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, so_far, plan);
     if (overrides.element)
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)

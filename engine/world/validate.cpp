@@ -220,10 +220,8 @@ void require_start(const BodySettings& body, const std::string& object) {
         require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
 }
 
-}  // namespace
-
-void validate(const Mesh& mesh, const BodySettings& body) {
-    const std::string object = titled("body", body.name);
+/// A mesh that a body may have.
+void require_mesh(const Mesh& mesh, const std::string& object) {
     if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (!mesh.nodes[n].allFinite())
@@ -235,6 +233,13 @@ void validate(const Mesh& mesh, const BodySettings& body) {
                        "rows of its nodes");
     mesh::require_positive(mesh, object);
     require_apart(mesh, object);
+}
+
+}  // namespace
+
+void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known) {
+    const std::string object = titled("body", body.name);
+    if (!mesh_is_known) require_mesh(mesh, object);
     if ((body.dynamics == BodyDynamics::rigid || body.dynamics == BodyDynamics::implicit_elastic) && body.self_contact)
         refuse(object, "self_contact", "true of a body whose dynamics are " + std::string(name_of(body.dynamics)),
                "false");

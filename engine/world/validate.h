@@ -12,7 +12,8 @@ namespace skerry {
 
 void validate(const Settings& settings);
 void validate(const MaterialSettings& material, const Settings& settings);
-void validate(const Mesh& mesh, const BodySettings& body);
+/// `mesh_is_known`: it was found to be one that a body may have.
+void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known);
 void validate(const Sphere& sphere, const BodySettings& body);
 void validate(const Capsule& capsule, const BodySettings& body);
 void validate(const Cylinder& cylinder, const BodySettings& body);

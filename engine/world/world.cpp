@@ -80,7 +80,7 @@ void WorldState::draw(bool resting) {
 void WorldState::settle() {
     draw();
     if (!edits.places.empty()) edits.places.wake_near(model);
-    model.known_steps.clear();
+    model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
         model.clusters.clear();  // of rows that have moved
@@ -224,7 +224,8 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
 }  // namespace
 
 BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
-    validate(mesh, body);
+    const Model& model = state_->model;
+    validate(mesh, body, model.body_of_mesh(model.bodies.slot.size(), {mesh.tetrahedra, mesh.nodes}) != no_index);
     return add_valid_body(*state_, mesh, body);
 }
 

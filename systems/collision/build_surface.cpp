@@ -195,4 +195,33 @@ SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index 
     return ranges;
 }
 
+SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface) {
+    const auto after = [](const auto& column, Range rows) {
+        const Index begin = static_cast<Index>(column.size());
+        return Range{begin, begin + rows.size()};
+    };
+    const SurfaceRanges ranges{after(surface.triangles.node, like.triangles), after(surface.edges.node, like.edges),
+                               after(surface.vertices.node, like.vertices)};
+    behind.triangles = ranges.triangles.begin - like.triangles.begin;
+    behind.edges = ranges.edges.begin - like.edges.begin;
+    behind.vertices = ranges.vertices.begin - like.vertices.begin;
+    append_again(surface.triangles.node, like.triangles, [&](auto& rows) { move_on(rows, behind.nodes); });
+    append_again(surface.triangles.edge, like.triangles, [&](auto& rows) { move_on(rows, behind.edges); });
+    append_again(surface.triangles.vertex, like.triangles, [&](auto& rows) { move_on(rows, behind.vertices); });
+    append_again(surface.triangles.owned_vertices, like.triangles, [](std::uint8_t) {});
+    append_again(surface.triangles.owned_edges, like.triangles, [](std::uint8_t) {});
+    append_again(surface.triangles.element, like.triangles, [&](Index& row) { move_on(row, behind.elements); });
+    append_again(surface.edges.node, like.edges, [&](auto& rows) { move_on(rows, behind.nodes); });
+    append_again(surface.edges.triangle, like.edges, [&](auto& rows) { move_on(rows, behind.triangles); });
+    if (like.vertices.size() == 0) return ranges;
+    const Range around{surface.vertices.triangle_begin[like.vertices.begin],
+                       surface.vertices.triangle_end[like.vertices.end - 1]};
+    const Index items = static_cast<Index>(surface.vertex_triangle.size()) - around.begin;
+    append_again(surface.vertices.node, like.vertices, [&](Index& row) { move_on(row, behind.nodes); });
+    append_again(surface.vertices.triangle_begin, like.vertices, [&](Index& place) { place += items; });
+    append_again(surface.vertices.triangle_end, like.vertices, [&](Index& place) { place += items; });
+    append_again(surface.vertex_triangle, around, [&](Index& row) { move_on(row, behind.triangles); });
+    return ranges;
+}
+
 }  // namespace skerry

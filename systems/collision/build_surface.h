@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "components/append_again.h"
 #include "components/body_table.h"
 #include "components/surface_table.h"
 
@@ -37,5 +38,9 @@ struct SurfaceRanges {
 /// `first_element` are the rows that local 0 stands for (first_element may be no_index: a surface without elements).
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface);
+
+/// The same as append_surface of a body whose mesh is that of an earlier one with the rows `like`. Adds to `behind` how
+/// far it lies behind that one on the surface.
+SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
 
 }  // namespace skerry

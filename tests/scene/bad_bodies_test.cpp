@@ -1,5 +1,6 @@
 // Bodies that are refused, with what is wrong with them.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <utility>
 
 #include "skerry/world.h"
@@ -32,6 +33,23 @@ TEST_CASE("tetrahedra that lie in each other are refused by their numbers", "[sc
     inside.tetrahedra.push_back({0, 1, 2, 5});  // within the first one, on its ground
     CHECK_THROWS_WITH(world.add_body(inside, {.material = rubber}), Contains("tetrahedra 0 and 2 on the same side"));
     CHECK(world.bodies().size() == 1);
+}
+
+TEST_CASE("a mesh is looked at though one like it came before, if it is not the same", "[scene]") {
+    World world;
+    const MaterialHandle rubber = world.add_material({});
+    for (int i = 0; i < 2; ++i) CHECK_NOTHROW(world.add_body(two_sided(), {.material = rubber}));
+
+    Mesh turned = two_sided();
+    std::swap(turned.tetrahedra[1][0], turned.tetrahedra[1][1]);
+    CHECK_THROWS_WITH(world.add_body(turned, {.material = rubber, .name = "turned"}), Contains("body 'turned'"));
+    Mesh flat = two_sided();
+    flat.nodes[4].z() = 1e-300;
+    CHECK_THROWS_WITH(world.add_body(flat, {.material = rubber, .name = "flat"}), Contains("body 'flat'"));
+    // nor does the mesh make up for the rest
+    CHECK_THROWS_WITH(world.add_body(two_sided(), {.material = rubber, .position = Vec3(0, 0, NAN), .name = "nowhere"}),
+                      Contains("body 'nowhere'") && Contains("position"));
+    CHECK(world.bodies().size() == 2);
 }
 
 TEST_CASE("a mesh collider with a triangle that has a node twice is refused by its number", "[scene]") {

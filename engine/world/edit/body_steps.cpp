@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -98,7 +99,7 @@ void set_masses(Model& model, const NewBody& body, Range range) {
         nodes.inverse_mass[n] = nodes.mass[n] > 0 ? 1 / nodes.mass[n] : 0;
 }
 
-void choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
+Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     const std::span<const Vec3> position = model.nodes.rest_position;
     const Range blocks = model.bodies.blocks[static_cast<std::size_t>(row)];
     const auto step = [&] {
@@ -112,15 +113,18 @@ void choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
     // Smoothed elements are near the limit by forms; nearer to it energies of the highest frequencies are off by more.
-    if (model.body_records[static_cast<std::size_t>(row)].element != ElementKind::linear) return;
+    const Real by_either = by_forms > by_shares ? by_forms : by_shares;
+    if (model.body_records[static_cast<std::size_t>(row)].element != ElementKind::linear) return by_either;
     constexpr Real least_gain = 1.1;  // for which a body is looked at in two ways where it is strained
     const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
     const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
     kernels().find_frame_masses(model.all_elements(), blocks, position, model.nodes.mass, products_of_frame, in_frame,
                                 bound);
-    if (step() > least_gain * std::max(by_forms, by_shares)) return;
+    if (bound.empty() || !(bound.front() > 0)) return by_either;
+    if (const Real by_frame = step(); by_frame > least_gain * by_either) return by_frame;
     std::ranges::fill(in_frame, FrameMass{});
     std::ranges::fill(bound, Real(0));
+    return by_either;
 }
 
 void forget_mass_forms(Model& model, Range blocks) {
@@ -154,45 +158,48 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
     if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; })) {
         kernels().find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
                                    rows_of(model.elements.mass_share, blocks));
-        choose_mass_forms(model, row, stiffness_sum);
+        bodies.rest_step[b] = bodies.stable_step[b] = choose_mass_forms(model, row, stiffness_sum);
+        return;
     }
     bodies.rest_step[b] = bodies.stable_step[b] = step();
 }
 
-void find_steps_once(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
-                     Column<Real>& stiffness_sum) {
+const KnownElements* known_elements(const Model& model, const NewBody& body) {
+    const auto fits = [&](const KnownElements& known) {
+        const auto b = static_cast<std::size_t>(known.body);
+        if (known.element != body.element || !model.has_mesh(b, {body.tetrahedra, body.nodes})) return false;
+        const std::span<const Index> material = model.body_records[b].tetrahedron_material;
+        for (std::size_t t = 0; t < body.tetrahedra.size(); ++t)
+            if (body.material_of(t) != (material.empty() ? model.bodies.material[b] : material[t])) return false;
+        return true;
+    };
+    if (body.kind != BodyKind::deformable || body.has_frame()) return nullptr;
+    const auto found = std::ranges::find_if(model.known_elements, fits);
+    return found == model.known_elements.end() ? nullptr : &*found;
+}
+
+void take_steps(const KnownElements& known, Index row, Model& model) {
+    const Range blocks = model.bodies.blocks[static_cast<std::size_t>(row)];
+    KnownElements::for_each_column(known, model.elements, [&](const auto& of_mesh, auto& column) {
+        std::ranges::copy(of_mesh, rows_of(column, blocks).begin());
+    });
+    model.bodies.rest_step[static_cast<std::size_t>(row)] = known.rest_step;
+}
+
+void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places) {
     const auto b = static_cast<std::size_t>(row);
     const Range blocks = model.bodies.blocks[b];
     const auto& levels = model.bodies.level_count[b];
-    if (body.kind != BodyKind::deformable || zones.empty() ||
-        std::any_of(levels.begin() + 1, levels.end(), [](Index count) { return count > 0; })) {
-        find_steps(model, row, body, zones, stiffness_sum);
+    if (body.kind != BodyKind::deformable || body.has_frame() ||
+        std::any_of(levels.begin() + 1, levels.end(), [](Index count) { return count > 0; }))
         return;
-    }
-    const auto has_material = [&](const KnownSteps& known) {
-        for (std::size_t t = 0; t < known.material.size(); ++t)
-            if (known.material[t] != body.material_of(t)) return false;
-        return true;
-    };
-    for (KnownSteps& known : model.known_steps) {
-        if (known.element != body.element || !std::ranges::equal(known.nodes, body.nodes) ||
-            !std::ranges::equal(known.tetrahedra, body.tetrahedra) || !has_material(known))
-            continue;
-        known.for_each_column(model.elements, [&](const auto& of_mesh, auto& column) {
-            std::ranges::copy(of_mesh, rows_of(column, blocks).begin());
-        });
-        model.bodies.rest_step[b] = model.bodies.stable_step[b] = known.rest_step;
-        return;
-    }
-    find_steps(model, row, body, zones, stiffness_sum);
     constexpr std::size_t most_known = 64;  // a mesh that comes is compared with so many
-    if (model.known_steps.size() == most_known) model.known_steps.erase(model.known_steps.begin());
-    KnownSteps& known = model.known_steps.emplace_back();
-    known.nodes.assign(body.nodes.begin(), body.nodes.end());
-    known.tetrahedra.assign(body.tetrahedra.begin(), body.tetrahedra.end());
-    for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) known.material.push_back(body.material_of(t));
+    if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
+    KnownElements& known = model.known_elements.emplace_back();
+    known.body = row;
     known.element = body.element;
-    known.for_each_column(model.elements, [&](auto& of_mesh, const auto& column) {
+    known.places = std::move(places);
+    KnownElements::for_each_column(known, model.elements, [&](auto& of_mesh, const auto& column) {
         of_mesh.resize(static_cast<std::size_t>(blocks.size()));
         std::ranges::copy(rows_of(column, blocks), of_mesh.begin());
     });

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -144,21 +145,26 @@ void erase_rows(auto& table, Range gone) {
     table.for_each_column([gone](const char*, auto& column, ColumnRole) { column.erase({&gone, 1}); });
 }
 
-/// A new body as the tables have it: rows, and which element of the list stands at each place of its blocks.
+/// A new body as the tables have it: rows, and where the elements of the list stand.
 struct BodyRows {
     Index row;
     Range nodes, tetrahedra;
+    ElementPlaces places;
     AppendedElements elements;
 };
 
-/// Appends the elements of a body; `level` of each, or none: all 0.
-AppendedElements append_elements_of(Model& model, const ElementList& list, std::span<const std::uint8_t> level,
-                                    const BodyRows& rows) {
+/// Appends the elements of a body at rows.places; `level` of each, or none: all 0.
+void append_elements_of(Model& model, const ElementList& list, std::span<const std::uint8_t> level, BodyRows& rows) {
+    rows.elements =
+        append_elements(list, rows.places, level, rows.nodes.begin, rows.row, model.elements, model.element_nodes);
+    const Range blocks = rows.elements.blocks;
+    start_mass_shares(model.all_elements(), blocks, rows_of(model.elements.mass_share, blocks));
+}
+
+ElementPlaces places_of(const Model& model, const ElementList& list, std::span<const std::uint8_t> level,
+                        const BodyRows& rows) {
     const BlockOrder order = model.settings.multirate ? BlockOrder::compact : BlockOrder::fans;
-    AppendedElements appended = append_elements(list, rows_of(model.nodes.rest_position, rows.nodes), level, order,
-                                                rows.nodes.begin, rows.row, model.elements, model.element_nodes);
-    start_mass_shares(model.all_elements(), appended.blocks, rows_of(model.elements.mass_share, appended.blocks));
-    return appended;
+    return find_places(list, rows_of(model.nodes.rest_position, rows.nodes), level, order);
 }
 
 /// Smoothed elements gain energy where neighbours have impulses at several rates.
@@ -197,15 +203,24 @@ void sort_by_level(Model& model, const NewBody& body, const ElementList& list, s
 
     erase_rows(model.element_nodes, rows.elements.nodes);
     erase_rows(model.elements, blocks);
-    rows.elements = append_elements_of(model, list, level, rows);
+    rows.places = places_of(model, list, level, rows);
+    append_elements_of(model, list, level, rows);
     find_viscous_times(rows_of(model.elements.level, rows.elements.blocks), step,
                        rows_of(model.elements.viscous_time, rows.elements.blocks));
 }
 
-/// The triangles that the user gave, or the boundary of the tetrahedra; local nodes.
-std::vector<std::array<Index, 3>> outline(const NewBody& body) {
+/// The triangles that the user gave, or the boundary of the tetrahedra, which the body has among its rows unless it is
+/// round; local nodes.
+std::vector<std::array<Index, 3>> outline(const Model& model, std::size_t b, const NewBody& body) {
     std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
-    for (const BoundaryTriangle& triangle : boundary_triangles(body.tetrahedra)) triangles.push_back(triangle.node);
+    if (body.core_nodes > 0) {
+        for (const BoundaryTriangle& triangle : boundary_triangles(body.tetrahedra)) triangles.push_back(triangle.node);
+    } else if (!body.tetrahedra.empty()) {
+        for (const auto& [i, j, k] : rows_of(model.surface.triangles.node, model.bodies.triangles[b])) {
+            const Index first = model.bodies.nodes[b].begin;
+            triangles.push_back({i - first, j - first, k - first});
+        }
+    }
     return triangles;
 }
 
@@ -235,7 +250,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const Range nodes = append_nodes(model, body, row);
     stiffness_sum.resize(model.nodes.position.size());
     set_masses_and_motion(model, body, nodes);
-    BodyRows rows{row, nodes, {}, {}};
+    BodyRows rows{row, nodes, {}, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
     // what moves as rigid bodies do has tetrahedra, and no elements
@@ -243,8 +258,10 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     // As they lie in the mesh, until all that does not depend on it is known: bodies of one mesh have the same then.
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
-    rows.elements = append_elements_of(model, list, {}, rows);
-    if (may_have_levels(model, zones)) sort_by_level(model, body, list, stiffness_sum, rows);
+    const KnownElements* const known = known_elements(model, body);
+    rows.places = known ? known->places : places_of(model, list, {}, rows);
+    append_elements_of(model, list, {}, rows);
+    if (!known && may_have_levels(model, zones)) sort_by_level(model, body, list, stiffness_sum, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;
@@ -276,18 +293,24 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
          .element = kind_of(implicit ? all_zones : zones),
          .asked = body.element,
          .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
-         .surface = outline(body),
+         .surface = {body.triangles.begin(), body.triangles.end()},
          .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},
          .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
     if (implicit) model.stiffen(b);
     model.settled = false;
     model.append_outline(b);
+    model.body_records[b].surface = outline(model, b, body);
     bodies.mean_edge[b] = body.core_nodes > 0 ? mean_edge_length(model.body_records[b].surface, body.nodes)
                                               : mean_edge_length(model, bodies.edges[b]);
     bodies.contact_distance[b] =
         body.contact_distance >= 0 ? body.contact_distance : default_contact_distance * bodies.mean_edge[b];
     bodies.min_altitude[b] = smallest_altitude(body);
-    find_steps_once(model, row, body, zones, stiffness_sum);
+    if (known) {
+        take_steps(*known, row, model);
+    } else {
+        find_steps(model, row, body, zones, stiffness_sum);
+        remember_elements(model, row, body, std::move(rows.places));
+    }
     turn_elements(body.rotation, blocks, model.elements, model.element_nodes);
     // to the last bit what a look finds that comes before the body has moved
     bodies.stable_step[b] =

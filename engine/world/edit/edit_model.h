@@ -75,21 +75,23 @@ RoundMass round_mass(const Model& model, const NewBody& body);
 /// Adds the masses of the tetrahedra to those of the nodes, which are free then.
 void set_masses(Model& model, const NewBody& body, Range nodes);
 /// Finds the mass forms of a body of one level, whose masses are shared, and of linear elements the masses in its frame
-/// (mass_forms.h, frame_masses.h), and leaves those out that do not make its step at rest longer.
-void choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum);
+/// (mass_forms.h, frame_masses.h), and leaves those out that do not make its step at rest longer. Returns that step, s.
+Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum);
 /// Takes both away.
 void forget_mass_forms(Model& model, Range blocks);
 /// How the elements of a body relax, how they share its masses and which step they stand at rest. Its elements are as
 /// new.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
                 Column<Real>& stiffness_sum);
-/// The same of a new body whose elements lie as its mesh does: of bodies of one mesh and material that come one after
-/// the other once.
-void find_steps_once(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
-                     Column<Real>& stiffness_sum);
 /// The same after its materials have changed, all that follows from the old ones forgotten. Not for elements of several
 /// levels.
 void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum);
+/// What bodies that came before have found out for a new one of their mesh, materials and element; nullptr: nothing.
+const KnownElements* known_elements(const Model& model, const NewBody& body);
+/// In place of find_steps, of a body whose elements lie as its mesh does.
+void take_steps(const KnownElements& known, Index row, Model& model);
+/// For those that come: of a new body after find_steps, unless it has several levels. `places` of its elements.
+void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
 
 // edit_colliders.cpp; `now` is the time at which they come, s
 /// What is not given is below zero.

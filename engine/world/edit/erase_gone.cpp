@@ -191,6 +191,7 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     model.loaded = model.loaded_bodies > 0;
     truncate_patches(model.bodies.blocks[first].begin, model.bodies.nodes[first].begin, model.patches);
     renumber_clusters(moves, model, model.clusters);
+    model.known_elements.clear();
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
         if (moves.body_now[b] != no_index) RowsOfBody(model, b, moves.down[b]).renumber();
     const OfBodyTables<std::vector<Range>>& gone = moves.gone;

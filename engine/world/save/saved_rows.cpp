@@ -160,7 +160,7 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) 
         if (!parts.tetrahedra.empty())
             validate({.nodes = {parts.nodes.begin(), parts.nodes.end()},
                       .tetrahedra = {parts.tetrahedra.begin(), parts.tetrahedra.end()}},
-                     BodySettings{});
+                     BodySettings{}, false);
         else
             validate(
                 SurfaceMesh{{parts.nodes.begin(), parts.nodes.end()}, {parts.surface.begin(), parts.surface.end()}},

@@ -1,6 +1,7 @@
 #include "engine/world/state/model.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "systems/collision/build_surface.h"
 #include "systems/collision/tree/bvh.h"
@@ -205,10 +206,24 @@ void Model::rebuild_clusters(std::span<const std::uint8_t> body_changed) {
     skerry::rebuild_clusters(all_elements(), inputs_of_clusters(*this), body_changed, clusters);
 }
 
+bool Model::has_mesh(std::size_t body, const RestMesh& mesh) const {
+    return std::ranges::equal(body_records[body].tetrahedra, mesh.tetrahedra) &&
+           std::ranges::equal(rows_of(nodes.rest_position, bodies.nodes[body]), mesh.position);
+}
+
+Index Model::body_of_mesh(std::size_t end, const RestMesh& mesh) const {
+    constexpr std::size_t most_looked_at = 16;
+    if (mesh.tetrahedra.empty()) return no_index;
+    for (std::size_t b = end; b > 0 && b + most_looked_at > end; --b)
+        if (bodies.core_nodes[b - 1] == 0 && has_mesh(b - 1, mesh)) return static_cast<Index>(b - 1);
+    return no_index;
+}
+
 void Model::append_outline(std::size_t body) {
     const BodyRecord& record = body_records[body];
     const Index core = bodies.core_nodes[body];
     const bool has_tetrahedra = core == 0 && !record.tetrahedra.empty();
+    if (has_tetrahedra && append_outline_again(body)) return;
     std::vector<BoundaryTriangle> triangles;
     if (core > 0) {
         const Index end = core == 2 ? 1 : 0;
@@ -227,6 +242,25 @@ void Model::append_outline(std::size_t body) {
     append_leaf_features(tree.leaves, surface.triangles, bvh_leaves);
     bodies.bvh_nodes[body] = tree.nodes;
     bodies.bvh_leaves[body] = tree.leaves;
+}
+
+bool Model::append_outline_again(std::size_t body) {
+    const Index found = body_of_mesh(
+        body, {body_records[body].tetrahedra, rows_of(std::as_const(nodes).rest_position, bodies.nodes[body])});
+    if (found == no_index) return false;
+    const auto like = static_cast<std::size_t>(found);
+    const auto blocks_behind = bodies.tetrahedron_blocks[body].begin - bodies.tetrahedron_blocks[like].begin;
+    RowsBehind behind{bodies.nodes[body].begin - bodies.nodes[like].begin, blocks_behind * element_lanes};
+    const SurfaceRanges ranges =
+        append_surface_again({bodies.triangles[like], bodies.edges[like], bodies.vertices[like]}, behind, surface);
+    bodies.triangles[body] = ranges.triangles;
+    bodies.edges[body] = ranges.edges;
+    bodies.vertices[body] = ranges.vertices;
+    const BvhRanges tree = append_bvh_again({bodies.bvh_nodes[like], bodies.bvh_leaves[like]}, behind,
+                                            nodes.rest_position, bvh, bvh_leaves);
+    bodies.bvh_nodes[body] = tree.nodes;
+    bodies.bvh_leaves[body] = tree.leaves;
+    return true;
 }
 
 void Model::rebuild_outlines() {

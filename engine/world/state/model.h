@@ -26,12 +26,13 @@
 #include "components/rigid_body_table.h"
 #include "components/step_watch.h"
 #include "components/surface_table.h"
-#include "engine/world/state/known_steps.h"
+#include "engine/world/state/known_elements.h"
 #include "skerry/mesh.h"
 #include "skerry/settings.h"
 #include "skerry/world.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
+#include "systems/dynamics/kinds/element_list.h"
 
 namespace skerry {
 
@@ -89,7 +90,7 @@ struct Model {
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
-    std::vector<KnownSteps> known_steps;           // of the bodies that came since the world was settled
+    std::vector<KnownElements> known_elements;     // of bodies that came since the world was settled
 
     Column<Real> body_mass;  // kg, of all nodes of a body, held ones, too; derived: extend_derived
     // bodies, colliders or settings have changed since it was last decided which elements are implicit
@@ -159,9 +160,16 @@ struct Model {
     void rebuild_clusters();
     void rebuild_clusters(std::span<const std::uint8_t> body_changed);
 
+    /// Whether a body has this mesh, to the last bit.
+    bool has_mesh(std::size_t body, const RestMesh& mesh) const;
+    /// The last of a few bodies before row `end` that has this mesh, or no_index.
+    Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;
+
     /// Surface and tree of one body, from its record and its shape at rest; the body must be the last that has rows in
-    /// these tables.
+    /// these tables. What one just before it with the same mesh has is not found again.
     void append_outline(std::size_t body);
+    /// The same by rows of a body just before it that has its mesh; false: there is none, and nothing was done.
+    bool append_outline_again(std::size_t body);
     /// The same for all bodies, in place of what there is.
     void rebuild_outlines();
 

@@ -107,6 +107,37 @@ void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhL
     }
 }
 
+BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
+                           BvhTable& bvh, BvhLeafTable& leaves) {
+    const auto first_node = static_cast<Index>(bvh.node.size()),
+               first_leaf = static_cast<Index>(leaves.triangle.size());
+    const BvhRanges ranges{{first_node, first_node + like.nodes.size()}, {first_leaf, first_leaf + like.leaves.size()}};
+    const Index nodes_on = ranges.nodes.begin - like.nodes.begin, leaves_on = ranges.leaves.begin - like.leaves.begin;
+    append_again(bvh.node, like.nodes, [&](BvhNode& node) {
+        move_on(node.skip, nodes_on);
+        move_on(node.right, nodes_on);
+        move_on(node.leaf, leaves_on);
+    });
+    append_again(leaves.triangle, like.leaves, [&](LeafTriangles& rows) { move_on(rows, behind.triangles); });
+    append_again(leaves.nodes, like.leaves, [&](LeafNodes& nodes) {
+        for (auto& corner : nodes.corner) move_on(corner, behind.nodes);
+        for (std::size_t i = 0; i < LeafNodes::most; ++i) move_on(nodes.node[i], behind.nodes);
+    });
+    append_again(leaves.features, like.leaves, [&](LeafFeatures& features) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(features.edge_count); ++i) {
+            move_on(features.edge[i].row, behind.edges);
+            move_on(features.edge[i].node, behind.nodes);
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(features.point_count); ++i) {
+            move_on(features.point[i].row, behind.vertices);
+            move_on(features.point[i].node, behind.nodes);
+        }
+    });
+    bvh.box.resize(bvh.node.size());
+    refit_bvh(ranges.nodes, bvh.node, leaves.nodes, position, bvh.box);
+    return ranges;
+}
+
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
                std::span<const Vec3> position, std::span<Aabb> box) {
     // Children follow their parent, so backwards is bottom-up.

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "components/append_again.h"
 #include "components/body_table.h"
 #include "components/bvh_table.h"
 #include "components/surface_table.h"
@@ -21,6 +22,11 @@ BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> tria
 
 /// Lists what the triangles of these leaves own; they are the last rows.
 void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhLeafTable& leaves);
+
+/// The same as append_bvh and append_leaf_features of a body whose mesh is that of an earlier one with the rows `like`,
+/// and which lies so far behind it.
+BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
+                           BvhTable& bvh, BvhLeafTable& leaves);
 
 /// Fits the boxes of one tree around the present positions, bottom-up.
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,

@@ -49,15 +49,10 @@ void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<s
     split_into_patches(group.subspan(half), centre, patch_size);
 }
 
-/// Where the elements of a list go.
-struct Places {
-    std::vector<Index> element;             // block by block; no_index in a lane that is left over
-    std::vector<std::uint8_t> opens_patch;  // by block
-    std::vector<NodeOrder> order;           // of the nodes of elements of four, by element of the list
-};
+}  // namespace
 
-Places places_of(const ElementList& list, std::span<const Vec3> rest_position, std::span<const std::uint8_t> level,
-                 BlockOrder in_patch) {
+ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position,
+                          std::span<const std::uint8_t> level, BlockOrder in_patch) {
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
@@ -79,7 +74,7 @@ Places places_of(const ElementList& list, std::span<const Vec3> rest_position, s
         return std::pair(list.part[at], list.material[at]);
     };
     const auto key = [&](Index e) { return std::pair(kind(e), list.nodes_of(static_cast<std::size_t>(e))); };
-    Places places;
+    ElementPlaces places;
     places.order.assign(list.size(), {0, 1, 2, 3});
     std::size_t first = 0;
     for (const std::size_t size : patch_size) {
@@ -105,8 +100,6 @@ Places places_of(const ElementList& list, std::span<const Vec3> rest_position, s
     }
     return places;
 }
-
-}  // namespace
 
 Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> rest_position) {
     const auto at = [&](std::size_t a) -> const Vec3& {
@@ -148,21 +141,38 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
                                  std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes) {
+    return append_elements(list, find_places(list, rest_position, level, order), level, first_node, body, blocks,
+                           nodes);
+}
+
+AppendedElements append_elements(const ElementList& list, const ElementPlaces& places,
+                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+                                 ElementBlockTable& blocks, ElementNodeTable& nodes) {
     SKERRY_CHECK(level.empty() || level.size() == list.size());
+    SKERRY_CHECK(places.order.size() == list.size());
     const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
-    Places places = places_of(list, rest_position, level, order);
-    AppendedElements appended{{}, {}, std::move(places.element)};
-    for (std::size_t place = 0; place < appended.element.size(); place += element_lanes) {
-        const std::span<const Index> lanes = std::span(appended.element).subspan(place, element_lanes);
+    AppendedElements appended{{}, {}, places.element};
+    const auto lanes_of = [&](std::size_t place) {
+        return std::span<const Index>(appended.element).subspan(place, element_lanes);
+    };
+    const std::size_t end_block = first_block + appended.element.size() / element_lanes;
+    blocks.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(end_block); });
+    std::size_t end_row = first_row;
+    for (std::size_t block = first_block; block < end_block; ++block) {
         std::size_t count = 0;
-        for (const Index e : lanes)
+        for (const Index e : lanes_of((block - first_block) * element_lanes))
             if (e != no_index) count = std::max(count, list.nodes_of(static_cast<std::size_t>(e)));
-        const std::size_t block = blocks.first.size(), row = nodes.node.size();
-        const auto leader = static_cast<std::size_t>(lanes[0]);
-        blocks.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(block + 1); });
-        nodes.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(row + count); });
-        blocks.first[block] = static_cast<Index>(row);
+        blocks.first[block] = static_cast<Index>(end_row);
         blocks.count[block] = static_cast<Index>(count);
+        end_row += count;
+    }
+    nodes.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(end_row); });
+    for (std::size_t block = first_block; block < end_block; ++block) {
+        const std::size_t place = (block - first_block) * element_lanes;
+        const std::span<const Index> lanes = lanes_of(place);
+        const auto row = static_cast<std::size_t>(blocks.first[block]),
+                   count = static_cast<std::size_t>(blocks.count[block]);
+        const auto leader = static_cast<std::size_t>(lanes[0]);
         blocks.body[block] = body;
         blocks.material[block] = list.material[leader];
         blocks.part[block] = list.part[leader];

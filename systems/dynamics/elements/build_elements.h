@@ -8,6 +8,7 @@
 
 #include "components/body_table.h"
 #include "components/element_table.h"
+#include "systems/dynamics/elements/element_fans.h"
 #include "systems/dynamics/kinds/element_list.h"
 
 namespace skerry {
@@ -29,17 +30,32 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
 /// one of its nodes.
 enum class BlockOrder : std::uint8_t { fans, compact };
 
+/// Where the elements of a list go.
+struct ElementPlaces {
+    std::vector<Index> element;             // block by block; no_index in a lane that is left over
+    std::vector<std::uint8_t> opens_patch;  // by block
+    std::vector<NodeOrder> order;           // of the nodes of elements of four, by element of the list
+};
+
 struct AppendedElements {
     Range blocks, nodes;         // rows
     std::vector<Index> element;  // of the list, by place in the blocks; no_index in a lane that is left over
 };
 
-/// Appends the elements of a new body, patch after patch: compact groups of up to elements_per_patch in space, found by
+/// Elements stand patch after patch: compact groups of up to elements_per_patch in space, found by
 /// halving the longest side again and again. Within a patch blocks have elements of one part and one material, those
 /// with as many nodes together, so that few rows are left over; those of four nodes stand as `order` says, the others
 /// keep their order.
 /// `rest_position`: m, of the body's nodes. `level` of each element of the list, or none: all 0; elements are sorted by
 /// level, and a patch has one. Guards have patches of their own, behind the others of their level.
+ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position,
+                          std::span<const std::uint8_t> level, BlockOrder order);
+
+/// Appends the elements of a new body at their places, which were found for a list with the same nodes and `level`.
+AppendedElements append_elements(const ElementList& list, const ElementPlaces& places,
+                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+                                 ElementBlockTable& blocks, ElementNodeTable& nodes);
+/// The same at places that are found here.
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
                                  std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);

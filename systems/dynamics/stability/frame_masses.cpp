@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "components/check.h"
+#include "components/lanes.h"
 #include "components/split_mix.h"
 #include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/mass_search.h"
@@ -21,7 +23,7 @@ namespace {
 constexpr Real longer_in_frame = 2;  // steps, than what elements bound one by one
 
 // Plain sums: the bits do not depend on how a library vectorises them.
-Real product_of(const Vec3& a, const Vec3& b) {
+Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -57,23 +59,26 @@ public:
     Real highest() const {
         constexpr int most_products = 40;
         SplitMix noise(1);
-        std::vector<Vec3> before(root_.size(), Vec3::Zero()), vector(root_.size()), product(root_.size());
+        const Factors factors = factors_of_elements();
+        std::vector<Real4> before(root_.size(), Real4{}), vector(root_.size(), Real4{}), product(root_.size());
         Real size = 0;
         for (std::size_t n = 0; n < vector.size(); ++n) {
             for (int i = 0; i < 3; ++i) vector[n][i] = root_[n] > 0 ? noise.symmetric() : 0;
             size += product_of(vector[n], vector[n]);
         }
         if (!(size > 0)) return 0;
-        for (Vec3& x : vector) x /= std::sqrt(size);
+        size = std::sqrt(size);
+        for (Real4& x : vector) x /= size;
         std::vector<Real> diagonal, beside;
         for (int step = 0; step < most_products; ++step) {
-            multiply(vector, product);
+            multiply(factors, vector, product);
             Real along = 0;
             for (std::size_t n = 0; n < vector.size(); ++n) along += product_of(vector[n], product[n]);
             diagonal.push_back(along);
+            const Real last = beside.empty() ? 0 : beside.back();
             Real rest = 0;
             for (std::size_t n = 0; n < vector.size(); ++n) {
-                product[n] -= along * vector[n] + (beside.empty() ? 0 : beside.back()) * before[n];
+                product[n] -= along * vector[n] + last * before[n];
                 rest += product_of(product[n], product[n]);
             }
             rest = std::sqrt(rest);
@@ -202,24 +207,48 @@ private:
         });
     }
 
-    /// product = M^-1/2 K M^-1/2 vector
-    void multiply(const std::vector<Vec3>& vector, std::vector<Vec3>& product) const {
-        std::ranges::fill(product, Vec3::Zero());
+    /// Of the elements that take mass, one after the other: what a product needs of them.
+    struct Factors {
+        struct Element {
+            Real shear, volumetric;
+            std::size_t end;  // of its corners
+        };
+        struct Corner {
+            Real4 gradient;  // by the root of the inverse mass of its node; then a zero
+            std::size_t node;
+        };
+        std::vector<Element> element;
+        std::vector<Corner> corner;
+    };
+    Factors factors_of_elements() const {
+        Factors factors;
         for_each_element([&](const Element& e, std::size_t) {
-            std::array<Vec3, 3> slope{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // of vector, by its components
             for (Index k = 0; k < e.count; ++k) {
                 const Vec3 g = root_[e.node(k)] * e.gradient(k);
-                for (std::size_t i = 0; i < 3; ++i) slope[i] += vector[e.node(k)][static_cast<Eigen::Index>(i)] * g;
+                factors.corner.push_back({Real4{g[0], g[1], g[2], 0}, e.node(k)});
             }
-            const Real pressure = e.volumetric * (slope[0][0] + slope[1][1] + slope[2][2]);
-            for (Index k = 0; k < e.count; ++k) {
-                const Vec3 g = root_[e.node(k)] * e.gradient(k);
-                for (std::size_t i = 0; i < 3; ++i) {
-                    const auto at = static_cast<Eigen::Index>(i);
-                    product[e.node(k)][at] += e.shear * product_of(slope[i], g) + pressure * g[at];
-                }
-            }
+            factors.element.push_back({e.shear, e.volumetric, factors.corner.size()});
         });
+        return factors;
+    }
+
+    /// product = M^-1/2 K M^-1/2 vector
+    static void multiply(const Factors& factors, const std::vector<Real4>& vector, std::vector<Real4>& product) {
+        std::ranges::fill(product, Real4{});
+        std::size_t first = 0;
+        for (const Factors::Element& e : factors.element) {
+            const std::span<const Factors::Corner> corners = std::span(factors.corner).subspan(first, e.end - first);
+            first = e.end;
+            std::array<Real4, 3> slope{};  // of vector, by direction
+            for (const Factors::Corner& corner : corners)
+                for (int i = 0; i < 3; ++i)
+                    slope[static_cast<std::size_t>(i)] += corner.gradient[i] * vector[corner.node];
+            const Real pressure = e.volumetric * (slope[0][0] + slope[1][1] + slope[2][2]);
+            for (const Factors::Corner& corner : corners) {
+                const Real4& g = corner.gradient;
+                product[corner.node] += e.shear * (slope[0] * g[0] + slope[1] * g[1] + slope[2] * g[2]) + pressure * g;
+            }
+        }
     }
 
     /// The highest eigenvalue of a symmetric matrix with these numbers on its diagonal and beside it: of how many

@@ -1,7 +1,6 @@
 #include "systems/dynamics/stability/mass_search.h"
 
 #include <algorithm>
-#include <array>
 
 #include "systems/dynamics/stability/stiffness_share.h"
 #include "systems/material/relaxation.h"
@@ -58,10 +57,12 @@ void sort_along(std::span<const Vec3> position, std::span<Index> nodes) {
 
 void BandDecomposition::load_group(const BandMatrix& matrix, std::size_t of_group, Real limit) {
     const std::size_t first = of_group * matrix.group;
-    for (std::size_t i = 0; i < matrix.group; ++i) std::fill_n(row(first + i), stride_, Real{0});
-    matrix.add_rows(of_group, row(first), stride_);
+    rows_of_group_.assign(matrix.group * matrix.width, 0);
+    matrix.add_rows(of_group, rows_of_group_.data(), matrix.width);
     for (std::size_t i = 0; i < matrix.group; ++i) {
         Real* const to = row(first + i);
+        std::fill_n(to - (first + i) % row_step, stride_, Real{0});
+        std::copy_n(&rows_of_group_[i * matrix.width], matrix.width, to);
         std::size_t used = matrix.width;
         while (used > 1 && to[used - 1] == 0) --used;
         to[0] = limit - to[0];
@@ -70,14 +71,44 @@ void BandDecomposition::load_group(const BandMatrix& matrix, std::size_t of_grou
     }
 }
 
+bool BandDecomposition::Pivots::reach(std::size_t r) const {
+    for (std::size_t p = 0; p < pivots; ++p)
+        if (factor(p, r) != 0) return true;
+    return false;
+}
+
+void BandDecomposition::take(const Pivots& of, std::size_t r) {
+    const std::size_t first = r - r % row_step, count = (of.end - first + row_step - 1) / row_step * row_step;
+    const Real *const a = of.column(0, first), *const b = of.column(1, first), *const c = of.column(2, first),
+                      *const d = of.column(3, first);
+    const Real of_a = of.factor(0, r), of_b = of.factor(1, r), of_c = of.factor(2, r), of_d = of.factor(3, r);
+    Real* const to = row(r) - r % row_step;
+#pragma omp simd
+    for (std::size_t j = 0; j < count; ++j) to[j] = (((to[j] - of_a * a[j]) - of_b * b[j]) - of_c * c[j]) - of_d * d[j];
+}
+
+void BandDecomposition::take_from_two(const Pivots& of, std::size_t r) {
+    const std::size_t first = r - r % row_step, count = (of.end - first + row_step - 1) / row_step * row_step;
+    const Real *const a = of.column(0, first), *const b = of.column(1, first), *const c = of.column(2, first),
+                      *const d = of.column(3, first);
+    const Real of_a = of.factor(0, r), of_b = of.factor(1, r), of_c = of.factor(2, r), of_d = of.factor(3, r);
+    const Real next_a = of.factor(0, r + 1), next_b = of.factor(1, r + 1), next_c = of.factor(2, r + 1),
+               next_d = of.factor(3, r + 1);
+    Real *const to = row(r) - r % row_step, *const next = row(r + 1) - (r + 1) % row_step;
+#pragma omp simd
+    for (std::size_t j = 0; j < count; ++j) {
+        to[j] = (((to[j] - of_a * a[j]) - of_b * b[j]) - of_c * c[j]) - of_d * d[j];
+        next[j] = (((next[j] - next_a * a[j]) - next_b * b[j]) - next_c * c[j]) - next_d * d[j];
+    }
+}
+
 bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
-    constexpr std::size_t pivots = 4;  // at once: what they take from a row is loaded and stored once
     const Real rounding = 1e-10 * limit;
     const std::size_t groups = matrix.size / matrix.group;
-    // Whole groups: none is torn where the window ends. A row reaches `pivots - 1` beyond itself, where there are
-    // zeros.
+    // Whole groups: none is torn where the window ends. A row begins up to a register before its diagonal and ends up
+    // to `pivots - 1` and a register behind the band: what lies there is computed along, and counts for nothing.
     rows_ = ((matrix.width + 2 * pivots) / matrix.group + 2) * matrix.group;
-    stride_ = (matrix.width + pivots + 7) / 8 * 8;
+    stride_ = (matrix.width + pivots + 3 * row_step) / row_step * row_step;
     window_.resize(rows_ * stride_);
     used_.resize(rows_);
     std::size_t loaded = 0;  // groups
@@ -85,34 +116,30 @@ bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
         const std::size_t count = std::min(pivots, matrix.size - k);
         while (loaded < groups && loaded * matrix.group < k + pivots + matrix.width)
             load_group(matrix, loaded++, limit);
-        std::array<Real*, pivots> pivot{};
-        std::array<Real, pivots> inverse{};
-        std::size_t end = k + 1;  // of what the pivots reach
+        Pivots pivot{.first = k, .end = k + 1};
         for (std::size_t p = 0; p < count; ++p) {
-            pivot[p] = row(k + p);
+            Real* const own = pivot.row[p] = row(k + p);
             // what the pivots before it take from it
             for (std::size_t before = 0; before < p; ++before) {
-                const Real factor = pivot[before][p - before] * inverse[before];
-                for (std::size_t j = k + p; j < end; ++j)
-                    pivot[p][j - (k + p)] -= factor * pivot[before][j - (k + before)];
-            }
-            if (!(pivot[p][0] > rounding)) return false;
-            inverse[p] = 1 / pivot[p][0];
-            end = std::min(std::max(end, k + p + used_[(k + p) % rows_]), matrix.size);
-        }
-        for (std::size_t r = k + count; r < end; ++r) {
-            const std::size_t at = r - k;
-            const Real *const a = pivot[0] + at, *const b = pivot[1] + (at - 1), *const c = pivot[2] + (at - 2),
-                              *const d = pivot[3] + (at - 3);
-            const Real of_a = a[0] * inverse[0], of_b = b[0] * inverse[1], of_c = c[0] * inverse[2],
-                       of_d = d[0] * inverse[3];
-            if (of_a == 0 && of_b == 0 && of_c == 0 && of_d == 0) continue;
-            Real* const to = row(r);
+                const Real factor = pivot.factor(before, k + p);
+                const Real* const of = pivot.column(before, k + p);
 #pragma omp simd
-            for (std::size_t j = 0; j < end - r; ++j)
-                to[j] = (((to[j] - of_a * a[j]) - of_b * b[j]) - of_c * c[j]) - of_d * d[j];
-            std::size_t& used = used_[r % rows_];
-            used = std::max(used, end - r);
+                for (std::size_t j = 0; j < pivot.end - (k + p); ++j) own[j] -= factor * of[j];
+            }
+            if (!(own[0] > rounding)) return false;
+            pivot.inverse[p] = 1 / own[0];
+            pivot.end = std::min(std::max(pivot.end, k + p + used_[(k + p) % rows_]), matrix.size);
+        }
+        const auto use = [&](std::size_t r) { used_[r % rows_] = std::max(used_[r % rows_], pivot.end - r); };
+        for (std::size_t r = k + count; r < pivot.end; ++r) {
+            if (!pivot.reach(r)) continue;
+            use(r);
+            if (r % row_step == row_step - 1 || r + 1 == pivot.end || !pivot.reach(r + 1)) {
+                take(pivot, r);
+                continue;
+            }
+            use(r + 1);
+            take_from_two(pivot, r++);
         }
     }
     return true;

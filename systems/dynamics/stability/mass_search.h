@@ -1,10 +1,12 @@
 // What the searches for the masses that elements take have in common (mass_forms.h, frame_masses.h).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "components/column.h"
 #include "components/ragged.h"
 #include "jobs/function_ref.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
@@ -84,11 +86,32 @@ public:
     bool is_below(const BandMatrix& matrix, Real limit);
 
 private:
+    static constexpr std::size_t pivots = 4;    // at once: what they take from a row is loaded and stored once
+    static constexpr std::size_t row_step = 8;  // numbers of the widest register
+
+    /// Pivots: rows from `first` on, the columns at which they begin being theirs.
+    struct Pivots {
+        std::size_t first;
+        std::array<Real*, pivots> row{};
+        std::array<Real, pivots> inverse{};
+        std::size_t end;  // of what they reach
+
+        Real factor(std::size_t p, std::size_t r) const { return row[p][r - (first + p)] * inverse[p]; }
+        bool reach(std::size_t r) const;
+        const Real* column(std::size_t p, std::size_t c) const {
+            return row[p] + (static_cast<std::ptrdiff_t>(c) - static_cast<std::ptrdiff_t>(first + p));
+        }
+    };
     void load_group(const BandMatrix& matrix, std::size_t of_group, Real limit);
-    Real* row(std::size_t r) { return &window_[(r % rows_) * stride_]; }
+    /// What the pivots take from a row, or from two: they are loaded once then.
+    void take(const Pivots& pivots_of, std::size_t r);
+    void take_from_two(const Pivots& pivots_of, std::size_t r);
+    /// Column r of row r. Those of all rows lie so that registers of one column lie alike.
+    Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
     std::size_t rows_ = 0, stride_ = 0;  // of the window
-    std::vector<Real> window_;
+    Column<Real> window_;
+    std::vector<Real> rows_of_group_;
     std::vector<std::size_t> used_;  // numbers of each of its rows, behind which there are zeros
 };
 

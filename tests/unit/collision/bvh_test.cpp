@@ -54,6 +54,75 @@ TEST_CASE("a tree holds each triangle of its body in one lane of one leaf", "[un
     CHECK(world.bvh.node[nodes.begin].skip == nodes.end);
 }
 
+namespace {
+
+/// Surface and trees of bodies of one mesh, one behind the other.
+struct Outlines {
+    SurfaceTables surface;
+    BvhTable bvh;
+    BvhLeafTable leaves;
+    std::vector<Vec3> position;
+
+    /// The rows of all that names some, one after the other.
+    std::vector<Index> rows() {
+        std::vector<Index> all;
+        const auto add = [&](const auto& rows) { all.insert(all.end(), rows.begin(), rows.end()); };
+        surface.for_each_column([&](const char*, auto& column, ColumnRole) {
+            for (const auto& row : column) {
+                if constexpr (requires { row.begin(); })
+                    add(row);
+                else
+                    all.push_back(row);
+            }
+        });
+        for (const BvhNode& node : bvh.node) add(std::array{node.skip, node.right, node.leaf, node.count});
+        for (const LeafTriangles& triangles : leaves.triangle) add(triangles);
+        for (const LeafNodes& nodes : leaves.nodes) {
+            for (const auto& corner : nodes.corner) add(corner);
+            add(std::span(nodes.node).first(static_cast<std::size_t>(nodes.count)));
+        }
+        for (const LeafFeatures& features : leaves.features) {
+            add(std::array{features.edge_count, features.point_count});
+            for (std::size_t i = 0; i < static_cast<std::size_t>(features.edge_count); ++i)
+                add(std::array{features.edge[i].row, features.edge[i].node[0], features.edge[i].node[1]});
+            for (std::size_t i = 0; i < static_cast<std::size_t>(features.point_count); ++i)
+                add(std::array{features.point[i].row, features.point[i].node});
+        }
+        return all;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a body whose mesh came before has the rows that it would have by itself", "[unit]") {
+    for (const test::SolidMesh& mesh : {test::ball_mesh(1, 4), test::box_mesh({1, 1, 1}, {1, 2, 3})}) {
+        const auto count = static_cast<Index>(mesh.nodes.size());
+        Outlines found, copied;
+        for (Outlines* of : {&found, &copied}) {
+            SurfaceRanges first;
+            BvhRanges first_tree;
+            for (Index body = 0; body < 3; ++body) {
+                of->position.insert(of->position.end(), mesh.nodes.begin(), mesh.nodes.end());
+                if (of == &copied && body > 0) {
+                    RowsBehind behind{count * body, 8 * body};
+                    append_surface_again(first, behind, of->surface);
+                    append_bvh_again(first_tree, behind, of->position, of->bvh, of->leaves);
+                    continue;
+                }
+                first = append_surface(boundary_triangles(mesh.tetrahedra), count * body, 8 * body, of->surface);
+                first_tree = append_bvh(first.triangles, of->surface.triangles.node, of->position, of->bvh, of->leaves);
+                append_leaf_features(first_tree.leaves, of->surface.triangles, of->leaves);
+            }
+        }
+        CHECK(found.rows() == copied.rows());
+        REQUIRE(found.bvh.box.size() == copied.bvh.box.size());
+        for (std::size_t row = 0; row < found.bvh.box.size(); ++row) {
+            CHECK(found.bvh.box[row].lower == copied.bvh.box[row].lower);
+            CHECK(found.bvh.box[row].upper == copied.bvh.box[row].upper);
+        }
+    }
+}
+
 TEST_CASE("the leaves of a tree own each edge and each point of their body once", "[unit]") {
     test::CollisionWorld world;
     world.add_solid(test::ball_mesh(1, 3), world.at(Vec3::Zero()), 0);

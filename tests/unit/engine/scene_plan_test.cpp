@@ -4,6 +4,7 @@
 
 #include "engine/scene/scene_plan.h"
 #include "skerry/joint.h"
+#include "skerry/mesh.h"
 #include "tests/unit/engine/scene_files.h"
 
 using namespace skerry;
@@ -34,6 +35,20 @@ TEST_CASE("a grid of copies has the same jitter every time, and another one for 
     }
     CHECK(shifts.size() == 12);
     CHECK(differs);
+}
+
+TEST_CASE("a mesh file that several bodies name is read once, by its scale", "[unit]") {
+    const TemporaryFolder folder;
+    mesh::write((folder.path() / "ball.msh").string(), mesh::ball(1, 3));
+    const ScenePlan plan = plan_scene(folder.write("f.json", R"({"materials": {"rubber": {}}, "bodies": [
+        {"mesh": {"file": "ball.msh"}, "material": "rubber"},
+        {"mesh": {"file": "ball.msh", "scale": 2}, "material": "rubber", "position": [9, 0, 0]},
+        {"mesh": {"file": "ball.msh"}, "material": "rubber", "position": [5, 0, 0]}]})"));
+    REQUIRE(plan.bodies.size() == 3);
+    CHECK(plan.meshes.size() == 2);
+    CHECK(plan.bodies[0].mesh == plan.bodies[2].mesh);
+    const Mesh &one = plan.meshes[plan.bodies[0].mesh], &twice = plan.meshes[plan.bodies[1].mesh];
+    CHECK(twice.nodes.back() == 2 * one.nodes.back());
 }
 
 TEST_CASE("without jitter a grid is exact", "[unit]") {

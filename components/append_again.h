@@ -1,0 +1,40 @@
+// Rows once more, for a body that has the same mesh as another.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "components/column.h"
+#include "components/range.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// How many rows of its tables a body lies behind another with the same mesh.
+struct RowsBehind {
+    Index nodes, elements;  // of NodeTable; of tetrahedra
+    Index triangles = 0, edges = 0, vertices = 0;
+};
+
+/// What names no row still names none.
+inline void move_on(Index& row, Index by) {
+    if (row != no_index) row += by;
+}
+template <std::size_t count>
+void move_on(std::array<Index, count>& rows, Index by) {
+    for (Index& row : rows) move_on(row, by);
+}
+
+/// Appends these rows of the column once more, each after change(row).
+template <class T>
+void append_again(Column<T>& column, Range rows, auto&& change) {
+    const std::size_t first = column.size(), count = static_cast<std::size_t>(rows.size());
+    column.resize(first + count);
+    for (std::size_t i = 0; i < count; ++i) {
+        T row = column[static_cast<std::size_t>(rows.begin) + i];
+        change(row);
+        column[first + i] = row;
+    }
+}
+
+}  // namespace skerry
