@@ -9,15 +9,21 @@
 namespace skerry {
 
 /// Sorts rows by a number of theirs from 0 to `end` - 1; those of one number stay in their order. Rows by several
-/// numbers: by the last of them first.
+/// numbers: by the last of them first. `spare`: memory to work in, which several sorts may have in common: pages that
+/// are touched for the first time cost as much as a sort.
 template <class Row>
-void counting_sort(std::vector<Row>& rows, Index end, auto&& number_of) {
+void counting_sort(std::vector<Row>& rows, std::vector<Row>& spare, Index end, auto&& number_of) {
     std::vector<std::size_t> place(static_cast<std::size_t>(end) + 1, 0);
     for (const Row& row : rows) ++place[static_cast<std::size_t>(number_of(row)) + 1];
     for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
-    std::vector<Row> sorted(rows.size());
-    for (const Row& row : rows) sorted[place[static_cast<std::size_t>(number_of(row))]++] = row;
-    rows.swap(sorted);
+    spare.resize(rows.size());
+    for (const Row& row : rows) spare[place[static_cast<std::size_t>(number_of(row))]++] = row;
+    rows.swap(spare);
+}
+template <class Row>
+void counting_sort(std::vector<Row>& rows, Index end, auto&& number_of) {
+    std::vector<Row> spare;
+    counting_sort(rows, spare, end, number_of);
 }
 
 }  // namespace skerry

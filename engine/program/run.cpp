@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <iostream>
 #include <optional>
@@ -149,13 +150,17 @@ private:
 };
 
 /// One of each mesh. Contacts find the way out of a body by its surface: where that has no two sides they may not.
-std::vector<std::string> bad_boundaries(const ScenePlan& plan) {
+std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
+    const std::vector<BodyHandle> bodies = world.bodies();  // in the order of the plan
     std::vector<bool> seen(plan.meshes.size(), false);
-    for (const BodyPlan& body : plan.bodies) {
+    for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
+        const BodyPlan& body = plan.bodies[b];
         if (seen[body.mesh]) continue;
         seen[body.mesh] = true;
-        const std::string fault = mesh::manifold_fault(boundary_triangles(plan.meshes[body.mesh].tetrahedra));
+        std::vector<BoundaryTriangle> boundary;
+        for (const std::array<Index, 3>& node : world.surface(bodies[b])) boundary.push_back({node, no_index});
+        const std::string fault = mesh::manifold_fault(boundary);
         if (!fault.empty())
             found.push_back("the boundary of body '" + body.settings.name + "' is not a closed manifold: " + fault);
     }
@@ -186,7 +191,7 @@ RunResult simulate(const RunOptions& asked) {
     }
     memory.scene = std::filesystem::absolute(options.scene);
     memory.assignments = options.overrides.assignments;
-    result.bad_boundaries = bad_boundaries(plan);
+    result.bad_boundaries = bad_boundaries(plan, world);
     result.seconds_load = loading.seconds();
     result.scene = scene.name;
     result.scene_file = options.scene.string();

@@ -67,7 +67,9 @@ struct BoundaryEdges {
             for (std::size_t k = 0; k < 3; ++k)
                 if (has_edge(triangles[t].node, k))
                     sides.push_back({edge_nodes(triangles[t].node, k), rows(t), static_cast<Index>(k)});
-        for (const std::size_t i : {1, 0}) counting_sort(sides, end, [i](const Side& side) { return side.node[i]; });
+        std::vector<Side> spare;
+        for (const std::size_t i : {1, 0})
+            counting_sort(sides, spare, end, [i](const Side& side) { return side.node[i]; });
         for (const Side& side : sides) {
             if (node.empty() || node.back() != side.node) node.push_back(side.node);
             of_triangle[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.k)] =
@@ -137,8 +139,9 @@ std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> 
             end = std::max(end, face.node[2] + 1);
             faces.push_back(face);
         }
+    std::vector<TetrahedronFace> spare;
     for (const std::size_t i : {2, 1, 0})
-        counting_sort(faces, end, [i](const TetrahedronFace& face) { return face.node[i]; });
+        counting_sort(faces, spare, end, [i](const TetrahedronFace& face) { return face.node[i]; });
     return faces;
 }
 
