@@ -8,6 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "engine/program/commands.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
@@ -330,9 +334,19 @@ int run_command_line(int argc, char** argv) {
     return exit_ok;
 }
 
+/// What is given back while a scene is loaded is had again soon: the system would clear its pages each time.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;  // bytes; the library comes to these by itself, later
+    mallopt(M_MMAP_THRESHOLD, largest_kept);
+    mallopt(M_TRIM_THRESHOLD, most_kept);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_freed_memory();
     try {
         return run_command_line(argc, argv);
     } catch (const SceneError& error) {
