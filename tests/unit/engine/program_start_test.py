@@ -3,7 +3,7 @@ import json
 import sys
 import unittest
 
-from program_case import SCENE, ProgramCase
+from program_case import ROOT, SCENE, ProgramCase
 
 
 class ProgramStartTest(ProgramCase):
@@ -62,6 +62,15 @@ class ProgramStartTest(ProgramCase):
         self.assertNotIn("shorten the step", done.stdout)
         problems = json.loads(self.skerry("inspect", self.folder / "shell.json", "--json").stdout)["problems"]
         self.assertTrue(any("contact distance" in problem for problem in problems), problems)
+
+    def test_bodies_of_one_mesh_file_are_of_one_kind_if_their_elements_are(self):
+        body = {"mesh": {"file": str(ROOT / "scenes/meshes/drop_ball.msh")}, "material": "rubber"}
+        scene = self.write("balls.json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
+            {**body, "position": [0.2 * i, 0, 0.2], "element": element}
+            for i, element in enumerate(["linear", "smoothed", "linear"])]})
+        kinds = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"]
+        self.assertEqual([kind["count"] for kind in kinds], [2, 1])
+        self.assertNotEqual(kinds[0]["stable_dt"], kinds[1]["stable_dt"])
 
     def test_a_run_says_that_a_boundary_is_no_manifold(self):
         self.write("m.node", "7 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 -1 0 0\n6 0 -1 0\n7 0 0 -1\n")
