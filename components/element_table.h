@@ -67,8 +67,8 @@ struct ElementBlockTable {
     Column<ElementLane> implicit_modulus;   // Pa, stiffness of an element that a cluster carries; 0: an explicit one
     Column<ElementRotation> rotation;       // corotational frame, the start of the next extraction
     Column<ElementRotation> rotation_next;  // this step's frame; swapped with rotation when the step is committed
-    // Green strain that the relaxing part of the stress has forgotten, and the volume strain that the bulk viscosity
-    // has; 0 where nothing is viscous (systems/material/relaxation.h)
+    // Twice the Green strain that the relaxing part of the stress has forgotten, and twice the volume strain that the
+    // bulk viscosity has; 0 where nothing is viscous (systems/material/relaxation.h)
     Column<ElementStrain> viscous_strain;
     // Of this step; swapped when the step is committed, so that between steps it is that of before the last one.
     Column<ElementStrain> viscous_strain_next;

@@ -39,10 +39,16 @@ struct Corotational {
     template <class T>
     [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& F,
                                                         const LaneMat3<T>& R) {
+        return stress(material, R, inner_product(R, F));
+    }
+    /// The same by the trace of R^T F.
+    template <class T>
+    [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& R,
+                                                        const T& trace) {
         // what cancels near rest is as large as the rounding of F and R
         const Real two_mu = 2 * material.shear_modulus;
-        const T pressure = material.lame_lambda * (inner_product(R, F) - 3.0);
-        return {T{} + two_mu, (pressure - two_mu) * R};
+        const T pressure = material.lame_lambda * (trace - 3.0);
+        return {T{} + two_mu, pressure - two_mu, R};
     }
 
     /// Above dP/dF: 2 mu X + lambda (R : X) R, and what turning the frame adds, kappa (X - R X^T R).

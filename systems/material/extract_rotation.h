@@ -26,9 +26,9 @@ template <class T>
 /// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and a the
 /// axial vector of R^T F, it turns by G^-1 a. Mueller's a / tr(S) leaves a third of the error in every pass; this
 /// leaves its cube. Returns (by lane) whether that was the last pass needed: it started safely inside the basin of the
-/// maximum and turned by less than 2e-5.
+/// maximum and turned by less than 2e-5. `trace`: tr(R^T F) of the new R, to the fourth order of the turn.
 template <class T>
-[[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q) {
+[[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
     constexpr Real settled_turn_squared = 4e-10;  // rad^2; its cube is below the rounding of F
     constexpr Real least_curvature = 1e-3;        // det G over (tr S / 3)^3, 8 at rest
     const LaneMat3<T> R = rotation_of(q);
@@ -43,12 +43,13 @@ template <class T>
     const T h00 = g11 * g22 - g12 * g12, h11 = g00 * g22 - g20 * g20, h22 = g00 * g11 - g01 * g01;
     const T h01 = g20 * g12 - g01 * g22, h12 = g01 * g20 - g00 * g12, h20 = g01 * g12 - g20 * g11;
     const T det = g00 * h00 + g01 * h01 + g20 * h20;
-    const T third = (a00 + a11 + a22) * (1.0 / 3.0);
+    const T before = a00 + a11 + a22, third = before * (1.0 / 3.0);
     const auto inside = (g00 > 0.0) & (h22 > 0.0) & (det > least_curvature * (third * third * third)) & (third > 0.0);
     const T half_inverse = inside ? 0.5 / det : T{};
     const LaneVec3<T> o{half_inverse * (h00 * axial.x + h01 * axial.y + h20 * axial.z),
                         half_inverse * (h01 * axial.x + h11 * axial.y + h12 * axial.z),
                         half_inverse * (h20 * axial.x + h12 * axial.y + h22 * axial.z)};
+    trace = before + dot(o, axial);  // half the slope along the turn, as of every quadratic
     // q <- q (1, o), o half the turn. Its length is |q| sqrt(1 + |o|^2): known before the product is, which keeps the
     // root and the division off the critical path. The first factor takes back what |q| has lost to rounding.
     const T o_squared = dot(o, o);
@@ -70,30 +71,36 @@ void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& s
 extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);
 extern template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
-/// The rotations nearest to F in all lanes of all parts, started from q. Lanes without volume keep theirs. As many
-/// passes as the slowest of them all takes.
+/// The rotations R nearest to F in all lanes of all parts, started from q. Lanes without volume keep theirs. As many
+/// passes as the slowest of them all takes. Returns tr(R^T F).
 template <class T, std::size_t N>
-[[gnu::always_inline]] inline void extract_rotations(const std::array<LaneMat3<T>, N>& F,
-                                                     const std::array<T, N>& volume,
-                                                     std::array<LaneQuaternion<T>, N>& q) {
+[[gnu::always_inline]] inline std::array<T, N> extract_rotations(const std::array<LaneMat3<T>, N>& F,
+                                                                 const std::array<T, N>& volume,
+                                                                 std::array<LaneQuaternion<T>, N>& q) {
     constexpr int max_passes = 4;  // from a warm start two are enough; what needs more is solved lane by lane
     const std::array<LaneQuaternion<T>, N> start = q;
+    std::array<T, N> trace;
     for (int pass = 0; pass < max_passes; ++pass) {
         bool settled = true;
         for (std::size_t part = 0; part < N; ++part)
-            settled = all(turn_towards(F[part], q[part]) | (volume[part] == 0.0)) && settled;
-        if (settled) return;
+            settled = all(turn_towards(F[part], q[part], trace[part]) | (volume[part] == 0.0)) && settled;
+        if (settled) return trace;
     }
     q = start;
-    for (std::size_t part = 0; part < N; ++part) solve_rotations(F[part], volume[part], q[part]);
+    for (std::size_t part = 0; part < N; ++part) {
+        solve_rotations(F[part], volume[part], q[part]);
+        trace[part] = inner_product(rotation_of(q[part]), F[part]);
+    }
+    return trace;
 }
 
 /// The same of one part.
 template <class T>
-[[gnu::always_inline]] inline void extract_rotation(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& q) {
+[[gnu::always_inline]] inline T extract_rotation(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& q) {
     std::array<LaneQuaternion<T>, 1> of_part{q};
-    extract_rotations(std::array<LaneMat3<T>, 1>{F}, std::array<T, 1>{volume}, of_part);
+    const std::array<T, 1> trace = extract_rotations(std::array<LaneMat3<T>, 1>{F}, std::array<T, 1>{volume}, of_part);
     q = of_part[0];
+    return trace[0];
 }
 
 template <class T>

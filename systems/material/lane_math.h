@@ -77,27 +77,46 @@ template <class T>
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
-/// A stress of_F F + rest, Pa: whoever multiplies F by more does both at once. Laws without such a part give a matrix.
+/// A stress of_F F + of_other other, Pa: whoever multiplies F by more, or all of it by a number, does so at once. Laws
+/// without such parts give a matrix.
 template <class T>
 struct SplitStress {
-    T of_F;
-    LaneMat3<T> rest;
+    T of_F, of_other;
+    LaneMat3<T> other;
 };
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> whole(const SplitStress<T>& P, const LaneMat3<T>& F) {
-    return P.of_F * F + P.rest;
+    return P.of_F * F + P.of_other * P.other;
 }
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> whole(const LaneMat3<T>& P, const LaneMat3<T>&) {
     return P;
 }
 template <class T>
-[[gnu::always_inline]] inline LaneMat3<T>& rest_of(SplitStress<T>& P) {
-    return P.rest;
+[[gnu::always_inline]] inline SplitStress<T> scaled(const T& scale, const SplitStress<T>& P) {
+    return {scale * P.of_F, scale * P.of_other, P.other};
 }
 template <class T>
-[[gnu::always_inline]] inline LaneMat3<T>& rest_of(LaneMat3<T>& P) {
+[[gnu::always_inline]] inline LaneMat3<T> scaled(const T& scale, const LaneMat3<T>& P) {
+    return scale * P;
+}
+/// What there is beside of_F F.
+template <class T>
+[[gnu::always_inline]] inline LaneMat3<T> rest_of(const SplitStress<T>& P) {
+    return P.of_other * P.other;
+}
+template <class T>
+[[gnu::always_inline]] inline const LaneMat3<T>& rest_of(const LaneMat3<T>& P) {
     return P;
+}
+template <class T>
+[[gnu::always_inline]] inline void set_rest(SplitStress<T>& P, const LaneMat3<T>& rest) {
+    P.of_other = T{} + 1.0;
+    P.other = rest;
+}
+template <class T>
+[[gnu::always_inline]] inline void set_rest(LaneMat3<T>& P, const LaneMat3<T>& rest) {
+    P = rest;
 }
 
 /// The identity, known when compiling: no arithmetic.

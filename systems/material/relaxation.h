@@ -32,11 +32,12 @@ template <class T>
     return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.zx * b.zx);
 }
 
-/// Green's strain, (F^T F - I) / 2: rotations do not change it.
+/// Twice Green's strain, F^T F - I: rotations do not change it. Strains of what relaxes are all kept twice, which saves
+/// halving them.
 template <class T>
-[[gnu::always_inline]] inline LaneSymmetric<T> green_strain(const LaneMat3<T>& F) {
-    return {0.5 * dot(F.c0, F.c0) - 0.5, 0.5 * dot(F.c1, F.c1) - 0.5, 0.5 * dot(F.c2, F.c2) - 0.5,
-            0.5 * dot(F.c0, F.c1),       0.5 * dot(F.c1, F.c2),       0.5 * dot(F.c2, F.c0)};
+[[gnu::always_inline]] inline LaneSymmetric<T> twice_green_strain(const LaneMat3<T>& F) {
+    return {dot(F.c0, F.c0) - 1.0, dot(F.c1, F.c1) - 1.0, dot(F.c2, F.c2) - 1.0,
+            dot(F.c0, F.c1),       dot(F.c1, F.c2),       dot(F.c2, F.c0)};
 }
 
 template <class T>
@@ -57,10 +58,10 @@ template <class T>
     S.xx += P.of_F;
     S.yy += P.of_F;
     S.zz += P.of_F;
-    return multiply(F, S) + P.rest;
+    return multiply(F, S) + P.of_other * P.other;
 }
 
-/// What stretches the springs of the two viscous parts: the strain less what the dashpots have taken.
+/// What stretches the springs of the two viscous parts, twice: the strain less what the dashpots have taken.
 template <class T>
 struct ViscousStretch {
     LaneSymmetric<T> strain;
@@ -91,35 +92,30 @@ inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real rela
             2 * material.bulk_viscosity / bulk_time * (material.lame_lambda + 2 * material.shear_modulus)};
 }
 
-/// J/m^3, of the springs of the relaxing part stretched by `strain` while they are stretched by `change` more.
-template <class T>
-[[gnu::always_inline]] inline T strain_work_density(const ViscousModuli& moduli, const LaneSymmetric<T>& strain,
-                                                    const LaneSymmetric<T>& change) {
-    return (2 * moduli.mu) * inner_product(strain, change) + moduli.lambda * (strain.trace() * change.trace());
-}
-
-/// J/m^3, of all springs stretched by `stretch` while they are stretched by `change` more.
-template <class T>
-[[gnu::always_inline]] inline T work_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch,
-                                             const ViscousStretch<T>& change) {
-    return strain_work_density(moduli, stretch.strain, change.strain) + moduli.bulk * (stretch.volume * change.volume);
-}
-
-/// J/m^3
+/// J/m^3, of all springs.
 template <class T>
 [[gnu::always_inline]] inline T energy_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
-    return 0.5 * work_density(moduli, stretch, stretch);
+    const T trace = stretch.strain.trace();
+    return 0.125 * ((2 * moduli.mu) * inner_product(stretch.strain, stretch.strain) + moduli.lambda * (trace * trace) +
+                    moduli.bulk * (stretch.volume * stretch.volume));
 }
 
-/// Second Piola-Kirchhoff stress, Pa.
+/// Second Piola-Kirchhoff stress, Pa, times a scale.
 template <class T>
-[[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
-    LaneSymmetric<T> S = T((T{} + 2 * moduli.mu)) * stretch.strain;
-    const T pressure = moduli.lambda * stretch.strain.trace() + moduli.bulk * stretch.volume;
+[[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch,
+                                                      const T& scale) {
+    LaneSymmetric<T> S = T(scale * moduli.mu) * stretch.strain;
+    const T pressure =
+        (scale * (0.5 * moduli.lambda)) * stretch.strain.trace() + (scale * (0.5 * moduli.bulk)) * stretch.volume;
     S.xx += pressure;
     S.yy += pressure;
     S.zz += pressure;
     return S;
+}
+
+template <class T>
+[[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
+    return stress(moduli, stretch, T{} + 1.0);
 }
 
 template <class T>

@@ -62,7 +62,7 @@ struct StableNeoHookean {
         const LaneMat3<T> cof = cofactor(F);
         const T shear = mu - mu / (inner_product(F, F) + 1.0);
         const T pressure = la * (dot(F.c0, cof.c0) - 1.0) - 0.75 * mu;
-        return {shear, pressure * cof};
+        return {shear, pressure, cof};
     }
 
     template <class T>

@@ -139,7 +139,7 @@ void relax_fully(Model& model, std::size_t body) {
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const Mat3& E = strain[static_cast<std::size_t>(b - blocks.begin) * element_lanes + l];
             const std::array<Real, 7> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0), E.trace()};
-            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = entry[i];
+            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = 2 * entry[i];
         }
         model.elements.viscous_strain_next[static_cast<std::size_t>(b)] = taken;
     }

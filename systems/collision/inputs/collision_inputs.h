@@ -55,7 +55,7 @@ struct CollisionInputs {
 struct CollisionSettings {
     Real gravity = 0;  // m/s^2, norm: how much faster things may become in a step
     // fraction of the mean edge: candidates are kept this much beyond the distance at which they matter
-    Real pair_skin = 0.375;
+    Real pair_skin = 0.3125;
     Real broad_skin = 4.0;    // fraction of the mean edge: pairs of bodies are kept this much beyond it
     bool use_budgets = true;  // off: search everything in every step (the simple twin, for tests)
     bool continuous = true;   // off: the motion of a step is not looked at for crossings

@@ -90,14 +90,23 @@ struct Run {
         return {over_both * less_volume, over_both * less};
     }
 
-    /// The dashpots give way, then the springs push. Returns the second Piola-Kirchhoff stress, Pa, and writes what the
-    /// dashpots have taken and what they dissipated, J.
+    bool relaxes() const { return material.relaxes() && !next.viscous_strain.empty(); }
+
+    [[gnu::always_inline]] Parts<Kept<KernelReal>> kept_of(std::size_t block) const {
+        Parts<Kept<KernelReal>> kept{};
+        if (relaxes())
+            for (std::size_t part = 0; part < kernel_parts; ++part) kept[part] = kept_of<KernelReal>(block, part);
+        return kept;
+    }
+
+    /// The dashpots give way, then the springs push. Returns the second Piola-Kirchhoff stress, Pa, times the scale of
+    /// the block, and writes what the dashpots have taken and what they dissipated, as dissipated_of has it.
     template <Kicks kicks, class T>
-    [[gnu::always_inline]] LaneSymmetric<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, std::size_t block,
-                                                  std::size_t part, T& dissipated) const {
+    [[gnu::always_inline]] LaneSymmetric<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, const T& scale,
+                                                  std::size_t block, std::size_t part, T& dissipated) const {
         ElementStrain& forgotten_next = next.viscous_strain[block];
         const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
-        const LaneSymmetric<T> strain = green_strain(F);
+        const LaneSymmetric<T> strain = twice_green_strain(F);
         const ElementStrain& forgotten = elements.viscous_strain[block];
         const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
         const Real of_now = kick_over_last > 0 ? 1 : 2;  // not known: as if it had been stretched as now
@@ -115,10 +124,9 @@ struct Run {
         const LaneSymmetric<T> taken_twice{twice(taken.xx, 0), twice(taken.yy, 1), twice(taken.zz, 2),
                                            twice(taken.xy, 3), twice(taken.yz, 4), twice(taken.zx, 5)};
         const T volume_twice = twice(taken_volume, 6);
-        const LaneSymmetric<T> S = stress(moduli, after);
-        const T work =
-            inner_product(S, taken_twice) + (moduli.bulk * after.volume) * (volume_twice - taken_twice.trace());
-        dissipated = 0.5 * part_of<T>(elements.volume, block, part) * work;
+        const LaneSymmetric<T> S = stress(moduli, after, scale);
+        dissipated = inner_product(S, taken_twice) +
+                     ((scale * (0.5 * moduli.bulk)) * after.volume) * (volume_twice - taken_twice.trace());
         store_part(taken.xx, forgotten_next[0], part);
         store_part(taken.yy, forgotten_next[1], part);
         store_part(taken.zz, forgotten_next[2], part);
@@ -132,16 +140,16 @@ struct Run {
     /// Out of line, as all that is rare: by value, so that what it is given need not be in memory when it is not
     /// called.
     template <class T>
-    [[gnu::noinline]] static LaneSymmetric<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, std::size_t block,
-                                                           std::size_t part, T& dissipated) {
-        return run.relax<Kicks::any>(F, kept, block, part, dissipated);
+    [[gnu::noinline]] static LaneSymmetric<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, T scale,
+                                                           std::size_t block, std::size_t part, T& dissipated) {
+        return run.relax<Kicks::any>(F, kept, scale, block, part, dissipated);
     }
 
-    /// Elastic stress, Pa. Frames are extracted from all parts at once: how often their steps are repeated does not
-    /// depend on the width of a part.
+    /// Elastic stress, Pa, times `scale`. Frames are extracted from all parts at once: how often their steps are
+    /// repeated does not depend on the width of a part.
     template <class Law>
-    [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block,
-                                               const Parts<LaneMat3<KernelReal>>& F) const {
+    [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
+                                               const Parts<KernelReal>& scale) const {
         using T = KernelReal;
         if constexpr (Law::has_frame) {
             Parts<LaneQuaternion<T>> q;
@@ -150,16 +158,17 @@ struct Run {
                 q[part] = load_part<T>(rotation[block], part);
                 volume[part] = part_of<T>(elements.volume, block, part);
             }
-            extract_rotations(F, volume, q);
-            Parts<decltype(law.stress(material, F[0], rotation_of(q[0])))> P;
+            const Parts<T> trace = extract_rotations(F, volume, q);
+            Parts<decltype(law.stress(material, rotation_of(q[0]), trace[0]))> P;
             for (std::size_t part = 0; part < kernel_parts; ++part) {
                 store_part(q[part], next.rotation[block], part);
-                P[part] = law.stress(material, F[part], rotation_of(q[part]));
+                P[part] = scaled(scale[part], law.stress(material, rotation_of(q[part]), trace[part]));
             }
             return P;
         } else {
             Parts<decltype(law.stress(material, F[0]))> P;
-            for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = law.stress(material, F[part]);
+            for (std::size_t part = 0; part < kernel_parts; ++part)
+                P[part] = scaled(scale[part], law.stress(material, F[part]));
             return P;
         }
     }
@@ -222,8 +231,8 @@ struct Run {
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
 
-    /// Adds the stress of the strain rate where there is one, and keeps its impulse.
-    void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
+    /// Adds the stress of the strain rate where there is one, times `scale`, and keeps its impulse.
+    void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F, const Parts<KernelReal>& scale,
                             Parts<LaneMat3<KernelReal>>& P) const {
         const bool implicit = has_implicit(block);
         Parts<KernelReal> viscosity;
@@ -236,14 +245,15 @@ struct Run {
                 implicit ? bounded_viscous_stress(viscosity[part], F[part], rate)
                          : viscous_stress(material, elements.viscous_time[block], F[part], rate);
             if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, block, part);
-            P[part] = P[part] + of_rate;
+            P[part] = P[part] + scale[part] * of_rate;
         }
     }
 
     [[gnu::noinline]] static Parts<LaneMat3<KernelReal>> with_viscous_stress(Run run, std::size_t block,
                                                                              Parts<LaneMat3<KernelReal>> F,
+                                                                             Parts<KernelReal> scale,
                                                                              Parts<LaneMat3<KernelReal>> P) {
-        run.add_viscous_stress(block, F, P);
+        run.add_viscous_stress(block, F, scale, P);
         return P;
     }
 
@@ -255,16 +265,24 @@ struct Run {
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
     }
 
-    /// First Piola-Kirchhoff stress, Pa, of all that the elements are made of. Adds up what relaxes in them, J.
+    /// What makes forces of a stress: less the volume, m^3, as often as it is due.
+    [[gnu::always_inline]] Parts<KernelReal> scale_of(std::size_t block) const {
+        Parts<KernelReal> scale;
+        for (std::size_t part = 0; part < kernel_parts; ++part)
+            scale[part] = (-duration) * part_of<KernelReal>(elements.volume, block, part);
+        return scale;
+    }
+
+    /// First Piola-Kirchhoff stress, Pa, of all that the elements are made of, times the scale of the block. Adds up
+    /// `relaxed`, of which dissipated_of makes J.
     template <class Law>
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
                                                                  const Parts<LaneMat3<KernelReal>>& F,
+                                                                 const Parts<Kept<KernelReal>>& kept,
                                                                  Parts<KernelReal>& relaxed) const {
-        const bool relaxes = material.relaxes() && !next.viscous_strain.empty();
-        Parts<Kept<KernelReal>> kept{};
-        if (relaxes)  // before all else: a division takes long
-            for (std::size_t part = 0; part < kernel_parts; ++part) kept[part] = kept_of<KernelReal>(block, part);
-        auto elastic = elastic_stress(law, block, F);
+        const bool relaxes = this->relaxes();
+        const Parts<KernelReal> scale = scale_of(block);
+        auto elastic = elastic_stress(law, block, F, scale);
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
             if (rests_easy(block, F)) {
                 note(block, false, false);
@@ -273,8 +291,8 @@ struct Run {
                 Parts<LaneMat3<KernelReal>> rest;
                 for (std::size_t part = 0; part < kernel_parts; ++part) rest[part] = rest_of(elastic[part]);
                 const Parts<LaneMat3<KernelReal>> all =
-                    with_viscous_stress(*this, block, copy_of_parts(F), copy_of_parts(rest));
-                for (std::size_t part = 0; part < kernel_parts; ++part) rest_of(elastic[part]) = all[part];
+                    with_viscous_stress(*this, block, copy_of_parts(F), scale, copy_of_parts(rest));
+                for (std::size_t part = 0; part < kernel_parts; ++part) set_rest(elastic[part], all[part]);
             }
         }
         Parts<LaneMat3<KernelReal>> P;
@@ -286,10 +304,10 @@ struct Run {
             KernelReal dissipated;
             LaneSymmetric<KernelReal> S;
             if (kick_over_last == 1) {
-                S = relax<Kicks::alike>(F[part], kept[part], block, part, dissipated);
+                S = relax<Kicks::alike>(F[part], kept[part], scale[part], block, part, dissipated);
             } else {
                 KernelReal unlike;  // for the call alone: what has an address is in memory
-                S = relax_unlike(*this, F[part], kept[part], block, part, unlike);
+                S = relax_unlike(*this, F[part], kept[part], scale[part], block, part, unlike);
                 dissipated = unlike;
             }
             P[part] = multiply_and_add(F[part], S, elastic[part]);
@@ -298,13 +316,9 @@ struct Run {
         return P;
     }
 
-    /// What the stress is multiplied by.
-    [[gnu::always_inline]] Parts<KernelReal> volumes(std::size_t block) const {
-        Parts<KernelReal> volume;
-        for (std::size_t part = 0; part < kernel_parts; ++part)
-            volume[part] = duration * part_of<KernelReal>(elements.volume, block, part);
-        return volume;
-    }
+    /// J, of the sum over the elements. What the dashpots took is that of two steps and twice the strain, and the scale
+    /// is as often as the elements are due.
+    Real dissipated_of(const Parts<KernelReal>& sum) const { return (-0.25 / duration) * sum_of_parts(sum); }
 
     [[gnu::always_inline]] void add(const LaneVec3<KernelReal>& f, const NodeLane& node, std::size_t part) const {
         add_lanes(f, node.lane + lanes_of<KernelReal> * part, force);
@@ -324,9 +338,9 @@ struct AnyElements {
         return F;
     }
 
-    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& P) const {
+    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = run.nodes_of(block);
-        for_each_force(P, nodes, run.volumes(block), [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
+        for_each_force(Q, nodes, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
             run.add(f, nodes.node[k], part);
         });
     }
@@ -362,16 +376,14 @@ struct Fans {
         return F;
     }
 
-    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& P) {
+    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) {
         const BlockNodes nodes = run.nodes_of(block);
-        const Parts<KernelReal> volume = run.volumes(block);
         const bool first = opens(block);
         Parts<LaneVec3<KernelReal>> force2;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const LaneMat3<KernelReal> Q = (-volume[part]) * P[part];
-            const LaneVec3<KernelReal> f1 = force_on_node(Q, nodes, 1, part);
-            const LaneVec3<KernelReal> f2 = force_on_node(Q, nodes, 2, part);
-            const LaneVec3<KernelReal> f3 = force_on_node(Q, nodes, 3, part);
+            const LaneVec3<KernelReal> f1 = force_on_node(Q[part], nodes, 1, part);
+            const LaneVec3<KernelReal> f2 = force_on_node(Q[part], nodes, 2, part);
+            const LaneVec3<KernelReal> f3 = force_on_node(Q[part], nodes, 3, part);
             const LaneVec3<KernelReal> sum = f1 + f2 + f3;
             if (first) force0[part] = force1[part] = force3[part] = LaneVec3<KernelReal>{};
             force2[part] = force3[part] + f2;
@@ -397,15 +409,22 @@ template <class Elements>
     Parts<KernelReal> relaxed{};
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = elements.fetch(run.begin);
+        auto kept = run.kept_of(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
             run.ask_for_one_ahead_of<std::remove_cvref_t<Elements>::rows>(block);
-            const Parts<LaneMat3<KernelReal>> P = run.stress_of(law, block, F, relaxed);
-            if (ahead && block + 1 < run.end) F = elements.fetch(block + 1);
-            elements.add(block, P);
-            if (!ahead && block + 1 < run.end) F = elements.fetch(block + 1);
+            const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, kept, relaxed);
+            if (ahead && block + 1 < run.end) {
+                kept = run.kept_of(block + 1);
+                F = elements.fetch(block + 1);
+            }
+            elements.add(block, Q);
+            if (!ahead && block + 1 < run.end) {
+                kept = run.kept_of(block + 1);
+                F = elements.fetch(block + 1);
+            }
         }
     });
-    return sum_of_parts(relaxed);
+    return run.dissipated_of(relaxed);
 }
 
 /// Positions of the nodes of a patch, which ascend, side by side, and forces zero.

@@ -236,13 +236,11 @@ template <class T>
     return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
 }
 
-/// f_k = -V P g_k and f_0 = -(f_1 + f_2 + ...): take(k, part, f_k), lanes side by side. All parts of a node come before
-/// the next node, so that sums have one order, whatever the width of a part.
+/// f_k = Q g_k, Q = -V P, and f_0 = -(f_1 + f_2 + ...): take(k, part, f_k), lanes side by side. All parts of a node
+/// come before the next node, so that sums have one order, whatever the width of a part.
 template <class Take>
-[[gnu::always_inline]] inline void for_each_force(const Parts<LaneMat3<KernelReal>>& P, const BlockNodes& block,
-                                                  const Parts<KernelReal>& volume, Take&& take) {
-    Parts<LaneMat3<KernelReal>> Q;
-    for (std::size_t part = 0; part < kernel_parts; ++part) Q[part] = (-volume[part]) * P[part];
+[[gnu::always_inline]] inline void for_each_force(const Parts<LaneMat3<KernelReal>>& Q, const BlockNodes& block,
+                                                  Take&& take) {
     Parts<LaneVec3<KernelReal>> sum;
     const auto on_node = [&](Index k, std::size_t part) { return force_on_node(Q[part], block, k, part); };
     for (std::size_t part = 0; part < kernel_parts; ++part) {

@@ -79,8 +79,9 @@ Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const
                        const LaneMat3<Real8>& R) {
                        Real8 density = energy_of(material, F, R);
                        if (material.relaxes() && !elements.viscous_strain.empty())
-                           density += energy_density(viscous_moduli(material, elements.relaxing_share[b]),
-                                                     viscous_stretch(green_strain(F), elements.viscous_strain[b]));
+                           density +=
+                               energy_density(viscous_moduli(material, elements.relaxing_share[b]),
+                                              viscous_stretch(twice_green_strain(F), elements.viscous_strain[b]));
                        const Real8 of_lanes = volume * density;
                        for (std::size_t l = 0; l < element_lanes; ++l) energy += of_lanes[l];
                    });
@@ -90,17 +91,17 @@ Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const
 Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Vec3> velocity) {
     Real power = 0;
-    for_each_block(elements, blocks, position,
-                   [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
-                       const LaneMat3<Real8>& R) {
-                       LaneMat3<Real8> P = stress_of(material, F, R);
-                       if (material.relaxes() && !elements.viscous_strain.empty())
-                           P = P + multiply(F, stress(viscous_moduli(material, elements.relaxing_share[b]),
-                                                      viscous_stretch(green_strain(F), elements.viscous_strain[b])));
-                       const Real8 of_lanes =
-                           volume * inner_product(P, deformation_gradient(elements.nodes_of(b), velocity));
-                       for (std::size_t l = 0; l < element_lanes; ++l) power += of_lanes[l];
-                   });
+    for_each_block(
+        elements, blocks, position,
+        [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
+            const LaneMat3<Real8>& R) {
+            LaneMat3<Real8> P = stress_of(material, F, R);
+            if (material.relaxes() && !elements.viscous_strain.empty())
+                P = P + multiply(F, stress(viscous_moduli(material, elements.relaxing_share[b]),
+                                           viscous_stretch(twice_green_strain(F), elements.viscous_strain[b])));
+            const Real8 of_lanes = volume * inner_product(P, deformation_gradient(elements.nodes_of(b), velocity));
+            for (std::size_t l = 0; l < element_lanes; ++l) power += of_lanes[l];
+        });
     return power;
 }
 

@@ -118,11 +118,11 @@ template <class T>
 void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
     const ViscousStretch<T> stretch{lanes_in(viscous.stretch.strain, part), lanes_in(viscous.stretch.volume, part)};
-    const LaneSymmetric<T> strain = green_strain(F), S = stress(moduli, stretch);
+    const LaneSymmetric<T> strain = twice_green_strain(F), S = stress(moduli, stretch);
     const T third = strain.trace() / 3.0;
     const LaneSymmetric<T> deviator{strain.xx - third, strain.yy - third, strain.zz - third,
                                     strain.xy,         strain.yz,         strain.zx};
-    const T largest = 1.0 + 2.0 * (third + 2.0 * square_root(inner_product(deviator, deviator) / 6.0));
+    const T largest = 1.0 + (third + 2.0 * square_root(inner_product(deviator, deviator) / 6.0));
     const T strain_share = lanes_in(viscous.strain_share, part), volume_share = lanes_in(viscous.volume_share, part);
     const T mu = moduli.mu * strain_share;
     H.add_identity(mu * largest + square_root(inner_product(S, S)));

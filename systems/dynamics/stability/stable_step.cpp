@@ -327,13 +327,11 @@ Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks,
             const BlockNodes nodes = elements.nodes_of(b);
             const KernelReal one = KernelReal{} + 1.0, zero{};
             const LaneMat3<KernelReal> identity{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-            Parts<LaneMat3<KernelReal>> stress;
-            Parts<KernelReal> volume;
-            for (std::size_t part = 0; part < kernel_parts; ++part) {
-                stress[part] = Linear::stress(material, identity + deformation_gradient(nodes, part, u));
-                volume[part] = load_part<KernelReal>(elements.volume[b], part);
-            }
-            for_each_force(stress, nodes, volume, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
+            Parts<LaneMat3<KernelReal>> Q;
+            for (std::size_t part = 0; part < kernel_parts; ++part)
+                Q[part] = (-load_part<KernelReal>(elements.volume[b], part)) *
+                          Linear::stress(material, identity + deformation_gradient(nodes, part, u));
+            for_each_force(Q, nodes, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
                 const std::size_t first = part * lanes_of<KernelReal>;
                 for (std::size_t l = 0; l < lanes_of<KernelReal>; ++l)
                     next[static_cast<std::size_t>(nodes.node[k][first + l])] -= Vec3(f.x[l], f.y[l], f.z[l]);

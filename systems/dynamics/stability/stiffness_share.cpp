@@ -37,7 +37,7 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
 
 ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F) {
     return {viscous_moduli(elements.material_of(block), elements.relaxing_share[block]),
-            viscous_stretch(green_strain(F), elements.viscous_strain[block])};
+            viscous_stretch(twice_green_strain(F), elements.viscous_strain[block])};
 }
 
 /// A spring that relaxes by a step's end counts less, and the less the longer the step.

@@ -64,9 +64,24 @@ TEST_CASE("two passes are enough from the frame of the last step", "[unit]") {
         const Mat3 R = random_rotation(random, 3.0), S = symmetric(random, 0.4);
         const Eigen::Quaternion<Real> before(random_rotation(random, 1e-2) * R);
         Lanes8 x = all_lanes(R * S, {before.w(), before.x(), before.y(), before.z()});
-        turn_towards(x.F, x.q);
-        turn_towards(x.F, x.q);
+        Real8 trace;
+        turn_towards(x.F, x.q, trace);
+        turn_towards(x.F, x.q, trace);
         CHECK((lane_of(rotation_of(x.q), 0) - R).norm() <= 1e-13);
+    }
+}
+
+TEST_CASE("the trace in the frame is known to rounding, without a product with it", "[unit]") {
+    std::mt19937_64 random(6);
+    for (int trial = 0; trial < 500; ++trial) {
+        Mat3 F;
+        if (trial % 2 == 0)
+            F = random_rotation(random, 0.1) * symmetric(random, 0.4);
+        else  // mirrored and far turned ones, some of which need to be solved
+            F << test::random_vector(random), test::random_vector(random), test::random_vector(random);
+        Lanes8 x = all_lanes(F, identity);
+        const Real8 trace = extract_rotation(x.F, x.volume, x.q);
+        CHECK(std::abs(trace[2] - (lane_of(rotation_of(x.q), 2).transpose() * F).trace()) <= 1e-15 * 4 * F.norm());
     }
 }
 

@@ -24,7 +24,7 @@ Mat3 random_matrix(std::mt19937_64& random) {
 
 /// Nothing is forgotten yet.
 ViscousStretch<Real> stretch_of(const Mat3& F) {
-    const LaneSymmetric<Real> strain = green_strain(from_matrix(F));
+    const LaneSymmetric<Real> strain = twice_green_strain(from_matrix(F));
     return {strain, strain.trace()};
 }
 
