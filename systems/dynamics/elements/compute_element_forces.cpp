@@ -63,7 +63,7 @@ struct Run {
         ask_for_lines(elements.gradient.data() + row + 1, rows - 1);
         ask_for_lines(patches.slot.data() + row, rows);
         ask_for_lines(elements.volume.data() + block, 1);
-        if (!material.relaxes() || next.viscous_strain.empty()) return;
+        if (!relaxes()) return;
         ask_for_lines(elements.viscous_strain.data() + block, 1);
         ask_for_lines(next.viscous_strain.data() + block, 1);
         ask_for_lines(elements.relaxation_rate.data() + block, 1);
@@ -280,7 +280,6 @@ struct Run {
                                                                  const Parts<LaneMat3<KernelReal>>& F,
                                                                  const Parts<Kept<KernelReal>>& kept,
                                                                  Parts<KernelReal>& relaxed) const {
-        const bool relaxes = this->relaxes();
         const Parts<KernelReal> scale = scale_of(block);
         auto elastic = elastic_stress(law, block, F, scale);
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
@@ -297,7 +296,7 @@ struct Run {
         }
         Parts<LaneMat3<KernelReal>> P;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            if (!relaxes) {
+            if (!relaxes()) {
                 P[part] = whole(elastic[part], F[part]);
                 continue;
             }
@@ -400,8 +399,8 @@ struct Fans {
     }
 };
 
-/// With wide registers the nodes of a block are fetched before the forces of the block before are added: neither waits
-/// for the other, and the stress between them is a long chain of operations that do. Narrow ones are too few to hold
+/// With wide registers a block is begun before the forces of the block before are added: neither waits for the other,
+/// and the stress between them is a long chain of operations that do. Narrow ones are too few to hold
 /// both. Returns what relaxes in the elements, J.
 template <class Elements>
 [[gnu::always_inline]] inline Real compute_run(const Run& run, Elements&& elements) {
@@ -413,12 +412,13 @@ template <class Elements>
         for (std::size_t block = run.begin; block < run.end; ++block) {
             run.ask_for_one_ahead_of<std::remove_cvref_t<Elements>::rows>(block);
             const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, kept, relaxed);
-            if (ahead && block + 1 < run.end) {
-                kept = run.kept_of(block + 1);
+            const bool goes_on = block + 1 < run.end;
+            if (ahead && goes_on) {
                 F = elements.fetch(block + 1);
+                kept = run.kept_of(block + 1);  // here: a division takes long
             }
             elements.add(block, Q);
-            if (!ahead && block + 1 < run.end) {
+            if (!ahead && goes_on) {
                 kept = run.kept_of(block + 1);
                 F = elements.fetch(block + 1);
             }
