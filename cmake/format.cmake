@@ -1,5 +1,7 @@
-# Targets format, format_check and lint, when the tools are there. Layout differs between versions of clang-format: 14
-# is the one that counts.
+# Targets that check sources. `format` and `format_check` need clang-format, whose layout differs between versions: 14 is
+# the one that counts. `lint` needs clang-tidy. `check_includes` compiles each file alone, so that a missing include is
+# found; `lint_changed` and `check_includes_changed` do the same for files that changed lately. `check_profiling` compiles
+# the profiling programs for syntax only.
 # This file is also the script that the targets run: it looks for the files then, so that a new one does not configure
 # the build anew.
 set(code_folders components jobs systems engine examples profiling tests)
@@ -28,7 +30,13 @@ if(SKERRY_CLANG_FORMAT)
     add_custom_target(format COMMAND ${run} -D CHECK=OFF -P ${CMAKE_CURRENT_LIST_FILE} VERBATIM)
     add_custom_target(format_check COMMAND ${run} -D CHECK=ON -P ${CMAKE_CURRENT_LIST_FILE} VERBATIM)
 endif()
+set(checks ${PROJECT_SOURCE_DIR}/scripts/lib)
 if(SKERRY_CLANG_TIDY)
-    add_custom_target(lint VERBATIM
-        COMMAND python3 ${PROJECT_SOURCE_DIR}/scripts/lib/lint.py ${SKERRY_CLANG_TIDY} ${PROJECT_BINARY_DIR})
+    set(run python3 ${checks}/lint.py ${SKERRY_CLANG_TIDY} ${PROJECT_BINARY_DIR})
+    add_custom_target(lint COMMAND ${run} --all VERBATIM)
+    add_custom_target(lint_changed COMMAND ${run} VERBATIM)
 endif()
+set(run python3 ${checks}/check_syntax.py ${PROJECT_BINARY_DIR})
+add_custom_target(check_includes COMMAND ${run} --all VERBATIM)
+add_custom_target(check_includes_changed COMMAND ${run} VERBATIM)
+add_custom_target(check_profiling COMMAND ${run} --precompiled profiling VERBATIM)

@@ -14,30 +14,29 @@ fail() {
     exit 1
 }
 
-# phase NAME COMMAND...: runs it with its output in build/NAME.log. Silent when all is well, but for one line on a
-# terminal; else the end of the log, and the exit status of the command.
+# phase NAME COMMAND...: runs the command with its output in build/NAME.log. Shows its progress, adds its times to
+# build/phases.txt (name, seconds by the clock, CPU seconds), and shows the end of the log when it fails.
 phase() {
-    local name=$1 log="build/$1.log" start=$SECONDS status=0 ticker=
+    local name=$1 log="build/$1.log" start=$SECONDS status ticker cpu
     shift
-    if [[ -t 1 ]]; then
-        show_progress "$name" "$log" &
-        ticker=$!
-        trap 'kill '"$ticker"' 2>/dev/null || true' EXIT
-    fi
-    # In a condition `set -e` would be off inside a function that is run, hence the subshell of its own.
+    show_progress "$name" "$log" &
+    ticker=$!
+    trap 'kill '"$ticker"' 2>/dev/null || true' EXIT
+    # A subshell, since `set -e` is off inside a function whose status is looked at.
     set +e
-    (
+    { TIMEFORMAT='%U %S'; time (
         set -e
         "$@"
-    ) >"$log" 2>&1
+    ) >"$log" 2>&1; } 2>"$log.cpu"
     status=$?
     set -e
-    if [[ -n $ticker ]]; then
-        kill "$ticker" 2>/dev/null || true
-        wait "$ticker" 2>/dev/null || true
-        trap - EXIT
-        printf '\r\033[K'
-    fi
+    kill "$ticker" 2>/dev/null || true
+    wait "$ticker" 2>/dev/null || true
+    trap - EXIT
+    if [[ -t 1 ]]; then printf '\r\033[K'; fi
+    cpu=$(awk '{printf "%.0f", $1 + $2}' "$log.cpu")
+    rm -f "$log.cpu"
+    echo "$name $((SECONDS - start)) $cpu" >>build/phases.txt
     if [[ $status -ne 0 ]]; then
         {
             echo "$name failed after $((SECONDS - start)) s with status $status. The end of $root/$log:"
@@ -45,27 +44,36 @@ phase() {
         } >&2
         exit "$status"
     fi
-    if [[ -t 1 ]]; then printf '%-22s %4d s\n' "$name" $((SECONDS - start)); fi
+    if [[ -t 1 || $((SECONDS - start)) -ge 10 ]]; then
+        printf '%-22s %4d s (%s s of CPU)\n' "$name" $((SECONDS - start)) "$cpu"
+    fi
 }
 
-# The lines of a log that matter: from the first failure of ninja on, or the end.
+# The lines of a log that matter: all that ctest says of failed tests, or from the first failure of ninja on, or the end.
 explain() {
     local found
     found=$(grep -n -m 1 '^FAILED: ' "$1" | cut -d: -f1 || true)
-    if [[ -n $found ]]; then
+    if grep -q '% tests passed' "$1"; then
+        grep -vE '^ +Start +[0-9]+: | Passed +[0-9.]+ sec$' "$1" | cut -c-400 | head -n 400
+    elif [[ -n $found ]]; then
         tail -n "+$found" "$1" | grep -v '^\[[0-9]*/[0-9]*\] ' | cut -c-400 | head -n 60
     else
         tail -n 40 "$1" | cut -c-400
     fi
 }
 
-# One line that moves on: name, time, and the counter of ninja when there is one.
+# Name, time, and the counter of ninja or ctest: on a terminal one line that is renewed every second, else a new line
+# every ten seconds.
 show_progress() {
     local start=$SECONDS count
     while true; do
-        count=$(tail -n 1 "$2" 2>/dev/null | grep -o '^\[[0-9]*/[0-9]*\]' || true)
-        printf '\r\033[K%-22s %4d s %s' "$1" $((SECONDS - start)) "$count"
-        sleep 1
+        if [[ -t 1 ]]; then sleep 1; else sleep 10; fi
+        count=$(tail -n 1 "$2" 2>/dev/null | grep -oE '^\[[0-9]+/[0-9]+\]|^ *[0-9]+/[0-9]+ Test' | tr -d ' []Tes' || true)
+        if [[ -t 1 ]]; then
+            printf '\r\033[K%-22s %4d s %s' "$1" $((SECONDS - start)) "$count"
+        else
+            printf '%-22s %4d s %s\n' "$1" $((SECONDS - start)) "$count"
+        fi
     done
 }
 
@@ -77,16 +85,11 @@ build() {
     phase "$preset-build" cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 
-# run_tests PRESET [CTEST-OPTION...]: on a terminal one line that moves on, else failures and the summary only; all of
-# it in build/PRESET-test.log.
+# run_tests PRESET [CTEST-OPTION...]: the summary of ctest, or all that it says of failed tests; everything in
+# build/PRESET-test.log.
 run_tests() {
     local preset=$1
     shift
-    local log="$root/build/$preset-test.log"
-    if [[ -t 1 ]]; then
-        ctest --preset "$preset" -j "$jobs" --progress --output-log "$log" "$@"
-    else
-        ctest --preset "$preset" -j "$jobs" --output-log "$log" "$@" |
-            { grep --line-buffered -vE '^ +Start +[0-9]+: | Passed +[0-9.]+ sec$' || true; }
-    fi
+    phase "$preset-test" ctest --preset "$preset" -j "$jobs" "$@"
+    sed -n '/% tests passed/,$p' "build/$preset-test.log"
 }

@@ -1,47 +1,39 @@
 #!/usr/bin/env python3
-"""clang-tidy over the sources of the library: lint.py CLANG_TIDY BUILD_FOLDER, which holds
-compile_commands.json.
+"""Runs clang-tidy over the sources of the library.
 
-Most of what clang-tidy does with a source is reading the packages' headers, over and over. Sources are therefore read
-many at a time, as one unit, those apart that give the same name to things of their own."""
+    lint.py CLANG_TIDY BUILD_FOLDER          files that changed within a day of the newest commit
+    lint.py CLANG_TIDY BUILD_FOLDER --all    all files
+
+Most of the time of clang-tidy goes into the headers of the packages, read anew for each source. Sources are therefore
+read many at a time, as one unit. Sources that give the same private name to different things go into different units."""
 import concurrent.futures
-import json
 import os
 import pathlib
 import re
-import shlex
 import subprocess
 import sys
 
-FOLDERS = ("components", "jobs", "systems", "engine")
-# Each of the threading libraries has flags of its own, and clang may not have them.
-LEFT_OUT = re.compile(r"jobs/backend_.*\.cpp|engine/program/.*")
+import sources
+
+PROGRAM = re.compile(r"engine/program/.*")
 PRIVATE = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 NAME = re.compile(r"^(?:[A-Za-z_\[][^;={]*?\b(\w+)(?:\(|\{| =)|(?:struct|class|enum class|using) (\w+))", re.MULTILINE)
+INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
 
 
-def sources_of(database, root):
-    """Path from the root, and flags, of each source of the library."""
-    for entry in database:
-        path = pathlib.Path(entry["directory"], entry["file"]).resolve()
-        if not path.is_relative_to(root):
-            continue
-        name = path.relative_to(root).as_posix()
-        if name.startswith(FOLDERS) and not LEFT_OUT.fullmatch(name):
-            yield name, shlex.split(entry["command"])
-
-
-def flags_of(commands):
-    """What one unit needs of all commands: where headers are, definitions, kind of machine."""
-    kept = {"-fopenmp-simd": None}
-    for command in commands:
-        arguments = iter(command)
-        for argument in arguments:
-            if argument == "-isystem":
-                kept[argument + next(arguments)] = None
-            elif argument.startswith(("-I", "-D", "-std=", "-march=")):
-                kept[argument] = None
-    return list(kept)
+def chosen_sources():
+    """Sources of the library that changed, and for each header that changed one source that includes it."""
+    names = [name for name in sources.files(sources.LIBRARY, (".cpp",)) if not PROGRAM.fullmatch(name)]
+    changed = sources.changed_files()
+    if "--all" in sys.argv or changed is None:
+        return names
+    chosen = {name for name in names if name in changed}
+    wanted = {name.removeprefix("engine/include/") for name in changed if name.endswith(".h")}
+    for name in names:
+        read = wanted & set(INCLUDE.findall((sources.ROOT / name).read_text()))
+        if read - set().union(*[INCLUDE.findall((sources.ROOT / other).read_text()) for other in chosen], ()):
+            chosen.add(name)
+    return sorted(chosen)
 
 
 def private_names(text):
@@ -65,9 +57,8 @@ def units_of(root, names):
 
 def main():
     tidy, build = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
-    root = pathlib.Path(__file__).resolve().parents[2]
-    sources = dict(sorted(sources_of(json.loads((build / "compile_commands.json").read_text()), root)))
-    flags = flags_of(sources.values())
+    names = chosen_sources()
+    flags = sources.common_flags(sources.commands(build))
     folder = build / "lint"
     folder.mkdir(exist_ok=True)
 
@@ -75,17 +66,17 @@ def main():
         number, unit = numbered
         file = folder / f"unit_{number}.cpp"
         file.write_text("".join(f'#include "{name}"  // NOLINT(bugprone-suspicious-include)\n' for name in unit))
-        command = [tidy, "--quiet", f"--config-file={root / '.clang-tidy'}", str(file), "--", *flags]
+        command = [tidy, "--quiet", f"--config-file={sources.ROOT / '.clang-tidy'}", str(file), "--", *flags]
         return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     failed = False
-    units = units_of(root, sources)
+    units = units_of(sources.ROOT, names)
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as workers:
         for result in workers.map(lint, enumerate(units)):
             if result.returncode != 0:
                 failed = True
                 print(result.stdout)
-    print(f"{len(sources)} sources in {len(units)} units: {'FOUND' if failed else 'nothing found'}")
+    print(f"{len(names)} sources in {len(units)} units: {'FOUND' if failed else 'nothing found'}")
     sys.exit(failed)
 
 

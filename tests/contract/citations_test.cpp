@@ -8,6 +8,8 @@
 
 #include "tests/contract/project_files.h"
 
+namespace skerry::test::citations_test {
+
 namespace {
 
 using skerry::test::ProjectFile;
@@ -150,3 +152,5 @@ TEST_CASE("the test of citations notices what it is there for", "[contract]") {
     CHECK(found("docs/methods/errors.md", {"![x](figures/no.p" + std::string("ng)")}) == 1);
     CHECK(found("README.md", {"![x](docs/skittles.png)"}) == 0);
 }
+
+}  // namespace skerry::test::citations_test

@@ -5,6 +5,8 @@
 
 #include "tests/contract/project_files.h"
 
+namespace skerry::test::house_rules_test {
+
 TEST_CASE("no file is longer than 500 lines", "[contract]") {
     for (const skerry::test::ProjectFile& file : skerry::test::project_files()) {
         INFO(file.path);
@@ -50,3 +52,5 @@ TEST_CASE("the list of stages captures nothing", "[contract]") {
     }
     CHECK(found);
 }
+
+}  // namespace skerry::test::house_rules_test

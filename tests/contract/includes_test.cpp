@@ -7,6 +7,8 @@
 
 #include "tests/contract/project_files.h"
 
+namespace skerry::test::includes_test {
+
 namespace {
 
 using skerry::test::ProjectFile;
@@ -171,3 +173,5 @@ TEST_CASE("the test of includes notices what it is there for", "[contract]") {
     CHECK(threading_objection("jobs/backend_tbb.cpp", "tbb/task_arena.h") == "");
     CHECK(include_of("  #  include <omp.h>  // why")->name == "omp.h");
 }
+
+}  // namespace skerry::test::includes_test

@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+namespace skerry::test::scenes_test {
+
 namespace {
 
 std::vector<std::filesystem::path> scene_files() {
@@ -35,3 +37,5 @@ TEST_CASE("every scene that is shipped runs", "[contract][scene]") {
             for (const skerry::Vec3& position : scene.world.positions(body)) REQUIRE(position.allFinite());
     }
 }
+
+}  // namespace skerry::test::scenes_test

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+namespace skerry::test::step_graph_test {
+
 TEST_CASE("the step graph equals its drawing in docs", "[contract]") {
     const std::string path = std::string(SKERRY_SOURCE_DIR) + "/docs/step_graph.dot";
     const std::string now = skerry::World().step_graph();
@@ -17,3 +19,5 @@ TEST_CASE("the step graph equals its drawing in docs", "[contract]") {
     INFO("To write " << path << " anew: SKERRY_UPDATE=1 scripts/test -R 'step graph'");
     CHECK(drawn.str() == now);
 }
+
+}  // namespace skerry::test::step_graph_test

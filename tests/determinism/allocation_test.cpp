@@ -37,8 +37,7 @@ extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t 
     return *memory ? 0 : 12;
 }
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::determinism_allocation_test {
 
 namespace {
 
@@ -259,3 +258,5 @@ TEST_CASE("the memory that bodies take while they are added grows with their num
     // columns that double may take up to twice as much; what is made anew for each body would take 16 times as much
     CHECK(bytes_of(1600) < 6 * few);
 }
+
+}  // namespace skerry::test::determinism_allocation_test

@@ -11,7 +11,7 @@
 #include "jobs/task_graph.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::jobs_test {
 
 namespace {
 
@@ -118,3 +118,5 @@ TEST_CASE("a graph of stages that do not commute gives the same bits on 1 to 8 w
         }
     }
 }
+
+}  // namespace skerry::test::jobs_test

@@ -10,8 +10,7 @@
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::save_test {
 
 namespace {
 
@@ -262,3 +261,5 @@ TEST_CASE("equal meshes are saved once", "[determinism]") {
     const std::size_t of_mesh = sizeof(ball.nodes[0]) * ball.nodes.size() + 16 * ball.tetrahedra.size();
     CHECK(bytes(0.1) + of_mesh < bytes(0.11));
 }
+
+}  // namespace skerry::test::save_test

@@ -8,8 +8,7 @@
 #include "engine/world/step/step.h"
 #include "tests/support/lively_scene.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::state_test {
 
 TEST_CASE("bodies with clusters have the same bits on any number of workers", "[determinism][clusters]") {
     const auto thrown = [](Backend backend, int threads) {
@@ -129,3 +128,5 @@ TEST_CASE("worlds with the same bodies have the same hash, whoever was there bef
     };
     CHECK(hash_after(3) == hash_after(6));
 }
+
+}  // namespace skerry::test::state_test

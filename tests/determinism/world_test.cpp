@@ -4,8 +4,7 @@
 #include "jobs/executor.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::world_test {
 
 namespace {
 
@@ -110,3 +109,5 @@ TEST_CASE("budgets that skip what cannot be close change no bit that matters", "
     }
     CHECK(hashes[0] == hashes[1]);
 }
+
+}  // namespace skerry::test::world_test

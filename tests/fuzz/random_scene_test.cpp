@@ -5,8 +5,7 @@
 #include "run_random_scene.h"
 #include "tests/support/temporary_folder.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::random_scene_test {
 
 TEST_CASE("the same seed gives the same random scene, another seed another one", "[unit]") {
     const RandomScene scene = make_random_scene(7), again = make_random_scene(7);
@@ -73,3 +72,5 @@ TEST_CASE("a random scene has the same bits on other threads and another backend
         CHECK(alone.steps == together.steps);
     }
 }
+
+}  // namespace skerry::test::random_scene_test

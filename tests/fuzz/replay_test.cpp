@@ -8,8 +8,9 @@
 #include "components/split_mix.h"
 #include "readers.h"
 
+namespace skerry::test::replay_test {
+
 using skerry::SplitMix;
-using namespace skerry::test;
 
 namespace {
 
@@ -54,3 +55,5 @@ TEST_CASE("found cases lie in folders named after readers", "[unit]") {
                           [&](const FileReaderCase& reader) { return reader.name == name; }));
     }
 }
+
+}  // namespace skerry::test::replay_test

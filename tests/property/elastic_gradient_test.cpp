@@ -8,7 +8,8 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::elastic_gradient_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 namespace accuracy = test::accuracy;
@@ -262,3 +263,5 @@ TEST_CASE("forces turn with the body", "[property]") {
             CHECK((body.force[n] - turn * before[n]).norm() <= 1e-11 * 1e5 * 0.01);
     }
 }
+
+}  // namespace skerry::test::elastic_gradient_test

@@ -8,7 +8,8 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/frequency.h"
 
-using namespace skerry;
+namespace skerry::test::elastic_motion_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 namespace accuracy = test::accuracy;
@@ -182,3 +183,5 @@ TEST_CASE("a body runs at its stable step and keeps its momenta", "[property]") 
         CHECK((end.angular - start.angular).norm() <= 1e-12 * steps * start.angular.norm());
     }
 }
+
+}  // namespace skerry::test::elastic_motion_test

@@ -10,7 +10,8 @@
 #include "tests/support/exact_frequency.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::element_kinds_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -258,3 +259,5 @@ TEST_CASE("smoothed forces have the same bits on any number of workers", "[prope
         }
     }
 }
+
+}  // namespace skerry::test::element_kinds_test

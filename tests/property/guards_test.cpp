@@ -18,7 +18,8 @@
 #include "tests/support/knotted_box.h"
 #include "tests/support/sliver_box.h"
 
-using namespace skerry;
+namespace skerry::test::property_guards_test {
+
 using test::TetMesh;
 
 namespace {
@@ -352,3 +353,5 @@ TEST_CASE("while small tetrahedra are intact guards change no bit of a force; cr
     acting.make_implicit([](std::size_t) { return false; });
     CHECK(acting.forces() == without);
 }
+
+}  // namespace skerry::test::property_guards_test

@@ -9,7 +9,8 @@
 #include "tests/support/element_kinds.h"
 #include "tests/support/exact_frequency.h"
 
-using namespace skerry;
+namespace skerry::test::several_materials_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -202,3 +203,5 @@ TEST_CASE("the stable step of a layered body is below its limit, and shares of m
             CHECK(by_forms >= 0.6 * 0.9 * limit);
         }
 }
+
+}  // namespace skerry::test::several_materials_test

@@ -5,7 +5,7 @@
 #include "components/check.h"
 #include "engine/world/world_state.h"
 
-using namespace skerry;
+namespace skerry::test::scene_access_test {
 
 #ifdef SKERRY_CHECK_ACCESS
 
@@ -38,3 +38,5 @@ TEST_CASE("a stage that is slipped into the step and looks at what it has not de
 // Without it, in builds with NDEBUG, there is nothing to test; asan and tsan build with it.
 
 #endif
+
+}  // namespace skerry::test::scene_access_test

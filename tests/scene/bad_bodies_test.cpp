@@ -5,7 +5,8 @@
 
 #include "skerry/world.h"
 
-using namespace skerry;
+namespace skerry::test::bad_bodies_test {
+
 using Catch::Contains;
 
 namespace {
@@ -97,3 +98,5 @@ TEST_CASE("a time that would take steps without end names the body that asks for
     CHECK_THROWS_WITH(world.advance(1),
                       Contains("dt: found 1 s in steps of") && Contains("stable step of body 'grain'"));
 }
+
+}  // namespace skerry::test::bad_bodies_test

@@ -3,8 +3,7 @@
 
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::balance_test {
 
 namespace {
 
@@ -133,3 +132,5 @@ TEST_CASE("a report names the body and the element that turned inside out", "[sc
     CHECK(report.worst_volume_element == 1);
     CHECK(report.worst_volume_ratio < 0);
 }
+
+}  // namespace skerry::test::balance_test

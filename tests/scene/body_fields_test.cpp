@@ -6,7 +6,7 @@
 #include "tests/support/material_models.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
+namespace skerry::test::body_fields_test {
 
 namespace {
 
@@ -114,3 +114,5 @@ TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scen
     CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{0, last + 1}), Catch::Contains("nodes of the body"));
     CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{-1}), Catch::Contains("nodes of the body"));
 }
+
+}  // namespace skerry::test::body_fields_test

@@ -3,8 +3,8 @@
 
 #include "tests/support/capsules.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::capsule_turns_test {
+
 using namespace skerry::test::capsules;
 
 TEST_CASE("a capsule that spins on its end is not turned into what it spins on", "[scene]") {
@@ -28,3 +28,5 @@ TEST_CASE("a capsule that spins on its end is not turned into what it spins on",
         CHECK(lowest > end - 1e-6);
     }
 }
+
+}  // namespace skerry::test::capsule_turns_test

@@ -9,8 +9,8 @@
 #include "tests/support/capsules.h"
 #include "tests/support/same_bits.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::capsules_test {
+
 using namespace skerry::test::capsules;
 
 namespace {
@@ -411,3 +411,5 @@ TEST_CASE("capsules have the same bits on any number of threads, cloned, and fro
     };
     check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
+
+}  // namespace skerry::test::capsules_test

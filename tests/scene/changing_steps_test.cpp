@@ -8,8 +8,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::changing_steps_test {
 
 namespace {
 
@@ -215,3 +214,5 @@ TEST_CASE("a world that was cloned, or saved and loaded, knows how long its last
     CHECK(loaded.report().energy_error_share == world.report().energy_error_share);
     CHECK(world.positions(body)[0] == loaded.positions(body)[0]);
 }
+
+}  // namespace skerry::test::changing_steps_test

@@ -10,7 +10,8 @@
 #include "tests/support/jittered_box.h"
 #include "tests/support/sliver_box.h"
 
-using namespace skerry;
+namespace skerry::test::scene_clusters_test {
+
 using skerry::test::sliver_box;
 
 namespace {
@@ -303,3 +304,5 @@ TEST_CASE("with clusters a vibration converges with the second order", "[scene][
     CHECK(half < 0.35 * coarse);
     CHECK(quarter < 0.35 * half);
 }
+
+}  // namespace skerry::test::scene_clusters_test

@@ -6,8 +6,7 @@
 #include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::collider_edges_test {
 
 namespace {
 
@@ -179,3 +178,5 @@ TEST_CASE("the force on what is pressed into a block converges as its cells beco
         CHECK(f8 - finest.force < 0.55 * (f4 - f8));  // the first order at least
     }
 }
+
+}  // namespace skerry::test::collider_edges_test

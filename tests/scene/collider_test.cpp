@@ -4,8 +4,7 @@
 #include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::collider_test {
 
 namespace {
 
@@ -198,3 +197,5 @@ TEST_CASE("a step with a load that is not finite is refused where it is set, and
     CHECK(world.report().max_contacts > 0);
     CHECK(std::equal(world.positions(ball).begin(), world.positions(ball).end(), untouched.positions(twin).begin()));
 }
+
+}  // namespace skerry::test::collider_test

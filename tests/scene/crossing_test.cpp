@@ -5,8 +5,7 @@
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::crossing_test {
 
 namespace {
 
@@ -130,3 +129,5 @@ TEST_CASE("steps that are tried again are the same bits on any number of workers
     CHECK(hashes[0] == hashes[1]);
     CHECK(hashes[0] == hashes[2]);
 }
+
+}  // namespace skerry::test::crossing_test

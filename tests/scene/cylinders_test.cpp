@@ -8,8 +8,8 @@
 #include "tests/support/cylinders.h"
 #include "tests/support/same_bits.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::cylinders_test {
+
 using namespace skerry::test::cylinders;
 using capsules::box, capsules::mesh_collider, capsules::plane, capsules::rigid_slab;
 
@@ -392,3 +392,5 @@ TEST_CASE("cylinders have the same bits on any number of threads, cloned, and fr
     };
     check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
+
+}  // namespace skerry::test::cylinders_test

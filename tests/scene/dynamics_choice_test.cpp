@@ -5,7 +5,7 @@
 
 #include "skerry/world.h"
 
-using namespace skerry;
+namespace skerry::test::dynamics_choice_test {
 
 namespace {
 
@@ -115,3 +115,5 @@ TEST_CASE("a body that was chosen has the bits of one that was told", "[scene]")
         CHECK(hash[0] == hash[1]);
     }
 }
+
+}  // namespace skerry::test::dynamics_choice_test

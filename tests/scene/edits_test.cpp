@@ -9,8 +9,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::edits_test {
 
 namespace {
 
@@ -497,3 +496,5 @@ TEST_CASE("clusters go on when mesh colliders come and go", "[scene]") {
             CHECK(std::ranges::equal(world.positions(body), untouched.positions(body)));
     }
 }
+
+}  // namespace skerry::test::edits_test

@@ -8,8 +8,7 @@
 #include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::flight_test {
 
 namespace {
 
@@ -145,3 +144,5 @@ TEST_CASE("a flight goes on with the same bits from a file and on any number of 
     };
     check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
+
+}  // namespace skerry::test::flight_test

@@ -7,8 +7,7 @@
 #include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::forces_test {
 
 namespace {
 
@@ -405,3 +404,5 @@ TEST_CASE("a body pressed on itself adds nothing to what it gets, but is told ho
     CHECK(forces.on(body, body).pressing_impulse == forces.on(body).pressing_impulse);
     CHECK(forces.on(body, body).most_contacts > 0);
 }
+
+}  // namespace skerry::test::forces_test

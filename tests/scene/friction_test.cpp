@@ -3,8 +3,7 @@
 
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::friction_test {
 
 namespace {
 
@@ -26,3 +25,5 @@ TEST_CASE("the floor carries the weight of a resting block", "[scene]") {
     CHECK(force.z() == Approx(weight).epsilon(1e-3));
     CHECK(std::abs(force.x()) < 1e-3 * weight);
 }
+
+}  // namespace skerry::test::friction_test

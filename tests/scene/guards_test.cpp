@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
+namespace skerry::test::scene_guards_test {
 
 namespace {
 
@@ -122,3 +122,5 @@ TEST_CASE("no material has the law of guards", "[scene][guards]") {
     World world;
     CHECK_THROWS_WITH(world.add_material(material), Catch::Matchers::Contains("model"));
 }
+
+}  // namespace skerry::test::scene_guards_test

@@ -6,8 +6,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::held_bodies_test {
 
 namespace {
 
@@ -241,3 +240,5 @@ TEST_CASE("nodes that do not hold a rigid body as a whole are refused", "[scene]
     edge.push_back(static_cast<Index>(cube.nodes.size()) - 1);
     CHECK_NOTHROW(world.attach(nut, edge));
 }
+
+}  // namespace skerry::test::held_bodies_test

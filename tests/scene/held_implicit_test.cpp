@@ -7,8 +7,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::held_implicit_test {
 
 namespace {
 
@@ -407,3 +406,5 @@ TEST_CASE("nodes that do not hold the frame of an implicit body are refused", "[
                                                         Catch::Matchers::Contains("the frame in which it deforms"));
     CHECK_NOTHROW(world.attach(nut, end_of(bar)));
 }
+
+}  // namespace skerry::test::held_implicit_test

@@ -7,8 +7,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::implicit_bodies_test {
 
 namespace {
 
@@ -444,3 +443,5 @@ TEST_CASE("leapfrog moves implicit bodies, too", "[scene][implicit]") {
     REQUIRE(scene.world.advance(1).ok());
     CHECK(scene.world.center_of_mass(scene.body).z() > 0.04);
 }
+
+}  // namespace skerry::test::implicit_bodies_test

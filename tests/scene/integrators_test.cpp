@@ -7,8 +7,7 @@
 
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::integrators_test {
 
 namespace {
 
@@ -244,3 +243,5 @@ TEST_CASE("a block on a scripted floor rests on it by leapfrog, and the floor is
     CHECK(mean_velocity(world, body, node_masses(world, body, mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), 1000)).z() ==
           Approx(0.1).margin(1e-3));
 }
+
+}  // namespace skerry::test::integrators_test

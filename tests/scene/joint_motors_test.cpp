@@ -6,8 +6,7 @@
 #include "skerry/joint.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::joint_motors_test {
 
 namespace {
 
@@ -127,3 +126,5 @@ TEST_CASE("a setter that gives what was there changes no bit", "[scene][joints]"
     CHECK_THROWS_AS(Joints(arm.world).set_limits(arm.hinge, 1, 0), SceneError);
     CHECK(arm.world.state_hash() == before);
 }
+
+}  // namespace skerry::test::joint_motors_test

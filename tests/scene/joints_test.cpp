@@ -8,8 +8,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::joints_test {
 
 namespace {
 
@@ -327,3 +326,5 @@ TEST_CASE("what joints cannot join is refused by name", "[scene][joints]") {
     const auto body = letter.add_body(bar, {.material = letter.add_material({}), .dynamics = BodyDynamics::rigid});
     CHECK_THROWS_WITH(Joints(letter).add({.first = body}), Catch::Matchers::Contains("paper_algorithm_1"));
 }
+
+}  // namespace skerry::test::joints_test

@@ -6,7 +6,7 @@
 #include "skerry/mesh.h"
 #include "skerry/world.h"
 
-using namespace skerry;
+namespace skerry::test::known_meshes_test {
 
 TEST_CASE("bodies that come one after the other have the bits of bodies that come by themselves", "[scene]") {
     Mesh ball = mesh::ball(0.05, 4), long_one = ball, labelled = ball;
@@ -46,3 +46,5 @@ TEST_CASE("bodies that come one after the other have the bits of bodies that com
             CHECK(hash[0] == hash[1]);
         }
 }
+
+}  // namespace skerry::test::known_meshes_test

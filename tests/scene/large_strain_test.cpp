@@ -6,8 +6,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::scene_large_strain_test {
 
 namespace {
 
@@ -480,3 +479,5 @@ TEST_CASE("a step of large strain that is not found is refused whole, and says w
     CHECK(scene.world.state_hash() == before);
     CHECK(scene.world.advance(0.2).ok());
 }
+
+}  // namespace skerry::test::scene_large_strain_test

@@ -7,8 +7,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::long_implicit_steps_test {
 
 namespace {
 
@@ -340,3 +339,5 @@ TEST_CASE("a fine stiff cube that lands in long steps is solved to the tolerance
     CHECK(world.contacts().size() >= 121);
     CHECK(report.unconverged == 0);
 }
+
+}  // namespace skerry::test::long_implicit_steps_test

@@ -5,8 +5,7 @@
 
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::losses_test {
 
 namespace {
 
@@ -179,3 +178,5 @@ TEST_CASE("a body that is damped heavily is stable at its stable step", "[scene]
         CHECK(report.energy_error_share < 0.01);
     }
 }
+
+}  // namespace skerry::test::losses_test

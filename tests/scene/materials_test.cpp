@@ -5,8 +5,8 @@
 #include "tests/support/element_kinds.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::scene_materials_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -208,3 +208,5 @@ TEST_CASE("materials of tetrahedra that do not fit the mesh are refused", "[scen
                Contains("mesh: found 95 labels, expected 96, one for each tetrahedron, or none"));
     CHECK(world.state_hash() == before);
 }
+
+}  // namespace skerry::test::scene_materials_test

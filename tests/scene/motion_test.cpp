@@ -7,8 +7,7 @@
 #include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::scene_motion_test {
 
 TEST_CASE("a time that more steps than an int counts would fill is refused before the first step", "[scene]") {
     World world(Settings{.step_size = 1e-30});
@@ -237,3 +236,5 @@ TEST_CASE("a mesh collider that goes leaves bodies and attachments that came aft
     world.remove(led);
     CHECK(world.advance(0.01).ok());
 }
+
+}  // namespace skerry::test::scene_motion_test

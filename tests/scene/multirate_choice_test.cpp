@@ -4,8 +4,7 @@
 
 #include "tests/support/multirate_worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::multirate_choice_test {
 
 TEST_CASE("with multirate slivers become implicit where that saves more than levels", "[scene]") {
     // what bounds the steps of all: as without multirate, but for the order of sums (BlockOrder)
@@ -90,3 +89,5 @@ TEST_CASE("short calls pump up nothing that stands a few steps", "[scene]") {
     CHECK(10 * world.report().element_impulses < 9 * world.report().element_steps);
     CHECK(world.report().energy_error_share < 0.01);
 }
+
+}  // namespace skerry::test::multirate_choice_test

@@ -7,8 +7,7 @@
 #include "tests/support/multirate_worlds.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::multirate_test {
 
 namespace {
 
@@ -379,3 +378,5 @@ TEST_CASE("forward Euler and multirate exclude each other, and the message says 
     settings.multirate = true;
     CHECK_THROWS_WITH(World(settings), Catch::Contains("multirate") && Catch::Contains("forward_euler"));
 }
+
+}  // namespace skerry::test::multirate_test

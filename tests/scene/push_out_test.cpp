@@ -4,8 +4,7 @@
 
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::scene_push_out_test {
 
 TEST_CASE("a block that starts on a floor, or in it, is lifted and not thrown", "[scene]") {
     constexpr Real height = 0.2;
@@ -34,3 +33,5 @@ TEST_CASE("a block that starts on a floor, or in it, is lifted and not thrown", 
             CHECK(report.max_penetration <= std::max(0.0, -start) * 1.0001 + 1e-9);
         }
 }
+
+}  // namespace skerry::test::scene_push_out_test

@@ -10,8 +10,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::resting_contacts_test {
 
 namespace {
 
@@ -290,3 +289,5 @@ TEST_CASE("a collider that begins to move ends the steps that are left out", "[s
     CHECK(stack.world.center_of_mass(stack.high).z() < 0.152);
     CHECK(stack.world.report().resting_steps == left_out);
 }
+
+}  // namespace skerry::test::resting_contacts_test

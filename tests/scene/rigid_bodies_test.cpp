@@ -6,8 +6,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::rigid_bodies_test {
 
 namespace {
 
@@ -383,3 +382,5 @@ TEST_CASE("leapfrog moves rigid bodies to second order", "[scene][rigid]") {
     CHECK(scene.world.center_of_mass(scene.body).z() == Approx(0.5 - standard_gravity / 8).epsilon(1e-12));
     CHECK(strain(scene.world.positions(scene.body), cube) < 1e-14);
 }
+
+}  // namespace skerry::test::rigid_bodies_test

@@ -5,8 +5,7 @@
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::self_contact_test {
 
 namespace {
 
@@ -87,3 +86,5 @@ TEST_CASE("a sheet folded onto itself and pressed down does not go through itsel
     CHECK(with.world.report().crossed == 0);
     CHECK(folded_sheet(false).crossed > 0);
 }
+
+}  // namespace skerry::test::self_contact_test

@@ -6,12 +6,12 @@
 #include "jobs/executor.h"
 #include "skerry/scene.h"
 
-using namespace skerry;
+namespace skerry::test::shipped_scenes_test {
 
 namespace {
 
 Scene open_scene(const char* name, const SceneOverrides& overrides = {}) {
-    return load_scene(std::string(SKERRY_SCENES) + "/" + name + ".json", overrides);
+    return load_scene(std::string(SKERRY_SOURCE_DIR) + "/scenes/" + name + ".json", overrides);
 }
 
 /// Runs to `seconds`, looking after every sixtieth of a second.
@@ -167,3 +167,5 @@ TEST_CASE("bodies from mesh files drop and lie still", "[scene][slow]") {
     CHECK(scene.world.report().max_penetration < 0.02 * mean_edge(scene.world));
     for (BodyHandle body : scene.world.bodies()) CHECK(scene.world.center_of_mass(body).z() > 0);
 }
+
+}  // namespace skerry::test::shipped_scenes_test

@@ -6,8 +6,7 @@
 #include "skerry/joint.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::sleep_test {
 
 namespace {
 
@@ -374,3 +373,5 @@ TEST_CASE("rest is the same on any number of threads", "[scene]") {
     CHECK(hash[1] == hash[0]);
     CHECK(hash[2] == hash[0]);
 }
+
+}  // namespace skerry::test::sleep_test

@@ -11,8 +11,7 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::spheres_test {
 
 namespace {
 
@@ -456,3 +455,5 @@ TEST_CASE("spheres have the same bits on any number of threads, cloned, and from
     };
     check_same_bits(course, [](World& world) { REQUIRE(world.advance(0.3).ok()); });
 }
+
+}  // namespace skerry::test::spheres_test

@@ -7,8 +7,8 @@
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::start_overlaps_test {
+
 using Catch::Contains;
 
 namespace {
@@ -399,3 +399,5 @@ TEST_CASE("a world that had nothing to take apart has the same bits whatever is 
     CHECK(hashes[0] == hashes[1]);
     CHECK(hashes[0] == hashes[2]);
 }
+
+}  // namespace skerry::test::start_overlaps_test

@@ -7,7 +7,7 @@
 #include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
+namespace skerry::test::step_limits_test {
 
 namespace {
 
@@ -118,3 +118,5 @@ TEST_CASE("no step is shortened for slivers that turn over", "[scene]") {
     CHECK(report.inversions > 10);
     for (const StepLimitReport& of : report.step_limits) CHECK(of.limit != StepLimit::inversion);
 }
+
+}  // namespace skerry::test::step_limits_test

@@ -8,7 +8,7 @@
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
+namespace skerry::test::step_watch_test {
 
 namespace {
 
@@ -172,3 +172,5 @@ TEST_CASE("bodies at rest are not looked at", "[scene]") {
         if (i > 130) CHECK(model.watch.look.piece == 0);
     }
 }
+
+}  // namespace skerry::test::step_watch_test

@@ -10,7 +10,7 @@
 #include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
+namespace skerry::test::transaction_test {
 
 namespace {
 
@@ -195,3 +195,5 @@ TEST_CASE("only what the transaction puts back is written before a step is known
     CHECK(written == std::set<std::string>{"nodes.velocity", "bodies.max_speed", "elements.implicit_modulus",
                                            "pairs.key", "pairs.kind", "pairs.first", "pairs.second", "pairs.state"});
 }
+
+}  // namespace skerry::test::transaction_test

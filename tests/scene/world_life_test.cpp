@@ -7,8 +7,7 @@
 #include "skerry/problem.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::world_life_test {
 
 namespace {
 
@@ -251,3 +250,5 @@ TEST_CASE("bodies of one mesh have the same bits whether what was found of the f
     };
     CHECK(falls(false) == falls(true));
 }
+
+}  // namespace skerry::test::world_life_test

@@ -1,39 +1,10 @@
-// Replaces operator new of the program and counts what it hands out. For one source file of a program.
+// Programs that link count_allocations.cpp count the calls of operator new.
 #pragma once
 
 #include <atomic>
-#include <cstddef>
-#include <cstdlib>
-#include <new>
 
-namespace {
+namespace skerry::test {
 
-std::atomic<long> allocations{0};
+extern std::atomic<long> allocations;
 
-void* counted(std::size_t size, std::size_t alignment) {
-    ++allocations;
-    void* const memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    if (!memory) throw std::bad_alloc();
-    return memory;
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-    return counted(size + (size == 0), alignof(std::max_align_t));
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return counted(size + (size == 0), static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
-}
+}  // namespace skerry::test

@@ -8,8 +8,8 @@
 #include "tests/support/contact_scene.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::bar_impact_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -286,3 +286,5 @@ TEST_CASE("two equal bars swap their velocities", "[scene][accuracy]") {
                      .kind = Tolerance::absolute,
                      .note = front_note});
 }
+
+}  // namespace skerry::test::bar_impact_test

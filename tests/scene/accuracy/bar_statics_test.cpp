@@ -8,8 +8,8 @@
 #include "tests/support/frequency.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::bar_statics_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -255,3 +255,5 @@ TEST_CASE("damping takes nothing of the stretch of a spinning bar", "[scene]") {
         CHECK(std::abs(strong - fine) <= 2e-5 * strong);  // second order: (omega h)^2 is 6e-7
     }
 }
+
+}  // namespace skerry::test::bar_statics_test

@@ -6,8 +6,8 @@
 #include "tests/support/frequency.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::cantilever_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -196,3 +196,5 @@ TEST_CASE("four smoothed elements in the height bend as the beam does", "[scene]
                          .tolerance = of_frequency});
     }
 }
+
+}  // namespace skerry::test::cantilever_test

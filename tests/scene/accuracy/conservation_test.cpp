@@ -7,8 +7,8 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::conservation_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -264,3 +264,5 @@ TEST_CASE("a bar that bounces without friction never gains discrete energy", "[s
                                  "needs. With a thin one a node can enter the shell, and leave it with a gain."});
     }
 }
+
+}  // namespace skerry::test::conservation_test

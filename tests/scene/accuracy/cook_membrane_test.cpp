@@ -5,8 +5,7 @@
 #include "tests/support/mapped_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::cook_membrane_test {
 
 namespace {
 
@@ -66,3 +65,5 @@ TEST_CASE("a tapered panel bends under a shear load on its short side", "[scene]
                          .found = displacement(c.kind, c.nu),
                          .tolerance = c.tolerance});
 }
+
+}  // namespace skerry::test::cook_membrane_test

@@ -5,8 +5,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::free_motion_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -86,3 +86,5 @@ TEST_CASE("free fall follows the discrete law to rounding, and the exact law in 
                      .found = std::log2(coarse / fine),
                      .tolerance = 1e-6});
 }
+
+}  // namespace skerry::test::free_motion_test

@@ -6,8 +6,8 @@
 #include "tests/support/graded_half_ball.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::hertz_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -213,3 +213,5 @@ TEST_CASE("smoothed elements press and bounce as Hertz has it on the coarse mesh
                      .found = bounce(10 * a, 3, ElementKind::smoothed),
                      .tolerance = 0.03});
 }
+
+}  // namespace skerry::test::hertz_test

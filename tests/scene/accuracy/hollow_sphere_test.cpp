@@ -6,8 +6,7 @@
 #include "tests/support/mapped_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::hollow_sphere_test {
 
 namespace {
 
@@ -113,3 +112,5 @@ TEST_CASE("a thick hollow sphere widens under pressure from inside", "[scene][ac
                          .kind = accuracy::Tolerance::absolute});
     }
 }
+
+}  // namespace skerry::test::hollow_sphere_test

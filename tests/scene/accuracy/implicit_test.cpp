@@ -7,8 +7,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::implicit_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -141,3 +141,5 @@ TEST_CASE("no step of implicit bodies that hit each other gains energy", "[scene
                          .kind = Tolerance::absolute});
     }
 }
+
+}  // namespace skerry::test::implicit_test

@@ -4,8 +4,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::incline_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -102,3 +102,5 @@ TEST_CASE("a block slides alike at 1 m, 10 cm and 1 cm", "[scene][accuracy]") {
                          .tolerance = 0.001});
     }
 }
+
+}  // namespace skerry::test::incline_test

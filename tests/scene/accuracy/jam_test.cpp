@@ -7,8 +7,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::jam_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -224,3 +224,5 @@ TEST_CASE("Painleve's rod gets an impulse", "[scene][accuracy]") {
                      .tolerance = 1e-3,
                      .kind = Tolerance::absolute});
 }
+
+}  // namespace skerry::test::jam_test

@@ -5,8 +5,7 @@
 #include "tests/support/mapped_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::layered_cantilever_test {
 
 namespace {
 
@@ -61,3 +60,5 @@ TEST_CASE("a beam of two layers bends as a fine mesh of quadratic elements does"
                          .found = displacement(kind),
                          .tolerance = tolerance});
 }
+
+}  // namespace skerry::test::layered_cantilever_test

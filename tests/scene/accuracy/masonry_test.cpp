@@ -8,8 +8,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::masonry_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -175,3 +175,5 @@ TEST_CASE("a house of two rigid cards stands as long as its feet do not slip", "
                              .kind = Tolerance::absolute});
     }
 }
+
+}  // namespace skerry::test::masonry_test

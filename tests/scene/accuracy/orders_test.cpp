@@ -5,8 +5,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::orders_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -181,3 +181,5 @@ TEST_CASE("the Coulomb gap of every step is within the tolerance of the solver",
                      .tolerance = tolerance,
                      .kind = Tolerance::absolute});
 }
+
+}  // namespace skerry::test::orders_test

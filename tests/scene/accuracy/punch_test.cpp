@@ -6,8 +6,7 @@
 #include "tests/support/mapped_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::punch_test {
 
 namespace {
 
@@ -117,3 +116,5 @@ TEST_CASE("a rigid flat punch is pressed into a block", "[scene][accuracy]") {
                                  "punch: the pressure of a linear material is harmonic."});
     }
 }
+
+}  // namespace skerry::test::punch_test

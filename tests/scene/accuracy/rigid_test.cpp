@@ -7,8 +7,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::accuracy_rigid_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -250,3 +250,5 @@ TEST_CASE("three rigid cubes in a row that touch go on together", "[scene][accur
                          .found = world.velocities(body)[0].x(),
                          .tolerance = 1e-9});
 }
+
+}  // namespace skerry::test::accuracy_rigid_test

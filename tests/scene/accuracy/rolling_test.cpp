@@ -10,8 +10,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::rolling_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -270,3 +270,5 @@ TEST_CASE("a rigid rod of Painleve's jams with a finite impulse", "[scene][accur
                      .tolerance = 1e-12,
                      .kind = Tolerance::absolute});
 }
+
+}  // namespace skerry::test::rolling_test

@@ -6,8 +6,8 @@
 #include "tests/support/contact_scene.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::sliding_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -197,3 +197,5 @@ TEST_CASE("a plate slows down alike in 16 directions under the cone", "[scene][a
                      .tolerance = 1e-6,
                      .kind = Tolerance::absolute});
 }
+
+}  // namespace skerry::test::sliding_test

@@ -6,8 +6,8 @@
 #include "tests/support/jittered_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::smoothed_bar_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -106,3 +106,5 @@ TEST_CASE("a finer clamped bar swings as it should where no cell has the shape o
              .found = first_period(mesh, kind, 0.3),
              .tolerance = tolerance});
 }
+
+}  // namespace skerry::test::smoothed_bar_test

@@ -6,8 +6,8 @@
 #include "tests/support/contact_scene.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::accuracy_solver_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -141,3 +141,5 @@ TEST_CASE("what the solver leaves over in each step does not add up as steps get
         CHECK(distance(worlds[0], worlds[1]) < 1e-5 * length);
     }
 }
+
+}  // namespace skerry::test::accuracy_solver_test

@@ -9,8 +9,8 @@
 #include "tests/support/graded_half_ball.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::stiff_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -320,3 +320,5 @@ TEST_CASE("an implicit ball is pressed flat as Hertz says, whatever the step", "
                      .found = slow.radius / coarse.radius,
                      .tolerance = 1e-3});
 }
+
+}  // namespace skerry::test::stiff_test

@@ -9,8 +9,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::top_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -143,3 +143,5 @@ TEST_CASE("a rigid top sleeps upright iff it spins fast enough", "[scene][accura
                      .tolerance = 0,
                      .kind = Tolerance::absolute});
 }
+
+}  // namespace skerry::test::top_test

@@ -5,8 +5,8 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::topple_test {
+
 using accuracy::Tolerance;
 
 namespace {
@@ -163,3 +163,5 @@ TEST_CASE("a sliding ball ends up rolling with 5/7 of its speed", "[scene][accur
                      .found = way,
                      .tolerance = 0.02});
 }
+
+}  // namespace skerry::test::topple_test

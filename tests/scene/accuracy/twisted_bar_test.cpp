@@ -5,8 +5,7 @@
 #include "tests/support/mapped_box.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::twisted_bar_test {
 
 namespace {
 
@@ -53,3 +52,5 @@ TEST_CASE("a bar is twisted by half a turn", "[scene][accuracy]") {
                          .found = energy(kind, 0.45),
                          .tolerance = tolerance});
 }
+
+}  // namespace skerry::test::twisted_bar_test

@@ -5,8 +5,7 @@
 #include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::bodies_test {
 
 namespace {
 
@@ -123,3 +122,5 @@ TEST_CASE("whether any body has loads is known after each is set, added and remo
     REQUIRE(world.advance(0.01).ok());
     CHECK(world.center_of_mass(scene.first).norm() < 1e-12);
 }
+
+}  // namespace skerry::test::bodies_test

@@ -7,8 +7,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::collisions_test {
 
 namespace {
 
@@ -162,3 +161,5 @@ TEST_CASE("a scene has groups and masks, and refuses what has no 32 bits", "[sce
     CHECK_THROWS_WITH(collides("4294967296"), Catch::Contains("collision_group"));
     CHECK_THROWS_WITH(collides("1.5"), Catch::Contains("collision_group"));
 }
+
+}  // namespace skerry::test::collisions_test

@@ -8,8 +8,7 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::dynamics_test {
 
 namespace {
 
@@ -246,3 +245,5 @@ TEST_CASE("a world whose bodies have changed kind goes on bit by bit, on any num
         REQUIRE(world.advance(0.05).ok());
     });
 }
+
+}  // namespace skerry::test::dynamics_test

@@ -4,8 +4,7 @@
 #include "engine/world/world_state.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::control_materials_test {
 
 namespace {
 
@@ -169,3 +168,5 @@ TEST_CASE("what elements have forgotten stays as it is once losses are off", "[s
         CHECK(first() == forgotten);
     }
 }
+
+}  // namespace skerry::test::control_materials_test

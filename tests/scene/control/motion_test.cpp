@@ -7,8 +7,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::control_motion_test {
 
 namespace {
 
@@ -286,3 +285,5 @@ TEST_CASE("worlds that are controlled go on with the same bits on any number of 
     CHECK(control(copy, one, 30, 60) == expected);
     CHECK(control(loaded, one, 30, 60) == expected);
 }
+
+}  // namespace skerry::test::control_motion_test

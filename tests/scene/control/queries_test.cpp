@@ -7,8 +7,7 @@
 #include "tests/support/random.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::queries_test {
 
 namespace {
 
@@ -142,3 +141,5 @@ TEST_CASE("questions without a meaning are refused by name", "[scene]") {
     CHECK_THROWS_WITH(scene.world.cast_ray({0, 0, 0}, {0, 0, 1}, -1), Contains("max_distance"));
     CHECK_THROWS_WITH(scene.world.nearest_point({0, 0, 0}, std::nan("")), Contains("max_distance"));
 }
+
+}  // namespace skerry::test::queries_test

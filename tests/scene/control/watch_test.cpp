@@ -5,8 +5,7 @@
 
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::watch_test {
 
 TEST_CASE("after every committed step positions, contacts and queries can be looked at, and nothing be set",
           "[scene]") {
@@ -67,3 +66,5 @@ TEST_CASE("a world that is watched has the bits of one that is not, and what the
         CHECK(watched.world.state_hash() == other.world.state_hash());
     }
 }
+
+}  // namespace skerry::test::watch_test

@@ -6,8 +6,8 @@
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::contact_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -212,3 +212,5 @@ TEST_CASE("a sheet pinched between two plates holds still and flat", "[scene][st
             at_most(21, scene, "edges through triangles", crossings(view(world, sheet), view(world, body)), 0);
     }
 }
+
+}  // namespace skerry::test::contact_test

@@ -6,8 +6,8 @@
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::crushed_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -155,3 +155,5 @@ TEST_CASE("a ball pressed through a hole half its size comes back", "[scene][str
     judge_return(31, scene, through, pressed, undisturbed, edge, 5);
     at_most(31, scene, "height at the end", through.middle().z(), -radius);
 }
+
+}  // namespace skerry::test::crushed_test

@@ -8,8 +8,8 @@
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::inputs_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -296,3 +296,5 @@ TEST_CASE("values that are numbers but beyond what can be calculated with change
         judge({18, c.name, "refused by name, or taken and finite; the other body untouched", found, held});
     }
 }
+
+}  // namespace skerry::test::inputs_test

@@ -7,8 +7,8 @@
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::invariance_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -132,3 +132,5 @@ TEST_CASE("units do not matter", "[scene][stress]") {
                 "positions apart / edge", apart / 0.04, 1e-6);
     }
 }
+
+}  // namespace skerry::test::invariance_test

@@ -7,8 +7,8 @@
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::stress_materials_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -185,3 +185,5 @@ TEST_CASE("a stack of twenty soft or stiff slabs stands", "[scene][stress][slow]
         at_most(19, scene, "energy gained at rest / in play", resting.gain(), 1e-2);
     }
 }
+
+}  // namespace skerry::test::stress_materials_test

@@ -3,7 +3,8 @@
 
 #include "tests/support/stress.h"
 
-using namespace skerry;
+namespace skerry::test::nearly_nothing_test {
+
 using namespace skerry::test::stress;
 
 TEST_CASE("worlds with nothing, nothing that moves, one tetrahedron or no contact run", "[scene][stress]") {
@@ -49,3 +50,5 @@ TEST_CASE("worlds with nothing, nothing that moves, one tetrahedron or no contac
         judge({24, "a step of no time", "nothing happens", text(none.steps) + " steps", none.ok() && none.steps == 0});
     }
 }
+
+}  // namespace skerry::test::nearly_nothing_test

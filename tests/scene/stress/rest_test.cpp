@@ -4,8 +4,8 @@
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::rest_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -269,3 +269,5 @@ TEST_CASE("bodies that come and go do not touch a bit of what they have no conta
     judge({28, "two pairs of balls; of one pair bodies are removed and added, 0.7 s",
            "positions and velocities of the other pair the same bits", same ? "yes" : "no", same});
 }
+
+}  // namespace skerry::test::rest_test

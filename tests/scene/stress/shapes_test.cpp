@@ -7,8 +7,8 @@
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::shapes_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -186,3 +186,5 @@ TEST_CASE("a plate crushes a box to a tenth of its height", "[scene][stress]") {
                recovered && after.finite});
     }
 }
+
+}  // namespace skerry::test::shapes_test

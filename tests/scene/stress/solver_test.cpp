@@ -5,7 +5,8 @@
 #include "tests/support/contact_scene.h"
 #include "tests/support/stress.h"
 
-using namespace skerry;
+namespace skerry::test::stress_solver_test {
+
 using namespace skerry::test::stress;
 
 namespace {
@@ -238,3 +239,5 @@ TEST_CASE("ten thousand points on one triangle are solved", "[scene][solver][str
     at_most(23, name, "energy left / before",
             scene.kinetic_energy(solved.velocity) / scene.kinetic_energy(scene.velocity), 1);
 }
+
+}  // namespace skerry::test::stress_solver_test

@@ -7,8 +7,8 @@
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::step_test {
+
 using namespace skerry::test::stress;
 
 TEST_CASE("a step_size above the stable step is not taken, and the report says for which body", "[scene][stress]") {
@@ -118,3 +118,5 @@ TEST_CASE("velocities that decay to nothing end at zero, not in denormal numbers
                host_has_denormals && host_rounds_up});
     }
 }
+
+}  // namespace skerry::test::step_test

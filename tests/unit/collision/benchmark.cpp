@@ -7,8 +7,7 @@
 #include "systems/collision/search/find_pairs.h"
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
-using test::CollisionWorld;
+namespace skerry::test::collision_benchmark {
 
 namespace {
 
@@ -154,3 +153,5 @@ TEST_CASE("figures of a fall", "[.benchmark]") {
         contacts / steps / double(w.body.slot.size()) * 1e6, std::size_t(w.search.broad_searches),
         std::size_t(w.search.pair_searches), steps, double(found) / steps);
 }
+
+}  // namespace skerry::test::collision_benchmark

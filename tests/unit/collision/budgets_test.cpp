@@ -9,7 +9,8 @@
 
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
+namespace skerry::test::budgets_test {
+
 using test::CollisionWorld;
 
 namespace {
@@ -276,3 +277,5 @@ TEST_CASE("blocks cover all candidates in order, with about a fifth as many of t
     CHECK((first.pair == 0 && first.candidate == 0));
     CHECK((last.pair == static_cast<Index>(w.pairs.size()) && last.candidate == 0));
 }
+
+}  // namespace skerry::test::budgets_test

@@ -10,7 +10,8 @@
 
 #include "tests/support/meshes.h"
 
-using namespace skerry;
+namespace skerry::test::build_surface_test {
+
 using test::SolidMesh;
 
 namespace {
@@ -206,3 +207,5 @@ TEST_CASE("a triangle that is three times one node is a point: one vertex, no ed
     CHECK(surface.triangles.owned_edges[1] == 0);
     for (const Index edge : surface.triangles.edge[1]) CHECK(edge == no_index);
 }
+
+}  // namespace skerry::test::build_surface_test

@@ -8,7 +8,7 @@
 #include "systems/collision/tree/leaf_boxes.h"
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
+namespace skerry::test::bvh_test {
 
 namespace {
 
@@ -210,3 +210,5 @@ TEST_CASE("a body without triangles has no tree", "[unit]") {
     CHECK(bvh.node.empty());
     CHECK(leaves.triangle.empty());
 }
+
+}  // namespace skerry::test::bvh_test

@@ -10,7 +10,7 @@
 #include "systems/geometry/closest_points.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::candidate_lanes_test {
 
 namespace {
 
@@ -72,3 +72,5 @@ TEST_CASE("eight candidates are as far apart, as fast and come as near as one by
         }
     }
 }
+
+}  // namespace skerry::test::candidate_lanes_test

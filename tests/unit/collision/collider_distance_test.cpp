@@ -7,7 +7,7 @@
 
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
+namespace skerry::test::collider_distance_test {
 
 namespace {
 
@@ -247,3 +247,5 @@ TEST_CASE("a point that is not a number has no distance and does no harm", "[uni
     for (const Named& shape : shapes)
         CHECK_FALSE(distance_to_collider(shape.geometry, test::CollisionWorld::at({1, 2, 3}), bad).distance <= 1e300);
 }
+
+}  // namespace skerry::test::collider_distance_test

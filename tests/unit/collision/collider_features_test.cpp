@@ -7,7 +7,7 @@
 #include "systems/collision/colliders/face_contact.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::collider_features_test {
 
 namespace {
 
@@ -208,3 +208,5 @@ TEST_CASE("a face meets the deepest point of a collider behind it, or an edge or
         CHECK(faces > 20);
     }
 }
+
+}  // namespace skerry::test::collider_features_test

@@ -9,7 +9,8 @@
 #include "systems/collision/narrow/edge_edge_contact.h"
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
+namespace skerry::test::contacts_test {
+
 using test::CollisionWorld;
 
 namespace {
@@ -435,3 +436,5 @@ TEST_CASE("an edge that lies on two edges of a face is held by the sharper, thou
                     CHECK(held.second.touching);
                 }
 }
+
+}  // namespace skerry::test::contacts_test

@@ -12,7 +12,8 @@
 #include "systems/geometry/closest_points.h"
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
+namespace skerry::test::find_candidates_test {
+
 using test::CollisionWorld;
 
 namespace {
@@ -353,3 +354,5 @@ TEST_CASE("no bodies, or one alone, give no pairs", "[unit]") {
     CHECK_FALSE(find_contacts(*w.executor, w.inputs(), w.settings, h, w.pairs, w.crossings, w.contacts));
     CHECK(w.contacts.size() == 0);
 }
+
+}  // namespace skerry::test::find_candidates_test

@@ -7,7 +7,8 @@
 #include "systems/collision/inputs/contact_key.h"
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
+namespace skerry::test::find_crossings_test {
+
 using test::CollisionWorld;
 
 namespace {
@@ -251,3 +252,5 @@ TEST_CASE("what find_contacts has looked at is all that a test of every feature 
     }
     CHECK(crossings > 30);
 }
+
+}  // namespace skerry::test::find_crossings_test

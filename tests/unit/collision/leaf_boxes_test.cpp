@@ -6,7 +6,7 @@
 
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
+namespace skerry::test::leaf_boxes_test {
 
 namespace {
 
@@ -56,3 +56,5 @@ TEST_CASE("lanes are visited in rising order", "[unit]") {
     CHECK(seen == std::vector<std::size_t>{0, 1, 4, 7});
     for_each_lane(0, [](std::size_t) { FAIL("nothing to visit"); });
 }
+
+}  // namespace skerry::test::leaf_boxes_test

@@ -13,7 +13,8 @@
 #include "tests/support/collision_world.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::look_at_awake_test {
+
 using test::CollisionWorld;
 
 namespace {
@@ -97,3 +98,5 @@ TEST_CASE("candidates that are looked at together are found and sleep as each al
     CHECK(far_edges > 100);
     CHECK(far_points > 100);
 }
+
+}  // namespace skerry::test::look_at_awake_test

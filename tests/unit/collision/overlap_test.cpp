@@ -9,8 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/surfaces_cross.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::overlap_test {
 
 namespace {
 
@@ -304,3 +303,5 @@ TEST_CASE("a tree over boxes finds what overlaps, and nothing that is not finite
     BoxTree().for_each_overlap(boxes[0], [&](Index) { ++visits; });
     CHECK(visits == 0);
 }
+
+}  // namespace skerry::test::overlap_test

@@ -7,7 +7,7 @@
 #include "systems/collision/inputs/contact_key.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::sort_found_test {
 
 namespace {
 
@@ -53,3 +53,5 @@ TEST_CASE("of one kind alone as many are put in order as of three", "[unit]") {
     sort_by_feature(found);
     for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i].asleep_until == static_cast<Real>(i));
 }
+
+}  // namespace skerry::test::sort_found_test

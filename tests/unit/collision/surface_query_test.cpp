@@ -10,8 +10,7 @@
 #include "tests/support/collision_world.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::surface_query_test {
 
 namespace {
 
@@ -150,3 +149,5 @@ TEST_CASE("a ray meets an analytic shape where its distance is first zero, with 
         CHECK(inside > 5);
     }
 }
+
+}  // namespace skerry::test::surface_query_test

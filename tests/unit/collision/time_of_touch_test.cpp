@@ -11,7 +11,8 @@
 #include "systems/geometry/time_of_contact.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::time_of_touch_test {
+
 using test::Random;
 using Kind = TouchingFeature::Kind;
 
@@ -269,3 +270,5 @@ TEST_CASE("a face that slides very near along a ball for long is not given up as
     for (Vec3& d : face.displacement) d = {0.5, 0, -2e-9};
     CHECK(first_touch(ball, still, h, face));
 }
+
+}  // namespace skerry::test::time_of_touch_test

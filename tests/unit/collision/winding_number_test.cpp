@@ -5,8 +5,7 @@
 
 #include "tests/support/collision_world.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::winding_number_test {
 
 TEST_CASE("the surface of a body goes once round what is within, and not round what is outside", "[unit]") {
     CollisionWorld world;
@@ -39,3 +38,5 @@ TEST_CASE("where a body overlaps itself the number is two, and such a place is n
     CHECK(winding_number(world.inputs(), 0, {-0.25, 0.1, 0}) == Approx(1));
     CHECK(is_outside(world.inputs(), 0, {-0.75, 0.1, 0}));
 }
+
+}  // namespace skerry::test::winding_number_test

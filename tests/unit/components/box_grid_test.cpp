@@ -7,7 +7,7 @@
 
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::box_grid_test {
 
 namespace {
 
@@ -102,3 +102,5 @@ TEST_CASE("of boxes as large as their distance few are told that do not meet", "
     grid.build(boxes, rows);
     CHECK(visits_of(grid, rows).size() < 100 * boxes.size());  // all pairs: 864 for each
 }
+
+}  // namespace skerry::test::box_grid_test

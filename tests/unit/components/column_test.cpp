@@ -9,7 +9,7 @@
 
 #include "components/types.h"
 
-using namespace skerry;
+namespace skerry::test::column_test {
 
 namespace {
 
@@ -144,3 +144,5 @@ TEST_CASE("spans of a column show its rows", "[unit]") {
 static_assert(!std::is_convertible_v<const Column<int>&, std::span<int>>);
 // A column of vectors is a flat array of reals, which output and snapshots rely on.
 static_assert(sizeof(Vec3) == 3 * sizeof(Real) && sizeof(Mat3) == 9 * sizeof(Real));
+
+}  // namespace skerry::test::column_test

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::handle_test {
 
 namespace {
 
@@ -94,3 +94,5 @@ TEST_CASE("handles agree with a plain list of rows over random insertions and er
     }
     for (const BodyHandle& handle : dead) REQUIRE(map.row(handle) == no_index);
 }
+
+}  // namespace skerry::test::handle_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::hash_test {
 
 namespace {
 
@@ -77,3 +77,5 @@ TEST_CASE("a column is hashed with its length: rows that move to the next column
     second.add(two);
     CHECK(first.value() != second.value());
 }
+
+}  // namespace skerry::test::hash_test

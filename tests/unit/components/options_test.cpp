@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-using namespace skerry;
+namespace skerry::test::options_test {
 
 namespace {
 
@@ -33,3 +33,5 @@ TEST_CASE("names are those that scenes are written with", "[unit]") {
     REQUIRE(name_of(ContactRegions::paper_algorithm_1) == "paper_algorithm_1");
     REQUIRE(from_name<Friction>("Cone") == std::nullopt);  // case counts
 }
+
+}  // namespace skerry::test::options_test

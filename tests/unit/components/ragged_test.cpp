@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::ragged_test {
 
 namespace {
 
@@ -42,3 +42,5 @@ TEST_CASE("a cleared ragged has no rows", "[unit]") {
     ragged.clear();
     REQUIRE(ragged.size() == 0);
 }
+
+}  // namespace skerry::test::ragged_test

@@ -7,7 +7,7 @@
 
 #include "components/union_find.h"
 
-using namespace skerry;
+namespace skerry::test::shared_union_find_test {
 
 TEST_CASE("sets that threads join at the same time are those of one thread", "[unit]") {
     constexpr Index count = 300;
@@ -48,3 +48,5 @@ TEST_CASE("sets that threads join at the same time are those of one thread", "[u
         }
     }
 }
+
+}  // namespace skerry::test::shared_union_find_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace skerry;
+namespace skerry::test::split_mix_test {
 
 TEST_CASE("the generator is the published splitmix64", "[unit]") {
     SplitMix numbers(1234567);  // the first numbers of Vigna's reference implementation, https://prng.di.unimi.it
@@ -24,3 +24,5 @@ TEST_CASE("fractions lie from 0 to 1 and symmetric numbers from -1 to 1, the upp
     CHECK((lowest >= -1 && lowest < -1 + 2e-3));
     CHECK((highest < 1 && highest > 1 - 2e-3));
 }
+
+}  // namespace skerry::test::split_mix_test

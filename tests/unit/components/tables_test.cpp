@@ -13,7 +13,7 @@
 #include "components/resting_contact_table.h"
 #include "components/surface_table.h"
 
-using namespace skerry;
+namespace skerry::test::tables_test {
 
 // A column that is missing from the list would be lost by a snapshot. All columns have the same size in memory, so the
 // table's size says how many there are; a flag or two beside them (RegionTable) is less than one column more.
@@ -58,3 +58,5 @@ TEST_CASE("a failed check says what and where", "[unit]") {
     REQUIRE_THROWS_WITH(SKERRY_CHECK(rows == 4), Catch::Contains("rows == 4") && Catch::Contains("tables_test.cpp"));
 }
 #endif
+
+}  // namespace skerry::test::tables_test

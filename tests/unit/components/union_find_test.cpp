@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::union_find_test {
 
 namespace {
 
@@ -67,3 +67,5 @@ TEST_CASE("a start forgets the joins before it, when its stamps are used up as w
     CHECK(sets.root(2) == 2);
     CHECK(sets.number(2) == 0);
 }
+
+}  // namespace skerry::test::union_find_test

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::keep_resting_contacts_test {
 
 namespace {
 
@@ -118,3 +118,5 @@ TEST_CASE("contacts of a step and of what rests are shown in one order, each onc
     merge_contacts(world.contacts, kept, rows);
     CHECK(std::vector(rows.begin(), rows.end()) == std::vector<Index>{0, 1, ~1, ~2, 2, 3, ~4});
 }
+
+}  // namespace skerry::test::keep_resting_contacts_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::match_warm_start_test {
 
 namespace {
 
@@ -215,3 +215,5 @@ TEST_CASE("handing on gives the same on any number of workers", "[unit][contact]
         CHECK(matched == expected);
     }
 }
+
+}  // namespace skerry::test::match_warm_start_test

@@ -5,7 +5,7 @@
 
 #include "systems/contact/tangent_frame.h"
 
-using namespace skerry;
+namespace skerry::test::measure_contacts_test {
 
 namespace {
 
@@ -115,3 +115,5 @@ TEST_CASE("the tangent frame is orthonormal and right-handed for every normal", 
         CHECK(volume == Approx(1));
     }
 }
+
+}  // namespace skerry::test::measure_contacts_test

@@ -10,7 +10,7 @@
 
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::separate_regions_test {
 
 namespace {
 
@@ -357,3 +357,5 @@ TEST_CASE("what a joint joins is one region, and what no contact touches one of 
     CHECK_FALSE(
         separate_regions(in_order(), {}, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, none));
 }
+
+}  // namespace skerry::test::separate_regions_test

@@ -9,7 +9,8 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/sliver_box.h"
 
-using namespace skerry;
+namespace skerry::test::build_elements_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -232,3 +233,5 @@ TEST_CASE("a comparison holds in all lanes, or not", "[unit]") {
         CHECK(all(value > 0.0) == (pattern == (1U << element_lanes) - 1));
     }
 }
+
+}  // namespace skerry::test::build_elements_test

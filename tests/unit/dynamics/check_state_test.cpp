@@ -7,7 +7,7 @@
 
 #include "tests/support/elastic_body.h"
 
-using namespace skerry;
+namespace skerry::test::check_state_test {
 
 namespace {
 
@@ -321,3 +321,5 @@ TEST_CASE("how fast the fastest element deforms is said where it would be too fa
         CHECK(state.check(0.5 * rate, 1).fastest.rate == Approx(rate));
     }
 }
+
+}  // namespace skerry::test::check_state_test

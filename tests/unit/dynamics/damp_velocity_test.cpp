@@ -9,7 +9,7 @@
 
 #include "tests/support/jittered_box.h"
 
-using namespace skerry;
+namespace skerry::test::damp_velocity_test {
 
 namespace {
 
@@ -268,3 +268,5 @@ TEST_CASE("damping has the same bits on any number of workers", "[unit][determin
             CHECK(std::memcmp(reference.data(), cloud.velocity.data(), reference.size() * sizeof(Vec3)) == 0);
     }
 }
+
+}  // namespace skerry::test::damp_velocity_test

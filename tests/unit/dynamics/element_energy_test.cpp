@@ -7,7 +7,8 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::element_energy_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -75,3 +76,5 @@ TEST_CASE("the worst volume ratio names the tetrahedron that is pressed most", "
     body.position[3].x() = std::numeric_limits<Real>::quiet_NaN();
     CHECK(std::isnan(ratios().smallest));
 }
+
+}  // namespace skerry::test::element_energy_test

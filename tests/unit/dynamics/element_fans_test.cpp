@@ -9,7 +9,8 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::element_fans_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -127,3 +128,5 @@ TEST_CASE("fans add the forces that their elements add one by one", "[unit]") {
         for (std::size_t n = 0; n < by_fans.size(); ++n) CHECK((by_fans[n] - one_by_one[n]).norm() < 1e-13 * largest);
     }
 }
+
+}  // namespace skerry::test::element_fans_test

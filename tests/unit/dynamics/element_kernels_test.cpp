@@ -6,7 +6,8 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::element_kernels_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -120,3 +121,5 @@ TEST_CASE("element and node forces have the same bits on any number of workers",
         }
     }
 }
+
+}  // namespace skerry::test::element_kernels_test

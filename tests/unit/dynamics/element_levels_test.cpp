@@ -7,8 +7,7 @@
 #include "systems/dynamics/stability/stable_step.h"
 #include "tests/support/elastic_body.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::element_levels_test {
 
 namespace {
 
@@ -248,3 +247,5 @@ TEST_CASE("frames and strains are kept of blocks that were due", "[unit]") {
         CHECK((body.patches.relaxed[b] > 0) == (b % 2 == 1));
     }
 }
+
+}  // namespace skerry::test::element_levels_test

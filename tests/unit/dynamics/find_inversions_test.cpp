@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-using namespace skerry;
+namespace skerry::test::find_inversions_test {
 
 namespace {
 
@@ -185,3 +185,5 @@ TEST_CASE("a sliver that turns over is counted, but no step is shortened for it"
     CHECK(found.tetrahedron == 1);
     CHECK(found.first);
 }
+
+}  // namespace skerry::test::find_inversions_test

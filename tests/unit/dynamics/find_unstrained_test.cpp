@@ -8,8 +8,7 @@
 #include "tests/support/elastic_body.h"
 #include "tests/support/element_kinds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::find_unstrained_test {
 
 namespace {
 
@@ -117,3 +116,5 @@ TEST_CASE("elements of what becomes unstrained remember for the next step what t
         if (!body.elements.viscous_strain_next.empty()) CHECK(body.elements.viscous_strain_next[b][0].lane[0] == 0);
     }
 }
+
+}  // namespace skerry::test::find_unstrained_test

@@ -12,7 +12,8 @@
 #include "tests/support/exact_frequency.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::frame_masses_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -207,3 +208,5 @@ TEST_CASE("nothing is found for a body without elements or of too many, nor a st
     body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();
     CHECK(test::stable_step_of(body) == 0);
 }
+
+}  // namespace skerry::test::frame_masses_test

@@ -18,7 +18,7 @@
 #include "tests/support/jittered_box.h"
 #include "tests/support/sliver_box.h"
 
-using namespace skerry;
+namespace skerry::test::implicit_elements_test {
 
 namespace {
 
@@ -488,3 +488,5 @@ TEST_CASE("implicit elements far from rest are viscous: they lose energy, no mom
     for (std::size_t n = 0; n < rest.size(); ++n) box.body.velocity[n] = spin.cross(box.body.position[n]);
     CHECK(largest(viscous_forces(box, viscous)) < 1e-9 * largest(added));
 }
+
+}  // namespace skerry::test::implicit_elements_test

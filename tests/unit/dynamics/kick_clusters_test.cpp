@@ -5,7 +5,7 @@
 
 #include "tests/support/elastic_body.h"
 
-using namespace skerry;
+namespace skerry::test::kick_clusters_test {
 
 namespace {
 
@@ -89,3 +89,5 @@ TEST_CASE("clusters of bodies at rest are not kicked", "[unit][clusters]") {
     for (std::size_t n = 0; n < next.size(); ++n)
         CHECK((next[n] - (n < 8 ? nodes.predicted[n] : all[n])).norm() < (n < 8 ? 1e-300 : 1e-13));
 }
+
+}  // namespace skerry::test::kick_clusters_test

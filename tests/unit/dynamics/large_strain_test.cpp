@@ -12,7 +12,8 @@
 #include "tests/support/material_models.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::dynamics_large_strain_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -303,3 +304,5 @@ TEST_CASE("that strain becomes large is seen by bounds as by looking each time",
     CHECK((model == MaterialModel::linear ? large == 0 : large > 20));
     CHECK(large < 580);
 }
+
+}  // namespace skerry::test::dynamics_large_strain_test

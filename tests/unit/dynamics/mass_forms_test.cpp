@@ -12,7 +12,8 @@
 #include "tests/support/exact_frequency.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::mass_forms_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -202,3 +203,5 @@ TEST_CASE("mass forms turn with the elements that they are of", "[unit]") {
                 if (body.volume(e) > 0) CHECK((body.deformation(e) - Mat3::Identity()).norm() < 1e-12);
         }
 }
+
+}  // namespace skerry::test::mass_forms_test

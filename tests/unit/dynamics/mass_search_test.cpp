@@ -7,7 +7,7 @@
 
 #include "components/split_mix.h"
 
-using namespace skerry;
+namespace skerry::test::mass_search_test {
 
 namespace {
 
@@ -96,3 +96,5 @@ TEST_CASE("corners are found at their places element by element", "[unit]") {
     CHECK(corners[2][1].lane == 5);
     CHECK(corners[2][2].block == 7);
 }
+
+}  // namespace skerry::test::mass_search_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::measure_displacement_test {
 
 namespace {
 
@@ -151,3 +151,5 @@ TEST_CASE("the speed in a new frame is that of the nodes in it", "[unit]") {
     REQUIRE(cloud.frame[0].velocity.x() == Approx(2.0 / 300));
     CHECK(cloud.frame_speed[0] == Approx(2 - 2.0 / 300));
 }
+
+}  // namespace skerry::test::measure_displacement_test

@@ -5,7 +5,7 @@
 
 #include "systems/geometry/rotation.h"
 
-using namespace skerry;
+namespace skerry::test::move_colliders_test {
 
 namespace {
 
@@ -101,3 +101,5 @@ TEST_CASE("driven nodes arrive where the motion ends", "[unit]") {
     CHECK((position[0] + h * velocity[0] - (Vec3(1, 0.1, 0) + end * anchor[1])).norm() <= 1e-14);
     CHECK(velocity[1] == Vec3(-1, -1, -1));
 }
+
+}  // namespace skerry::test::move_colliders_test

@@ -9,7 +9,7 @@
 #include "systems/dynamics/motion/predict_velocity.h"
 #include "systems/dynamics/stability/largest_length.h"
 
-using namespace skerry;
+namespace skerry::test::node_stages_test {
 
 namespace {
 
@@ -217,3 +217,5 @@ TEST_CASE("free fall follows its discrete law", "[unit]") {
     CHECK(nodes.velocity[0].z() == Approx(-g * steps * h).epsilon(1e-12));
     CHECK(nodes.position[0].z() == Approx(-g * h * h * steps * (steps + 1) / 2).epsilon(1e-12));
 }
+
+}  // namespace skerry::test::node_stages_test

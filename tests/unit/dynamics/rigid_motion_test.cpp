@@ -6,7 +6,7 @@
 #include "systems/dynamics/rigid/rigid_motion.h"
 #include "systems/geometry/rotation.h"
 
-using namespace skerry;
+namespace skerry::test::rigid_motion_test {
 
 namespace {
 
@@ -88,3 +88,5 @@ TEST_CASE("what rounding has strained is a rotation again", "[dynamics][rigid]")
     CHECK((again.transpose() * again - Mat3::Identity()).norm() < 1e-12);
     CHECK((again - rotation).norm() < 1e-6);
 }
+
+}  // namespace skerry::test::rigid_motion_test

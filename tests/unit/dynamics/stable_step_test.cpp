@@ -7,7 +7,8 @@
 #include "tests/support/exact_frequency.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::stable_step_test {
+
 using test::ElasticBody;
 using test::exact_frequency_squared;
 using test::jittered_box;
@@ -132,3 +133,5 @@ TEST_CASE("power iteration approaches the highest frequency from below", "[unit]
     CHECK(estimate >= 0.95 * exact);
     CHECK(estimate_max_frequency_squared(body.inputs(), {0, 0}, body.position, body.inverse_mass, 5) == 0);
 }
+
+}  // namespace skerry::test::stable_step_test

@@ -10,7 +10,8 @@
 #include "tests/support/element_kinds.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::stiff_body_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -237,3 +238,5 @@ TEST_CASE("a matrix that is not positive definite has no factor", "[dynamics][im
     CHECK(!stiff.prepare(-1, 1e-4));
     CHECK(stiff.prepare(1, 1e-4));
 }
+
+}  // namespace skerry::test::stiff_body_test

@@ -14,7 +14,7 @@
 #include "tests/support/jittered_box.h"
 #include "tests/support/sliver_box.h"
 
-using namespace skerry;
+namespace skerry::test::stiffen_clusters_test {
 
 namespace {
 
@@ -209,3 +209,5 @@ TEST_CASE("whether elements are less stiff than they are taken to be is what the
     CHECK(less > 0);
     CHECK(more > 0);
 }
+
+}  // namespace skerry::test::stiffen_clusters_test

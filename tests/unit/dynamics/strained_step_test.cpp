@@ -14,7 +14,8 @@
 #include "tests/support/exact_frequency.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::strained_step_test {
+
 using test::ElasticBody;
 using test::jittered_box;
 
@@ -154,3 +155,5 @@ TEST_CASE("a strained body that is not finite stands no step", "[unit]") {
     body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();
     CHECK_FALSE(strained_step_of(body, 1, 0.1) > 0);
 }
+
+}  // namespace skerry::test::strained_step_test

@@ -12,8 +12,7 @@
 #include "systems/dynamics/motion/predict_velocity.h"
 #include "tests/support/elastic_body.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::touched_elements_test {
 
 namespace {
 
@@ -244,3 +243,5 @@ TEST_CASE("what viscosity takes is what its impulses do to moving nodes", "[unit
         CHECK(taken == Approx(expected).epsilon(1e-10));
     }
 }
+
+}  // namespace skerry::test::touched_elements_test

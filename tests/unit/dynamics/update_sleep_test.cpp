@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::update_sleep_test {
 
 namespace {
 
@@ -200,3 +200,5 @@ TEST_CASE("what moves is not put to rest where no time is asked for", "[unit]") 
     at_once.own_limits = true;
     CHECK_FALSE(Alone(at_once, 0.02).rests(0.1, [](Real t) { return t; }));
 }
+
+}  // namespace skerry::test::update_sleep_test

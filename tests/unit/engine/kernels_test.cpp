@@ -8,7 +8,7 @@
 #include "skerry/error.h"
 #include "skerry/instruction_set.h"
 
-using namespace skerry;
+namespace skerry::test::kernels_test {
 
 namespace {
 
@@ -51,3 +51,5 @@ TEST_CASE("the kernels of this process are among those that it lists", "[unit]")
     CHECK(std::count(sets.begin(), sets.end(), instruction_set()) == 1);
     CHECK(kernel_sets().front().runs);
 }
+
+}  // namespace skerry::test::kernels_test

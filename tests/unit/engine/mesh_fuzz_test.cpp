@@ -43,8 +43,7 @@ void operator delete[](void* memory, std::size_t) noexcept {
     std::free(memory);
 }
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::mesh_fuzz_test {
 
 namespace {
 
@@ -117,3 +116,5 @@ TEST_CASE("a file with changed bytes loads or is refused", "[unit]") {
         }
     }
 }
+
+}  // namespace skerry::test::mesh_fuzz_test

@@ -7,7 +7,8 @@
 #include "skerry/error.h"
 #include "skerry/mesh.h"
 
-using namespace skerry;
+namespace skerry::test::mesh_inspect_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -131,3 +132,5 @@ TEST_CASE("boundary triangles look outwards", "[unit]") {
     CHECK(volume == Approx(1));
     CHECK(surface.triangles.size() == 4 * (3 * 2 + 3 * 2 + 2 * 2));
 }
+
+}  // namespace skerry::test::mesh_inspect_test

@@ -6,8 +6,8 @@
 #include "mesh_samples.h"
 #include "skerry/error.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::mesh_read_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -355,3 +355,5 @@ TEST_CASE("meshes of other programs load, and malformed ones are refused for wha
     CHECK_THAT(refused("41_ascii_missing_element_header"), Contains("$Elements, line 41: header"));
     CHECK_THAT(refused("41_ascii_missing_node"), Contains("position of node 14 of 14") && Contains("$EndNodes"));
 }
+
+}  // namespace skerry::test::mesh_read_test

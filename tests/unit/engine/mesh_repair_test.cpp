@@ -17,7 +17,8 @@
 #include "tests/support/sliver_box.h"
 #include "tests/support/temporary_folder.h"
 
-using namespace skerry;
+namespace skerry::test::mesh_repair_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -259,3 +260,5 @@ TEST_CASE("an edge around which tetrahedra have a gap stays where both of its en
     CHECK(same.mesh.tetrahedra == mesh.tetrahedra);
     CHECK_THAT(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)), Contains("has 4 triangles"));
 }
+
+}  // namespace skerry::test::mesh_repair_test

@@ -8,7 +8,7 @@
 #include "engine/mesh/require_positive.h"
 #include "skerry/mesh.h"
 
-using namespace skerry;
+namespace skerry::test::mesh_shapes_test {
 
 namespace {
 
@@ -221,3 +221,5 @@ TEST_CASE("what draws a sphere begins with its middle and corners around it, and
     }
     check_sound(picture);
 }
+
+}  // namespace skerry::test::mesh_shapes_test

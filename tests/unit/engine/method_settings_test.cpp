@@ -9,7 +9,7 @@
 #include "skerry/problem.h"
 #include "skerry/world.h"
 
-using namespace skerry;
+namespace skerry::test::method_settings_test {
 
 namespace {
 
@@ -99,3 +99,5 @@ TEST_CASE("the settings of a world reach its contact solver, and have the same d
     settings.small_regions_in_lanes = expected.small_regions_in_lanes = false;
     CHECK(solver_settings(settings) == expected);
 }
+
+}  // namespace skerry::test::method_settings_test

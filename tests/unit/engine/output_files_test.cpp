@@ -11,9 +11,10 @@
 #include "skerry/error.h"
 #include "tests/support/temporary_folder.h"
 
+namespace skerry::test::output_files_test {
+
 namespace {
 
-using namespace skerry;
 namespace fs = std::filesystem;
 
 int count_files(const TemporaryFolder& folder, const std::string& part) {
@@ -129,3 +130,5 @@ TEST_CASE("regions are counted by their highest number", "[unit][output]") {
     CHECK(count_regions(contacts) == 2);
     CHECK(count_regions({}) == 0);
 }
+
+}  // namespace skerry::test::output_files_test

@@ -15,9 +15,10 @@
 #include "systems/dynamics/elements/element_energy.h"
 #include "tests/support/temporary_folder.h"
 
+namespace skerry::test::output_page_test {
+
 namespace {
 
-using namespace skerry;
 
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN(), infinity = std::numeric_limits<Real>::infinity();
 
@@ -311,3 +312,5 @@ TEST_CASE("a page that cannot be written is named", "[unit][output]") {
         CHECK(std::string(error.what()).find("/dev/null") != std::string::npos);
     }
 }
+
+}  // namespace skerry::test::output_page_test

@@ -7,9 +7,10 @@
 
 #include "engine/output/shape_picture.h"
 
+namespace skerry::test::output_shapes_test {
+
 namespace {
 
-using namespace skerry;
 
 struct Sum {
     Real volume = 0;     // m^3, positive when triangles face outwards
@@ -104,3 +105,5 @@ TEST_CASE("a pose turns about its axis, then moves, and to_shape undoes it", "[u
     CHECK((to_shape(pose, to_world(pose, {4, 5, 6})) - Vec3(4, 5, 6)).norm() < 1e-12);
     CHECK(to_world({}, {4, 5, 6}) == Vec3(4, 5, 6));
 }
+
+}  // namespace skerry::test::output_shapes_test

@@ -11,9 +11,10 @@
 #include "skerry/world.h"
 #include "tests/support/temporary_folder.h"
 
+namespace skerry::test::output_world_test {
+
 namespace {
 
-using namespace skerry;
 namespace fs = std::filesystem;
 
 World box_on_floor(BodyHandle& box) {
@@ -118,3 +119,5 @@ TEST_CASE("contacts of the page name both bodies, or the collider, and carry wha
     CHECK(between == Approx(weight * upper_volume).epsilon(0.1));
     CHECK(found_again > 0);
 }
+
+}  // namespace skerry::test::output_world_test

@@ -9,8 +9,7 @@
 #include "skerry/problem.h"
 #include "systems/contact/tangent_frame.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::problem_export_test {
 
 namespace {
 
@@ -276,3 +275,5 @@ TEST_CASE("watching changes nothing, and not watching costs a skipped stage", "[
     CHECK(watched.problems.size() == shown);
     CHECK_THROWS_AS(watched.world.watch_contact_problems([](const StepProblem&) {}, 0), SceneError);
 }
+
+}  // namespace skerry::test::problem_export_test

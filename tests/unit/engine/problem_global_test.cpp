@@ -6,8 +6,7 @@
 
 #include "problem_samples.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::problem_global_test {
 
 namespace {
 
@@ -172,3 +171,5 @@ TEST_CASE("an empty set of equality constraints is none", "[unit][problem]") {
     file.integers.merge(std::map<std::string, std::vector<int>>{{"G/m", {9}}, {"G/n", {0}}});
     CHECK(read_back(file).contacts() == 3);
 }
+
+}  // namespace skerry::test::problem_global_test

@@ -9,8 +9,8 @@
 
 #include "problem_samples.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::problem_read_test {
+
 namespace fs = std::filesystem;
 
 TEST_CASE("a written problem reads back entry by entry", "[unit][problem]") {
@@ -125,3 +125,5 @@ TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][pr
     fs::resize_file(whole, fs::file_size(whole) / 2);  // a download that broke off
     CHECK(refusal_of(whole) != "read");
 }
+
+}  // namespace skerry::test::problem_read_test

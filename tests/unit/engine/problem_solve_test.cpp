@@ -5,8 +5,8 @@
 #include "problem_samples.h"
 #include "skerry/error.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::problem_solve_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -114,3 +114,5 @@ TEST_CASE("problems of the FCLIB collection load, and all but one are solved to 
     }
     CHECK(count >= 18);
 }
+
+}  // namespace skerry::test::problem_solve_test

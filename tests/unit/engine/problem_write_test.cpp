@@ -10,8 +10,8 @@
 #include "problem_samples.h"
 #include "skerry/error.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::problem_write_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -148,3 +148,5 @@ TEST_CASE("a part of a problem keeps the blocks within it", "[unit][problem]") {
     CHECK_THROWS_AS(part_of(problem, std::vector<Index>{3}), SceneError);
     CHECK(part_of(problem, {}).contacts() == 0);
 }
+
+}  // namespace skerry::test::problem_write_test

@@ -9,6 +9,8 @@
 #include "engine/program/sweep/process_pool.h"
 #include "tests/support/temporary_folder.h"
 
+namespace skerry::test::process_pool_test {
+
 namespace {
 
 struct Told {
@@ -77,3 +79,5 @@ TEST_CASE("a signal ends what is under way, and nothing begins after it", "[unit
     CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) >= 2);
     CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) <= 3);
 }
+
+}  // namespace skerry::test::process_pool_test

@@ -10,8 +10,8 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::recorder_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -213,3 +213,5 @@ TEST_CASE("bad probes are refused by name, field, what was found and what was ex
     CHECK_THROWS_AS(recorder.write_hdf5(folder.path()), SceneError);
     CHECK_THROWS_AS(recorder.stream_csv(folder.path()), SceneError);
 }
+
+}  // namespace skerry::test::recorder_test

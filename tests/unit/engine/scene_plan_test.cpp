@@ -7,7 +7,7 @@
 #include "skerry/mesh.h"
 #include "tests/unit/engine/scene_files.h"
 
-using namespace skerry;
+namespace skerry::test::scene_plan_test {
 
 TEST_CASE("a grid of copies has the same jitter every time, and another one for another seed", "[unit][determinism]") {
     const TemporaryFolder folder;
@@ -254,3 +254,5 @@ TEST_CASE("a body with a shape in the place of a mesh is a sphere", "[unit]") {
     CHECK_THROWS_WITH(plan_scene(scene(sphere + R"(, "mesh": {"ball": {"radius": 1, "resolution": 3}})")),
                       Contains("mesh") && Contains("shape"));
 }
+
+}  // namespace skerry::test::scene_plan_test

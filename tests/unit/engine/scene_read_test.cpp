@@ -9,7 +9,7 @@
 #include "skerry/scene.h"
 #include "tests/unit/engine/scene_files.h"
 
-using namespace skerry;
+namespace skerry::test::scene_read_test {
 
 namespace {
 
@@ -343,3 +343,5 @@ TEST_CASE("the published schema is the one that this reader has", "[unit][contra
     INFO("renew it with: skerry schema > docs/scene.schema.json");
     CHECK(text.str() == scene_schema());
 }
+
+}  // namespace skerry::test::scene_read_test

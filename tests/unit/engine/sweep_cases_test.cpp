@@ -10,6 +10,8 @@
 #include "engine/program/sweep/cases/draw.h"
 #include "tests/support/temporary_folder.h"
 
+namespace skerry::test::sweep_cases_test {
+
 namespace {
 
 using skerry::Json;
@@ -165,3 +167,5 @@ TEST_CASE("the hash of a case covers its values, its scene and the files that th
     folder.write("scene.json", R"({"bodies": [ {"mesh": {"file": "mesh.node"}}], "seconds": 1})");
     CHECK(is_new(hash({})));
 }
+
+}  // namespace skerry::test::sweep_cases_test

@@ -6,6 +6,8 @@
 #include "engine/program/sweep/share.h"
 #include "skerry/error.h"
 
+namespace skerry::test::sweep_share_test {
+
 namespace {
 
 using Variables = std::map<std::string, std::string>;
@@ -99,3 +101,5 @@ TEST_CASE("numbers that do not fit are refused by the name of who says them", "[
     CHECK_THROWS_WITH(share(with(job_array, {{"SLURM_ARRAY_TASK_ID", "10"}})), Contains("an array without gaps"));
     CHECK_THROWS_WITH(share(with(job_array, {{"SLURM_ARRAY_TASK_MIN", "9"}})), Contains("an array without gaps"));
 }
+
+}  // namespace skerry::test::sweep_share_test

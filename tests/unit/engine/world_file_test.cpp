@@ -10,8 +10,8 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/world_file_damage.h"
 
-using namespace skerry;
-using namespace skerry::test;
+namespace skerry::test::world_file_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -200,3 +200,5 @@ TEST_CASE("what was chosen, and by what, is kept in files", "[scene]") {
     CHECK(again.report().dynamics_choices[0].message() == world.report().dynamics_choices[0].message());
     CHECK(again.report().dynamics_choices[0].message().find("implicit: ") == 0);
 }
+
+}  // namespace skerry::test::world_file_test

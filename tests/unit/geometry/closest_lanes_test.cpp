@@ -10,7 +10,8 @@
 #include "systems/geometry/closest_points.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::closest_lanes_test {
+
 using test::Random;
 
 namespace {
@@ -119,3 +120,5 @@ TEST_CASE("a position that is not a number makes its lane's distance none, and n
             }
         }
 }
+
+}  // namespace skerry::test::closest_lanes_test

@@ -8,7 +8,8 @@
 
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::closest_points_test {
+
 using test::Random;
 
 namespace {
@@ -204,3 +205,5 @@ TEST_CASE("numbers that are not finite give a distance that is not a number", "[
     CHECK_FALSE(closest_point_on_triangle(bad, a, b, c).distance_squared >= 0);
     CHECK_FALSE(closest_points_of_segments(bad, a, b, c).distance_squared >= 0);
 }
+
+}  // namespace skerry::test::closest_points_test

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::lane_mask_test {
 
 TEST_CASE("a comparison of eight lanes gives the bit of each, in rising order", "[unit]") {
     for (unsigned pattern = 0; pattern < 1U << element_lanes; ++pattern) {
@@ -20,3 +20,5 @@ TEST_CASE("a comparison of eight lanes gives the bit of each, in rising order", 
         CHECK(visited == expected);
     }
 }
+
+}  // namespace skerry::test::lane_mask_test

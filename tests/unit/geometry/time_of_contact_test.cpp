@@ -11,7 +11,8 @@
 #include "systems/geometry/closest_points.h"
 #include "tests/support/random.h"
 
-using namespace skerry;
+namespace skerry::test::time_of_contact_test {
+
 using test::Random;
 
 namespace {
@@ -243,3 +244,5 @@ TEST_CASE("features that keep a distance are not nearer before the time, and the
         CHECK(passed > 100);
     }
 }
+
+}  // namespace skerry::test::time_of_contact_test

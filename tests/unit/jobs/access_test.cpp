@@ -10,7 +10,7 @@
 #include "jobs/team.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::jobs_access_test {
 
 namespace {
 
@@ -374,3 +374,5 @@ TEST_CASE("workers that help one stage and then another may touch what that one 
 // What a stage may touch is checked, and the check tested, in builds without NDEBUG: those of the sanitizers.
 
 #endif
+
+}  // namespace skerry::test::jobs_access_test

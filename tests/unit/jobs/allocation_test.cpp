@@ -9,7 +9,7 @@
 #include "tests/support/count_allocations.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::jobs_allocation_test {
 
 namespace {
 
@@ -75,3 +75,5 @@ TEST_CASE("a graph with blocks and sums inside allocates nothing once it has run
     REQUIRE(allocations == before);
     REQUIRE(results[0] == 500);
 }
+
+}  // namespace skerry::test::jobs_allocation_test

@@ -11,7 +11,7 @@
 
 #include "jobs/executor.h"
 
-using namespace skerry;
+namespace skerry::test::backend_tbb_test {
 
 TEST_CASE("with 0 workers the work stays in the caller's arena", "[unit]") {
     const auto executor = make_executor(Backend::tbb, 0);
@@ -77,3 +77,5 @@ TEST_CASE("a worker that waits for blocks starts no other stage meanwhile", "[un
     }
     REQUIRE(interrupted == 0);
 }
+
+}  // namespace skerry::test::backend_tbb_test

@@ -14,7 +14,7 @@
 #include "tests/unit/jobs/executors.h"
 #include "tests/unit/jobs/random_graph.h"
 
-using namespace skerry;
+namespace skerry::test::executor_test {
 
 TEST_CASE("the backends of the build end with serial, and each makes an executor of its own kind", "[unit]") {
     REQUIRE(available_backends().back() == Backend::serial);
@@ -285,3 +285,5 @@ TEST_CASE("an executor that was never used, and one that just worked, end", "[un
         }
     }
 }
+
+}  // namespace skerry::test::executor_test

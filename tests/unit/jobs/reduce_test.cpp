@@ -7,7 +7,7 @@
 #include "components/types.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::reduce_test {
 
 TEST_CASE("block results are joined in block order, starting from the identity", "[unit]") {
     for (const ExecutorChoice& choice : executor_choices()) {
@@ -62,3 +62,5 @@ TEST_CASE("vectors are reduced too, and the memory of the blocks is kept", "[uni
     REQUIRE(sum(95) == Vec3::Constant(95));
     REQUIRE(partial.data() == memory);
 }
+
+}  // namespace skerry::test::reduce_test

@@ -9,7 +9,7 @@
 #include "components/node_table.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::task_graph_test {
 
 namespace {
 
@@ -339,3 +339,5 @@ TEST_CASE("the drawing names every stage and every edge", "[unit]") {
     REQUIRE_THAT(graph.to_dot(), Catch::Contains("    \"dynamics/first\";\n    \"dynamics/second\";\n"));
     REQUIRE_THAT(graph.to_dot(), Catch::Contains("    \"dynamics/first\" -> \"dynamics/second\";\n"));
 }
+
+}  // namespace skerry::test::task_graph_test

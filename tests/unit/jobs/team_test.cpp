@@ -10,7 +10,7 @@
 
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::team_test {
 
 namespace {
 
@@ -135,3 +135,5 @@ TEST_CASE("a team may gather within a block and within a stage of its executor",
         REQUIRE(sums == std::vector<int>(4, 400));
     }
 }
+
+}  // namespace skerry::test::team_test

@@ -11,7 +11,8 @@
 #include "jobs/task_graph.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::trace_test {
+
 using nlohmann::json;
 
 namespace {
@@ -151,3 +152,5 @@ TEST_CASE("a graph records one zone for each stage that ran", "[unit]") {
         REQUIRE(trace.worker_count() <= choice.workers);
     }
 }
+
+}  // namespace skerry::test::trace_test

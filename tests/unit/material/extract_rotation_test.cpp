@@ -7,7 +7,7 @@
 
 #include "tests/support/jittered_box.h"
 
-using namespace skerry;
+namespace skerry::test::extract_rotation_test {
 
 namespace {
 
@@ -152,3 +152,5 @@ TEST_CASE("a lane without volume keeps its frame and costs the others nothing", 
     CHECK((lane_of(rotation_of(x.q), 3) - Mat3::Identity()).norm() == 0);
     CHECK((lane_of(rotation_of(x.q), 2) - R).norm() <= 1e-14);
 }
+
+}  // namespace skerry::test::extract_rotation_test

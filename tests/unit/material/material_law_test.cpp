@@ -12,7 +12,7 @@
 #include "tests/support/jittered_box.h"
 #include "tests/support/material_models.h"
 
-using namespace skerry;
+namespace skerry::test::material_law_test {
 
 namespace {
 
@@ -279,3 +279,5 @@ TEST_CASE("a neo-Hookean body at rest has the energy of its strains, not of the 
         CHECK(StableNeoHookean::energy_density(material, F) == Approx(expected).epsilon(1e-3));
     }
 }
+
+}  // namespace skerry::test::material_law_test

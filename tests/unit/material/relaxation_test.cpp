@@ -6,7 +6,7 @@
 #include "systems/material/material_law.h"
 #include "tests/support/jittered_box.h"
 
-using namespace skerry;
+namespace skerry::test::relaxation_test {
 
 namespace {
 
@@ -84,3 +84,5 @@ TEST_CASE("rates spread over a span lose what the loss factor says", "[unit]") {
         CHECK(loss_at(10 * rates_below) == Approx(loss_factor / growth).epsilon(0.05));
     }
 }
+
+}  // namespace skerry::test::relaxation_test

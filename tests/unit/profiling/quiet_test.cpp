@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
+namespace skerry::test::quiet_test {
+
 using namespace skerry::profiling;
 
 TEST_CASE("a fifth of the values does not exceed their lower fifth", "[unit]") {
@@ -26,3 +28,5 @@ TEST_CASE("each step counts as in a round in which it was not disturbed", "[unit
     CHECK(undisturbed_sum(rounds, 1) == 2);
     CHECK_THROWS_AS(undisturbed_sum({{0, {{1, 2}}}, {0, {{1}}}}, 0), std::runtime_error);
 }
+
+}  // namespace skerry::test::quiet_test

@@ -8,7 +8,8 @@
 #include "profiling/scaling/recording_executor.h"
 #include "tests/unit/profiling/hand_made.h"
 
-using namespace skerry;
+namespace skerry::test::recording_test {
+
 using namespace skerry::profiling;
 
 namespace {
@@ -144,3 +145,5 @@ TEST_CASE("a recording is written piece by piece", "[unit]") {
     write_csv(graph_of({{serial(1e-6), loop({2e-6, 3e-6})}}, {}), names, text);
     CHECK(text.str() == "run,stage,kind,us\n0,stage,serial,1\n0,stage,loop,2 3\n");
 }
+
+}  // namespace skerry::test::recording_test

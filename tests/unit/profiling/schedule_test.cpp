@@ -6,7 +6,8 @@
 
 #include "tests/unit/profiling/hand_made.h"
 
-using namespace skerry;
+namespace skerry::test::profiling_schedule_test {
+
 using namespace skerry::profiling;
 
 namespace {
@@ -236,3 +237,5 @@ TEST_CASE("with loops no schedule is shorter than work and longest chain allow, 
         }
     }
 }
+
+}  // namespace skerry::test::profiling_schedule_test

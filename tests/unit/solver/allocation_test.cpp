@@ -6,7 +6,7 @@
 #include "tests/support/count_allocations.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::solver_allocation_test {
 
 TEST_CASE("large regions are solved without asking for memory, also when they are coloured again", "[unit][solver]") {
     ContactScene scene;
@@ -69,3 +69,5 @@ TEST_CASE("many contacts are separated without asking for memory", "[unit][solve
         CHECK(asked == 0);
     }
 }
+
+}  // namespace skerry::test::solver_allocation_test

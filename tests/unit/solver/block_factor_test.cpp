@@ -6,7 +6,7 @@
 
 #include "systems/solver/equations/block_factor.h"
 
-using namespace skerry;
+namespace skerry::test::block_factor_test {
 
 namespace {
 
@@ -140,3 +140,5 @@ TEST_CASE("a sparse matrix of blocks is solved as the dense one, and as often as
         CHECK((right - expected).norm() < 1e-10);
     }
 }
+
+}  // namespace skerry::test::block_factor_test

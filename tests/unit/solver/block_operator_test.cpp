@@ -7,7 +7,7 @@
 #include "systems/solver/methods/run_method.h"
 #include "tests/unit/solver/dense_problem.h"
 
-using namespace skerry;
+namespace skerry::test::block_operator_test {
 
 TEST_CASE("every method solves dense random blocks with cone and pyramid", "[unit][solver]") {
     for (const auto& [method, name] : EnumNames<SolverMethod>::table)
@@ -75,3 +75,5 @@ TEST_CASE("the product of the operator is that of its blocks, and leaves the imp
         CHECK((out[i].head<3>() - expected).norm() < 1e-12 * expected.norm());
     }
 }
+
+}  // namespace skerry::test::block_operator_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::solver_clusters_test {
 
 namespace {
 
@@ -96,3 +96,5 @@ TEST_CASE("regions beside a cluster keep their bits", "[solver][clusters]") {
         if (n != 4 && n != 5) CHECK(plain.velocity[n] == solved.velocity[n]);
     CHECK(plain.velocity[4] != solved.velocity[4]);
 }
+
+}  // namespace skerry::test::solver_clusters_test

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-using namespace skerry;
+namespace skerry::test::colour_contacts_test {
 
 namespace {
 
@@ -157,3 +157,5 @@ TEST_CASE("the order depends on the contacts alone, not on what the memory was u
                          fresh.phase_offset.end()));
     }
 }
+
+}  // namespace skerry::test::colour_contacts_test

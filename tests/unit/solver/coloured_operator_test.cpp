@@ -6,7 +6,7 @@
 #include "tests/support/contact_scene.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::coloured_operator_test {
 
 namespace {
 
@@ -141,3 +141,5 @@ TEST_CASE("contacts are ordered again when one of them has another moving node, 
                      region.order.contact.end()));
     CHECK(std::equal(fresh.local.begin(), fresh.local.end(), region.local.begin(), region.local.end()));
 }
+
+}  // namespace skerry::test::coloured_operator_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-using namespace skerry;
+namespace skerry::test::friction_law_test {
 
 namespace {
 
@@ -98,3 +98,5 @@ TEST_CASE("the residual is kept only where the impulse may move", "[unit][solver
     CHECK(feasible({0.5, 0.1, 1}, residual, Friction::pyramid) == Vec3(0, 2, 3));
     CHECK(feasible({-0.5, 0.5, 1}, residual, Friction::pyramid) == Vec3(1, 0, 3));
 }
+
+}  // namespace skerry::test::friction_law_test

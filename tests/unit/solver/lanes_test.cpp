@@ -5,7 +5,7 @@
 #include "systems/solver/lanes/solve_lanes.h"
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::lanes_test {
 
 namespace {
 
@@ -192,3 +192,5 @@ TEST_CASE("unlike coefficients and the pyramid keep out of the lanes", "[unit][s
     for (Real& mu : scene.dynamic_friction) mu = 0.3;
     CHECK(in_lanes(scene.solve()) == 0);
 }
+
+}  // namespace skerry::test::lanes_test

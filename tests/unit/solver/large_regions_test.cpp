@@ -5,7 +5,7 @@
 #include "tests/support/contact_scene.h"
 #include "tests/unit/jobs/executors.h"
 
-using namespace skerry;
+namespace skerry::test::large_regions_test {
 
 namespace {
 
@@ -124,3 +124,5 @@ TEST_CASE("not-a-number in a large region stays there and is reported", "[unit][
             REQUIRE(solved.impulse[static_cast<std::size_t>(i)] == good.impulse[static_cast<std::size_t>(i)]);
     }
 }
+
+}  // namespace skerry::test::large_regions_test

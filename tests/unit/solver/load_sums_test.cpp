@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace skerry;
+namespace skerry::test::load_sums_test {
 
 namespace {
 
@@ -67,3 +67,5 @@ TEST_CASE("sums of parts are those of all, and contacts that nothing can move co
     CHECK(none.separating);
     CHECK(none.moving == 0);
 }
+
+}  // namespace skerry::test::load_sums_test

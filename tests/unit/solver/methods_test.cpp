@@ -7,7 +7,7 @@
 #include "tests/support/contact_scene.h"
 #include "tests/unit/solver/dense_problem.h"
 
-using namespace skerry;
+namespace skerry::test::methods_test {
 
 namespace {
 
@@ -299,3 +299,5 @@ TEST_CASE("nonlinear conjugate gradients and accelerated gradients need far fewe
         }
     }
 }
+
+}  // namespace skerry::test::methods_test

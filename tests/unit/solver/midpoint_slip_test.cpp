@@ -4,7 +4,7 @@
 
 #include "systems/solver/local/load_contact.h"
 
-using namespace skerry;
+namespace skerry::test::midpoint_slip_test {
 
 namespace {
 
@@ -67,3 +67,5 @@ TEST_CASE("a node that turned and is stopped is at rest some steps later", "[uni
     }
     CHECK(slip.norm() == 0);
 }
+
+}  // namespace skerry::test::midpoint_slip_test

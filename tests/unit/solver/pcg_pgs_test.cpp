@@ -5,7 +5,7 @@
 #include "systems/solver/operators/lumped_operator.h"
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::pcg_pgs_test {
 
 TEST_CASE("the paper's combination comes to the solution of Gauss-Seidel alone", "[unit][solver]") {
     for (const Friction friction : {Friction::cone, Friction::pyramid})
@@ -79,3 +79,5 @@ TEST_CASE("conjugate gradients are exact where nothing is projected", "[unit][so
             CHECK(impulse[static_cast<std::size_t>(i)].z() == Approx(height - i).epsilon(1e-9));
     }
 }
+
+}  // namespace skerry::test::pcg_pgs_test

@@ -3,7 +3,7 @@
 #include "systems/solver/local/push_contact.h"
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::solver_push_out_test {
 
 TEST_CASE("a contact that is pressed in is moved out without gaining velocity", "[unit][solver]") {
     ContactScene scene;
@@ -92,3 +92,5 @@ TEST_CASE("a contact that already separates fast enough is not pushed", "[unit][
     CHECK(solved.velocity[0] == Vec3(0, 0, 1));
     CHECK(solved.push_out[0] == Vec3::Zero());
 }
+
+}  // namespace skerry::test::solver_push_out_test

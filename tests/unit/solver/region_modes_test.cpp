@@ -3,7 +3,7 @@
 
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::region_modes_test {
 
 namespace {
 
@@ -156,3 +156,5 @@ TEST_CASE("regions of the paper's Algorithm 1 that share a node are solved one a
     check_same(one, scene.solve({}, ContactRegions::paper_algorithm_1, Backend::threads, 4));
     for (const Vec3& v : one.velocity) CHECK(v.allFinite());
 }
+
+}  // namespace skerry::test::region_modes_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::solver_rigid_test {
 
 namespace {
 
@@ -182,3 +182,5 @@ TEST_CASE("a rigid body that is pressed in is pushed out as a whole", "[solver][
     CHECK(solved.push_spin[0].norm() < 1e-5);
     CHECK(solved.velocity[0].norm() < 1e-12);
 }
+
+}  // namespace skerry::test::solver_rigid_test

@@ -4,7 +4,7 @@
 #include "systems/solver/schedule_regions.h"
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::solver_schedule_test {
 
 namespace {
 
@@ -144,3 +144,5 @@ TEST_CASE("what is remembered changes no bit of the result", "[determinism][solv
         CHECK(memory.data().history.age[0] == step);
     }
 }
+
+}  // namespace skerry::test::solver_schedule_test

@@ -3,7 +3,7 @@
 
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::shortcuts_test {
 
 namespace {
 
@@ -151,3 +151,5 @@ TEST_CASE("all shortcuts off change nothing beyond the tolerance", "[unit][solve
         off.small_regions_in_lanes = false;
     CHECK(largest_difference(scene.solve(tight()), scene.solve(off)) < allowed);
 }
+
+}  // namespace skerry::test::shortcuts_test

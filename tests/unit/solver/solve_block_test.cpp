@@ -7,7 +7,7 @@
 #include "systems/solver/operators/block_operator.h"
 #include "tests/unit/solver/random_block.h"
 
-using namespace skerry;
+namespace skerry::test::solve_block_test {
 
 namespace {
 
@@ -82,3 +82,5 @@ TEST_CASE("where the search for the slip starts does not change the solution", "
         }
     }
 }
+
+}  // namespace skerry::test::solve_block_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/solver/random_block.h"
 
-using namespace skerry;
+namespace skerry::test::solve_convex_block_test {
 
 namespace {
 
@@ -95,3 +95,5 @@ TEST_CASE("the convex local solution does not depend on the unit of the block", 
     for (const Real unit : {1e-12, 1e12})
         CHECK((unit * solve_once(Mat3(unit * w), b, 0.4) - r).norm() < 1e-12 * r.norm());
 }
+
+}  // namespace skerry::test::solve_convex_block_test

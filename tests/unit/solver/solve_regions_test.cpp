@@ -6,7 +6,7 @@
 
 #include "tests/support/contact_scene.h"
 
-using namespace skerry;
+namespace skerry::test::solve_regions_test {
 
 namespace {
 
@@ -425,3 +425,5 @@ TEST_CASE("a still region that ends within the tolerance that was asked for has 
         CHECK(solved.regions.error[r] < 1e-3);
     }
 }
+
+}  // namespace skerry::test::solve_regions_test

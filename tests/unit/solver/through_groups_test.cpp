@@ -6,7 +6,7 @@
 
 #include "systems/solver/operators/contact_runs.h"
 
-using namespace skerry;
+namespace skerry::test::through_groups_test {
 
 namespace {
 
@@ -100,3 +100,5 @@ TEST_CASE("impulses that are summed up, by node or by runs, move contacts as the
         CHECK((found(i, by_run) - expected(i, 3)).norm() < 1e-13);
     }
 }
+
+}  // namespace skerry::test::through_groups_test

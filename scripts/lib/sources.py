@@ -1,0 +1,58 @@
+"""Source files of the project, those that changed lately, and the flags that they are compiled with."""
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LIBRARY = ("components", "jobs", "systems", "engine")
+CODE = (*LIBRARY, "tests", "profiling", "examples")
+# Sources that need packages, definitions or templates of their own, or belong to another project.
+SPECIAL = re.compile(
+    r"jobs/backend_.*\.cpp|engine/absent/.*|engine/program/fill/.*|profiling/siconos\.cpp|profiling/.*/bullet_peer\.cpp"
+    r"|tests/(host|consumer)/.*|tests/fuzz/fuzz_reader\.cpp")
+LATELY = 24 * 3600  # age of a commit, measured from the newest one, up to which its files count as changed [s]
+
+
+def git(*arguments):
+    result = subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True)
+    return result.stdout if result.returncode == 0 else None
+
+
+def files(folders, suffixes=(".cpp", ".h")):
+    """Paths from the root of all files in the folders with one of these suffixes, sorted."""
+    found = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix in suffixes]
+    names = (path.relative_to(ROOT).as_posix() for path in found)
+    return sorted(name for name in names if not SPECIAL.fullmatch(name))
+
+
+def changed_files():
+    """Names of files that differ from the last commit or that a commit of the last day changed; None without git."""
+    newest = git("log", "-1", "--format=%ct")
+    if not newest:
+        return None
+    log = git("log", f"--since={int(newest) - LATELY}", "--name-only", "--format=")
+    status = git("status", "--porcelain", "--untracked-files=all")
+    return set(log.split()) | {line[3:] for line in status.splitlines()}
+
+
+def commands(build):
+    """The compiler commands of a build folder, as lists of arguments without a compiler cache before them."""
+    build = pathlib.Path(build)
+    compiler = re.search(r"^CMAKE_CXX_COMPILER:\w+=(.*)$", (build / "CMakeCache.txt").read_text(), re.MULTILINE)[1]
+    all_arguments = [shlex.split(entry["command"]) for entry in json.loads((build / "compile_commands.json").read_text())]
+    return [arguments[arguments.index(compiler):] for arguments in all_arguments if compiler in arguments]
+
+
+def common_flags(all_commands):
+    """Flags that a unit of several sources needs: include folders, definitions and language."""
+    kept = {"-fopenmp-simd": None}
+    for command in all_commands:
+        arguments = iter(command)
+        for argument in arguments:
+            if argument == "-isystem":
+                kept[argument + next(arguments)] = None
+            elif argument.startswith(("-I", "-D", "-std=")):
+                kept[argument] = None
+    return list(kept)

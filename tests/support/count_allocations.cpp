@@ -1,0 +1,42 @@
+// Replaces operator new of a whole program.
+#include "tests/support/count_allocations.h"
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+namespace skerry::test {
+
+std::atomic<long> allocations{0};
+
+}  // namespace skerry::test
+
+namespace {
+
+void* counted(std::size_t size, std::size_t alignment) {
+    ++skerry::test::allocations;
+    void* const memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return counted(size + (size == 0), alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return counted(size + (size == 0), static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
