@@ -9,7 +9,6 @@
 #include "components/column_role.h"
 #include "components/material_table.h"
 #include "components/range.h"
-#include "components/step_levels.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -62,19 +61,6 @@ struct BodyTable {
     Column<Real> rest_step;     // s, stable step of the rest shape
     Column<Real> stable_step;   // s, as last watched
     Column<Real> cluster_step;  // s, the longest that its implicit elements stand; 0 where it has none
-    // of the whole body in the present cycle of steps: its own steps are 2^level steps long
-    Column<std::uint8_t> level;
-    Column<std::array<Index, element_level_count>> level_count;  // elements of each level, within the body
-    // Of each level: F of an element of it changes by at most this times the greatest speed in the body's frame, 1/m
-    Column<std::array<Real, element_level_count>> steepness;
-    // in the present cycle: levels, within the world, above this one count as this one
-    Column<std::uint8_t> level_cap;
-    // s, in which F of no element that is not touched changes by more than max_strain_step, as last looked at
-    Column<Real> longest_impulse;
-    Column<std::uint8_t> touched;      // 1: some node of it is
-    Column<std::uint8_t> has_touched;  // 1: some block of its elements is
-    // levels of elements, within the body, that get an impulse in this step, and touched_level if some are touched
-    Column<LevelMask> active;
     // at rest: left out of the step until something touches it
     Column<std::uint8_t> asleep;
     // 0, or the steps for which it is taken to be as it was made but for a motion without a turn, so that its elements
@@ -97,8 +83,7 @@ struct BodyTable {
     Column<Real> travel;
     Column<Real> uninverted_until;  // m: the least of the body's tetrahedra
 
-    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines, has_touched by
-    /// Model::extend_derived.
+    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
@@ -129,14 +114,6 @@ struct BodyTable {
         visit("rest_step", rest_step, ColumnRole::state);
         visit("stable_step", stable_step, ColumnRole::state);
         visit("cluster_step", cluster_step, ColumnRole::state);
-        visit("level", level, ColumnRole::link);
-        visit("level_count", level_count, ColumnRole::state);
-        visit("steepness", steepness, ColumnRole::state);
-        visit("level_cap", level_cap, ColumnRole::link);
-        visit("longest_impulse", longest_impulse, ColumnRole::state);
-        visit("touched", touched, ColumnRole::state);
-        visit("has_touched", has_touched, ColumnRole::derived);
-        visit("active", active, ColumnRole::scratch);
         visit("asleep", asleep, ColumnRole::state);
         visit("unstrained", unstrained, ColumnRole::memory);
         visit("still_time", still_time, ColumnRole::state);

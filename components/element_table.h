@@ -82,13 +82,8 @@ struct ElementBlockTable {
     // 1: in all lanes nodes 0, 1 and 2 are nodes 0, 1 and 3 of the block before, which is of the same patch; both have
     // four
     Column<std::uint8_t> continues_fan;
-    // s, stress of the strain rate over that of the strain of fine elements among coarse, or over modulus and strain of
-    // the implicit ones that the block has; else 0
+    // viscosity over modulus of the implicit elements of the block [s]; 0 if it has none
     Column<Real> viscous_time;
-    // within the body: impulses come every 2^level of the body's steps (step_levels.h)
-    Column<std::uint8_t> level;
-    // 1: in every step of the present cycle, since contacts act on nodes of the block
-    Column<std::uint8_t> touched;
 
     /// The only list of columns: resize, erase, hash and save walk it. Derived: continues_fan by build_patches.
     void for_each_column(auto&& visit) {
@@ -107,8 +102,6 @@ struct ElementBlockTable {
         visit("opens_patch", opens_patch, ColumnRole::state);
         visit("continues_fan", continues_fan, ColumnRole::derived);
         visit("viscous_time", viscous_time, ColumnRole::state);
-        visit("level", level, ColumnRole::state);
-        visit("touched", touched, ColumnRole::state);
         visit("viscous_strain", viscous_strain, ColumnRole::state);
         visit("relaxation_rate", relaxation_rate, ColumnRole::state);
         visit("own_frequency", own_frequency, ColumnRole::state);
@@ -141,20 +134,18 @@ struct ElementNodeTable {
 /// J per unit of the rate of F, column by column: what the viscosity of an element does in a step.
 using ElementViscousImpulse = std::array<ElementLane, 9>;
 
-/// Patches: blocks of one body and one level that lie close together, so that they have few nodes between them. Forces
-/// are summed up within a patch, in cache, before nodes gather what few patches give them. Made from the blocks by
+/// Patches: blocks of one body that lie close together, so that they have few nodes between them. Forces are summed up
+/// within a patch, in cache, before nodes gather what few patches give them. Made from the blocks by
 /// build_patches, body after body: the lists grow and nothing points to them.
 struct ElementPatches {
-    Column<Range> blocks;          // of ElementBlockTable, by patch
-    Column<Range> slots;           // rows of the columns below, by patch
-    Column<Index> node;            // by slot: row of NodeTable
-    Column<std::uint8_t> level;    // by slot: that of the patch, or touched_level
-    Column<std::uint8_t> touched;  // by patch: whether some block of it is
-    Ragged<Index> slots_of_node;   // by node, ascending
-    Column<PaddedVec3> position;   // m, by slot; scratch
-    Column<PaddedVec3> force;      // N, by slot, what the patch does to the node; scratch
-    Column<Real> relaxed;          // J, by patch: what relaxed in its elements in this step; scratch
-    // by block, of those that are viscous and due; none where nothing is viscous; scratch
+    Column<Range> blocks;         // of ElementBlockTable, by patch
+    Column<Range> slots;          // rows of the columns below, by patch
+    Column<Index> node;           // by slot: row of NodeTable
+    Ragged<Index> slots_of_node;  // by node, ascending
+    Column<PaddedVec3> position;  // m, by slot; scratch
+    Column<PaddedVec3> force;     // N, by slot, what the patch does to the node; scratch
+    Column<Real> relaxed;         // J, by patch: what relaxed in its elements in this step; scratch
+    // by block, of those that are viscous in this step; no rows if no block is viscous; scratch
     Column<ElementViscousImpulse> viscous_impulse;
     Column<std::uint8_t> viscous;  // by block: whether it has one in this step; as many rows; scratch
     // by block: whether an implicit element of it comes near the stiffness that it is taken to have; as many; scratch

@@ -3,7 +3,6 @@
 
 #include "components/column.h"
 #include "components/column_role.h"
-#include "components/step_levels.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -23,13 +22,9 @@ struct NodeTable {
     Column<Real> mass;                 // kg, lumped
     Column<Real> inverse_mass;         // 1/kg, 0: pinned or kinematic
     Column<Index> body;                // row of BodyTable
-    // levels, within their body, of the elements around the node, and touched_level if one of them is touched
-    Column<LevelMask> levels;
-    // with multirate: cycles of steps for which a contact that acted on it still counts (plan_step.cpp)
-    Column<std::uint8_t> touched;
 
-    /// The only list of columns: resize, erase, hash and save walk it. Derived: velocity_next (zero at rest), push_out
-    /// and levels by Model::derive_all.
+    /// The only list of columns: resize, erase, hash and save walk it. Derived: velocity_next (zero at rest) and
+    /// push_out by Model::derive_all.
     void for_each_column(auto&& visit) {
         visit("position", position, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);
@@ -38,13 +33,11 @@ struct NodeTable {
         visit("still_position", still_position, ColumnRole::state);
         visit("mass", mass, ColumnRole::state);
         visit("inverse_mass", inverse_mass, ColumnRole::state);
-        visit("touched", touched, ColumnRole::state);
         visit("body", body, ColumnRole::link);
         visit("velocity_next", velocity_next, ColumnRole::derived);
         visit("push_out", push_out, ColumnRole::derived);
         visit("force", force, ColumnRole::scratch);
         visit("displacement_origin", displacement_origin, ColumnRole::memory);
-        visit("levels", levels, ColumnRole::derived);
     }
 };
 

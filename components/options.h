@@ -15,7 +15,7 @@ enum class MaterialModel { linear, corotational, stable_neo_hookean, guard };
 /// What carries the stress of a body. linear: its tetrahedra, with constant strain each; they lock: in bending, and
 /// where volume hardly changes. edge_smoothed: its edges, with the mean strain of the tetrahedra around each.
 /// edge_node_smoothed: the same for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a
-/// Poisson ratio of 0.25, edge_node_smoothed above, linear in a world with multirate (docs/methods/elasticity.md 7).
+/// Poisson ratio of 0.25, edge_node_smoothed above (docs/methods/elasticity.md 7).
 enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
 /// cone_convex is the associated law: every contact minimises a convex energy over the cone, and what slides also lifts
 /// off at mu times its speed. A solution is found whatever mu is, but it is another model: its Coulomb error is 1e-5 to
@@ -33,11 +33,11 @@ enum class StartOverlaps { resolve, refuse, ignore };
 /// How two things overlap. crossing: their surfaces go through each other; inside: the first is inside the second;
 /// around: the second is inside the first; coincident: each is inside the other.
 enum class OverlapKind { crossing, inside, around, coincident };
-/// symplectic_euler: first order where it is started from given velocities, bounded energy. leapfrog: the same kicks
-/// and drifts with positions drifted by half a step before the first and after the last, second order in smooth motion.
-/// forward_euler: forward Euler as the paper writes it; unstable without damping at any step, for comparison only
-/// (docs/integration.md).
-enum class Integrator { symplectic_euler, leapfrog, forward_euler };
+/// Time integrators (docs/integration.md). Both alternate a kick, which changes velocities by forces, and a drift,
+/// which moves positions by velocities. symplectic_euler: first order when started from given velocities, with bounded
+/// energy. leapfrog: positions also drift by half a step before the first step of a call and back after the last, which
+/// makes it second order in smooth motion.
+enum class Integrator { symplectic_euler, leapfrog };
 
 template <class Enum>
 struct EnumNames;
@@ -128,10 +128,9 @@ struct EnumNames<OverlapKind> {
 
 template <>
 struct EnumNames<Integrator> {
-    static constexpr std::array<std::pair<Integrator, std::string_view>, 3> table{{
+    static constexpr std::array<std::pair<Integrator, std::string_view>, 2> table{{
         {Integrator::symplectic_euler, "symplectic_euler"},
         {Integrator::leapfrog, "leapfrog"},
-        {Integrator::forward_euler, "forward_euler"},
     }};
 };
 

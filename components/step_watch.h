@@ -8,18 +8,17 @@
 
 #include "components/column.h"
 #include "components/range.h"
-#include "components/step_levels.h"
 #include "components/types.h"
 
 namespace skerry {
 
 /// A look at one body: the pieces of it that are done, and what they found.
 struct StepLook {
-    std::uint64_t piece = 0;                           // the next one
-    Index broken = no_index;                           // the first element whose bound is no number
-    std::array<Real, element_level_count> highest{};   // 1/s^2, by level: bound of omega^2
-    std::array<Index, element_level_count> element{};  // by level, where the bound is not zero: whose it is
-    Real known = 0;  // 1/s^2, the bound that was known when the present wave of blocks began
+    std::uint64_t piece = 0;   // the next one
+    Index broken = no_index;   // the first element whose bound is no number
+    Real highest = 0;          // greatest bound of omega^2 so far [1/s^2]
+    Index element = no_index;  // element with that bound; meaningful if `highest` is above zero
+    Real known = 0;            // 1/s^2, the bound that was known when the present wave of blocks began
     // Of a body that has masses in its frame: sum of V F, m^3, column by column, and 1/s^2, the bound by them
     std::array<Real, 9> deformation{};
     Real in_frame = 0;

@@ -135,7 +135,7 @@ void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_
     const std::vector<Index> of_body(begin.size(), 0);
     predict_velocity(
         executor,
-        {begin, end, of_body, body.patches.slots_of_node.view(), body.patches.force, {}, body.mass, body.inverse_mass},
+        {begin, end, of_body, body.patches.slots_of_node.view(), body.patches.force, body.mass, body.inverse_mass},
         body.velocity, 1e-6, body.force, velocity_next);
 }
 

@@ -20,7 +20,7 @@ struct Pile {
     int bodies = 12, cells = 6;
     Real share = 0.01, flatness = 0.02;
     Real seconds = 0.3;
-    bool linear = false, multirate = false, clusters = true;
+    bool linear = false, clusters = true;
 };
 
 struct Outcome {
@@ -31,7 +31,7 @@ struct Outcome {
 
 World make_world(const Pile& pile, bool slivers) {
     constexpr Real size = 0.1;
-    World world({.multirate = pile.multirate, .clusters = pile.clusters, .threads = 1});
+    World world({.clusters = pile.clusters, .threads = 1});
     const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.4, .friction = 0.4});
     world.add_collider(Plane{});
     for (int i = 0; i < pile.bodies; ++i) {
@@ -81,7 +81,6 @@ int main(int argc, char** argv) {
     app.add_option("--flatness", pile.flatness, "their altitude over what it was");
     app.add_option("--seconds", pile.seconds, "s, simulated");
     app.add_flag("--linear", pile.linear, "linear elements");
-    app.add_flag("--multirate", pile.multirate, "with the setting multirate, whose elements are linear");
     app.add_flag("!--no-clusters", pile.clusters, "without the setting clusters");
     app.add_option("--rounds", rounds, "runs of each, in turns; the median counts");
     CLI11_PARSE(app, argc, argv);

@@ -42,15 +42,6 @@ std::string solver_lines(const RunResult& result) {
     return text;
 }
 
-std::string level_text(const WorldReport& r) {
-    std::string text = percent(static_cast<double>(r.element_impulses) / static_cast<double>(r.element_steps)) +
-                       " of all element forces computed; elements with one impulse in";
-    for (std::size_t l = 0; l < r.level_elements.size(); ++l)
-        if (r.level_elements[l] > 0) text += " " + std::to_string(1u << l) + ": " + grouped(r.level_elements[l]) + ",";
-    text.back() = ' ';
-    return text + "steps";
-}
-
 std::string stage_table(const RunResult& result) {
     double total = 0;
     std::size_t width = 0;
@@ -158,7 +149,6 @@ std::string summary_of(const RunResult& result) {
         text += line("large strain", grouped(r.large_strain_steps) + " steps of implicit bodies, in " +
                                          grouped(r.newton_steps) + " of Newton's method with " +
                                          grouped(r.tangent_factors) + " factors");
-    if (r.element_steps > 0) text += line("multirate", level_text(r));
     text += solver_lines(result);
     text += line("energy", "kinetic " + with_unit(r.energy.kinetic, "J") + " (at most " +
                                with_unit(result.peak_kinetic_energy, "J") + "), elastic " +

@@ -45,6 +45,12 @@ using SchemaBook = Json;
 template <class T>
 struct Value;
 
+/// A key, or one value of a key, that earlier versions knew.
+struct Withdrawn {
+    std::string_view key, value;  // value empty: the key itself
+    std::string_view instead;     // what to do about it
+};
+
 /// What keys of an object have to do with each other.
 struct KeyGroup {
     enum class Kind { exactly_one, at_most_one, together } kind;
@@ -71,6 +77,7 @@ protected:
                  std::function<void(const Json&, const Place&, const KeyDoc&, void* object)> read,
                  Json (*describe)(SchemaBook&, const KeyDoc&));
     void add_group(KeyGroup::Kind kind, std::vector<std::string> keys);
+    void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
     /// Where the object stands, called by its own name if it has one.
     Place place_of(const Json& json, const Place& outer) const;
     /// Refuses what is no object of these keys, then reads them.
@@ -79,10 +86,12 @@ protected:
 private:
     const Key* find(const std::string& name) const;
     std::vector<std::string> known_names() const;
+    void refuse_withdrawn(const std::string& key, const Json& value, const Place& place) const;
 
     std::string name_, meaning_;
     std::vector<Key> keys_;
     std::vector<KeyGroup> groups_;
+    std::vector<Withdrawn> withdrawn_;
 };
 
 /// The keys of objects of type T.
@@ -105,6 +114,16 @@ public:
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }
     Rule& at_most_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::at_most_one, std::move(keys)); }
     Rule& together(std::vector<std::string> keys) { return group(KeyGroup::Kind::together, std::move(keys)); }
+    /// A key that is refused with a message that says what to use instead.
+    Rule& withdrawn(std::string_view key, std::string_view instead) {
+        add_withdrawn({key, {}, instead});
+        return *this;
+    }
+    /// The same for one value of a key that is still there.
+    Rule& withdrawn_value(std::string_view key, std::string_view value, std::string_view instead) {
+        add_withdrawn({key, value, instead});
+        return *this;
+    }
     /// A condition between values; it refuses by itself.
     Rule& check(std::function<void(const Place&, const T&)> check) {
         checks_.push_back(std::move(check));

@@ -183,11 +183,16 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("step_safety", &S::step_safety,
                  {.meaning = "fraction of the stable step that is used",
                   .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
-            .key("integrator", &S::integrator,
-                 {.meaning = "how velocities and positions are moved on; forward_euler is for comparison only"})
-            .key("multirate", &S::multirate, {.meaning = "elements that stand longer steps get impulses less often"})
+            .key("integrator", &S::integrator, {.meaning = "how velocities and positions are integrated in time"})
+            .withdrawn_value(
+                "integrator", "forward_euler",
+                "use \"symplectic_euler\", the default, or \"leapfrog\"; forward Euler is unstable at any step")
             .key("clusters", &S::clusters,
                  {.meaning = "the few elements that would make all steps several times shorter move as clusters"})
+            .withdrawn(
+                "multirate",
+                "delete the key: clusters, which are on by default, keep steps long where few elements are stiff; "
+                "for a stiff body set \"dynamics\" to \"implicit\" or \"automatic\"")
             .key("backend", &S::backend, {.meaning = "what runs the threads"})
             .key("threads", &S::threads, {.meaning = "0: as many as there are", .limits = within(0, 1024)})
             .key("contact_regions", &S::contact_regions, {.meaning = "how contacts are grouped"})

@@ -35,13 +35,11 @@ struct ImplicitElements {
                                         rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
         shape.assign(rest.begin(), rest.end());
         for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
-        const AppendedElements appended = append_elements(list, rest, {}, BlockOrder::compact, 0, 0, table, nodes);
+        const AppendedElements appended = append_elements(list, rest, BlockOrder::compact, 0, 0, table, nodes);
         blocks = appended.blocks;
         covered = covered_tetrahedra(list, appended.element);
     }
-    ElementInputs inputs(const Model& model) const {
-        return ElementInputs::bind({}, table, nodes, model.materials, model.bodies);
-    }
+    ElementInputs inputs(const Model& model) const { return ElementInputs::bind({}, table, nodes, model.materials); }
 };
 
 void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values) {

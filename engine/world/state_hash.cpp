@@ -162,22 +162,11 @@ void add_pairs(Hash& hash, const Model& model, const PairTable& pairs) {
     }
 }
 
-/// A cycle that has not begun is planned anew, with the levels of the bodies in it, before anything reads it.
 void add_clock(Hash& hash, const Model& model, const Clock& clock) {
     add_row(hash, clock.time);
     add_row(hash, clock.offset);
     add_row(hash, clock.step_before);
     add_row(hash, model.watch.steps);
-    add_row(hash, clock.cycle.index);
-    add_row(hash, clock.cycle.lead);
-    if (clock.cycle.index == 0) return;
-    add_row(hash, clock.cycle.levels);
-    add_row(hash, clock.cycle.h);
-    add_row(hash, clock.cycle.elements);
-    for (std::size_t b : in_slot_order(model.bodies.slot)) {
-        add_row(hash, model.bodies.level[b]);
-        add_row(hash, model.bodies.level_cap[b]);
-    }
 }
 
 }  // namespace

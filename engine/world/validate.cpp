@@ -130,9 +130,6 @@ void validate(const Settings& settings) {
         require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
     require(settings.step_safety > 0 && settings.step_safety <= 1, "settings", "step_safety", settings.step_safety,
             "a fraction > 0 and <= 1");
-    if (settings.multirate && settings.integrator == Integrator::forward_euler)
-        refuse("settings", "multirate", "true",
-               "false: forward_euler is for comparison with the paper, which has one step for all");
     require(settings.threads >= 0, "settings", "threads", settings.threads,
             "a number of threads, or 0 for those of the caller");
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance,

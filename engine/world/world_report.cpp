@@ -212,12 +212,6 @@ WorldReport World::report() const {
     report.broad_searches = world.cache.search.broad_searches;
     report.pair_searches = world.cache.search.pair_searches;
     report.candidates = world.cache.search.candidate_count;
-    const auto& levels = world.clock.cycle.elements;
-    for (std::size_t l = 0; l < levels.size(); ++l)
-        if (levels[l] > 0) {
-            report.level_elements.resize(l + 1);
-            report.level_elements[l] = levels[l];
-        }
     report.crossing_tests = world.cache.crossings.tested;
     report.crossings_found = world.cache.crossings.hits;
     report.crossed = world.cache.crossings.let_through;

@@ -19,7 +19,7 @@ lines, {items} items, {failed} failed.
 NOTES = """
 ## Notes
 
-- **2**: one step serves all bodies here; fewer impulses for soft ones are the matter of [multirate](integration.md).
+- **2**: one step serves all bodies here; a stiff body can be [implicit](methods/implicit_bodies.md).
 - **6**: no force has a direction where F = 0, and none points off an exact line: the stable neo-Hookean law, which is
   smooth, leaves a body there. It is no minimum (the logarithmic term of the paper sees to that): pressed to a hundredth
   of its size it comes back. A body thrown into a heap, or off a line by rounding, opens this way here and that way

@@ -9,7 +9,6 @@
 #include "systems/collision/find_crossings.h"
 #include "systems/dynamics/checks/check_state.h"
 #include "systems/dynamics/checks/find_inversions.h"
-#include "systems/dynamics/checks/limit_impulses.h"
 #include "systems/dynamics/checks/measure_viscosity.h"
 #include "systems/dynamics/clusters/kick_clusters.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
@@ -37,7 +36,6 @@ struct Kernels {
     decltype(&skerry::check_state) check_state;
     decltype(&skerry::strain_rate) strain_rate;
     decltype(&skerry::find_inversions) find_inversions;
-    decltype(&skerry::limit_impulses) limit_impulses;
     decltype(&skerry::measure_viscosity) measure_viscosity;
     decltype(&skerry::compute_element_forces) compute_element_forces;
     decltype(&skerry::elastic_energy) elastic_energy;

@@ -13,7 +13,6 @@ const skerry::Kernels SKERRY_KERNELS = {
     .check_state = &skerry::check_state,
     .strain_rate = &skerry::strain_rate,
     .find_inversions = &skerry::find_inversions,
-    .limit_impulses = &skerry::limit_impulses,
     .measure_viscosity = &skerry::measure_viscosity,
     .compute_element_forces = &skerry::compute_element_forces,
     .elastic_energy = &skerry::elastic_energy,

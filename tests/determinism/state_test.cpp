@@ -50,7 +50,6 @@ TEST_CASE("the hash sees a bit in every column that is state", "[determinism]") 
     WorldState& state = WorldAccess::state_of(world);
     REQUIRE(state.cache.warm_start.key.size() > 0);
     REQUIRE(state.cache.pairs.size() > 0);
-    state.clock.cycle.index = 1;  // between cycles the levels of bodies mean nothing
     for (PairState& known : state.cache.pairs.state)
         known = PairState::overlapping;  // of what is apart nothing is kept
     state.cache.resting.for_each_column([](const char*, auto& column, ColumnRole) { column.resize(1); });

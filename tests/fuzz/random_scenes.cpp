@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
     app.add_option("--hang-seconds", options.hang_seconds, "CPU time after which a scene counts as hung");
     app.add_option("--compare-every", options.compare_every,
                    "every so many scenes is run again on four threads; 0: none");
-    app.add_option("--set", options.assignments, "PLACE=VALUE in every scene, such as settings.multirate=true");
+    app.add_option("--set", options.assignments, "PLACE=VALUE in every scene, such as settings.clusters=false");
     app.add_option("--out", options.out, "folder for the scenes that failed, as JSON");
     app.add_flag("--list", options.list, "one line a scene");
     CLI11_PARSE(app, argc, argv);

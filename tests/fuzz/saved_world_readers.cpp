@@ -20,8 +20,8 @@ const TemporaryFolder& folder() {
 }
 
 /// Something in every table that can be small: two kinds of elements, contacts, a held node, a mesh collider, a script.
-World small_world(bool multirate) {
-    World world({.multirate = multirate, .backend = Backend::serial, .threads = 1, .sleep_speed = 0.01});
+World small_world(ElementKind element) {
+    World world({.backend = Backend::serial, .threads = 1, .sleep_speed = 0.01});
     const auto soft = world.add_material({.young_modulus = 2e4});
     const auto stiff = world.add_material({.young_modulus = 2e5, .model = MaterialModel::corotational});
     Mesh box = mesh::box({0.1, 0.1, 0.1}, {1, 1, 2});
@@ -34,9 +34,13 @@ World small_world(bool multirate) {
     world.add_collider(Capsule{0.02, 0.1},
                        {.position = {-0.08, 0, 0.05},
                         .motion = {.keys = {{0, {-0.08, 0, 0.05}, {0, 0, 0}}, {1, {-0.07, 0, 0.05}, {0, 0.5, 0}}}}});
-    const auto lower = world.add_body(box, {.material = soft, .materials = {{1, stiff}}, .position = {0, 0, 0.051}});
-    world.add_body(box,
-                   {.material = soft, .materials = {{1, stiff}}, .position = {0.01, 0, 0.153}, .self_contact = true});
+    const auto lower = world.add_body(
+        box, {.material = soft, .materials = {{1, stiff}}, .position = {0, 0, 0.051}, .element = element});
+    world.add_body(box, {.material = soft,
+                         .materials = {{1, stiff}},
+                         .position = {0.01, 0, 0.153},
+                         .self_contact = true,
+                         .element = element});
     world.attach(lower, std::vector<Index>{0});
     world.advance(0.02);
     return world;
@@ -46,18 +50,18 @@ struct Sample {
     std::vector<char> bytes;
     std::vector<ValuesInFile> sets;
 
-    explicit Sample(bool multirate) {
+    explicit Sample(ElementKind element) {
         const auto file = folder().path() / "sample.skerry";
-        small_world(multirate).save(file);
+        small_world(element).save(file);
         std::ifstream in(file, std::ios::binary);
         bytes.assign(std::istreambuf_iterator<char>(in), {});
         sets = values_in(file.string());
     }
 };
 
-const Sample& sample(bool multirate) {
-    static const std::array<Sample, 2> samples{Sample(false), Sample(true)};
-    return samples[multirate ? 1 : 0];
+const Sample& sample(ElementKind element) {
+    static const Sample smoothed(ElementKind::smoothed), linear(ElementKind::linear);
+    return element == ElementKind::linear ? linear : smoothed;
 }
 
 std::string write(std::span<const char> bytes) {
@@ -87,7 +91,7 @@ void read_saved_bytes(FileBytes bytes) {
 
 void read_saved_values_bytes(FileBytes bytes) {
     if (bytes.empty()) return;
-    const Sample& start = sample(bytes[0] % 2 != 0);
+    const Sample& start = sample(bytes[0] % 2 != 0 ? ElementKind::linear : ElementKind::smoothed);
     std::vector<char> file = start.bytes;
     constexpr std::size_t code_bytes = 5;
     for (FileBytes rest = bytes.subspan(1); rest.size() >= code_bytes; rest = rest.subspan(code_bytes)) {
@@ -104,7 +108,8 @@ void read_saved_values_bytes(FileBytes bytes) {
 }
 
 std::string sample_saved_world() {
-    return {sample(false).bytes.begin(), sample(false).bytes.end()};
+    const std::vector<char>& bytes = sample(ElementKind::smoothed).bytes;
+    return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace skerry::test

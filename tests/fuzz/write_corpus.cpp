@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
     put(folder / "problem_values" / "local", std::string(1, '\0'));
     put(folder / "problem_values" / "global", std::string(1, '\1'));
     put(folder / "saved" / "world", sample_saved_world());
-    put(folder / "saved_values" / "even", std::string(1, '\0'));
-    put(folder / "saved_values" / "multirate", std::string(1, '\1'));
+    put(folder / "saved_values" / "smoothed", std::string(1, '\0'));
+    put(folder / "saved_values" / "linear", std::string(1, '\1'));
     return 0;
 }

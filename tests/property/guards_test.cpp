@@ -82,7 +82,7 @@ struct GuardedBody : test::ElasticBody {
         element_nodes = {};
         patches = {};
         const AppendedElements appended =
-            append_elements(list, mesh.nodes, {}, BlockOrder::fans, 0, 0, elements, element_nodes);
+            append_elements(list, mesh.nodes, BlockOrder::fans, 0, 0, elements, element_nodes);
         blocks = appended.blocks;
         element_at = appended.element;
         start_mass_shares(inputs(), blocks, elements.mass_share);

@@ -157,9 +157,9 @@ TEST_CASE("steps that are all alike have kicks as long", "[scene]") {
     for (int call = 0; call < 4; ++call) REQUIRE(world.advance(0x1p-6).steps == 16);
 }
 
-TEST_CASE("leapfrog and forward Euler kick for the step itself, however long the last one was", "[scene]") {
+TEST_CASE("leapfrog kicks for the step itself, however long the last one was", "[scene]") {
     Settings settings = step_of(1e-3);
-    settings.integrator = GENERATE(Integrator::leapfrog, Integrator::forward_euler);
+    settings.integrator = Integrator::leapfrog;
     World world{settings};
     const auto rubber = world.add_material({.young_modulus = 1e4, .poisson_ratio = 0.4, .density = 1000});
     world.add_body(mesh::ball(0.1, 3), {.material = rubber});

@@ -52,7 +52,6 @@ TEST_CASE("a report counts the guards that act: of smoothed bodies with clusters
     CHECK(thrown({.clusters = false}).report().guards == 0);
     CHECK(guard_blocks(thrown({.clusters = false})) > 0);
     CHECK(guard_blocks(thrown({}, {.element = ElementKind::linear})) == 0);
-    CHECK(guard_blocks(thrown({.multirate = true})) == 0);
     CHECK(guard_blocks(thrown({}, {.dynamics = BodyDynamics::implicit_elastic})) == 0);
     CHECK(guard_blocks(thrown({}, {.dynamics = BodyDynamics::rigid})) == 0);
     const test::TetMesh even = test::jittered_box({4, 3, 3}, 0.05, 0, 5);

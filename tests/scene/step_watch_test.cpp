@@ -142,7 +142,7 @@ TEST_CASE("no step takes more than its share of the looks", "[scene]") {
     Model& model = WorldAccess::state_of(world).model;
     std::uint64_t all = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
-        all += pieces_of_body(model.all_elements(), model.bodies.blocks[b], model.bodies.level_count[b]);
+        all += pieces_of_look(model.all_elements(), model.bodies.blocks[b]);
     REQUIRE(all > 128);
     const auto done = [&] { return model.watch.before + model.watch.look.piece; };
     std::uint64_t before = done(), greatest = 0;

@@ -57,9 +57,8 @@ TEST_CASE("a try as long as the one before it has the same forces without a pass
     Tries tries, twin_tries;
     std::uint64_t tried = 0, longer = 0, crossing = 0, shorter = 0;
     for (int step = 0; step < 200; ++tried) {
-        int levels = 0;
-        const StepPlan plan = plan_step(state.model, state.clock.cycle, 1, tries.at_most(), levels);
-        REQUIRE(plan_step(forgetful.model, forgetful.clock.cycle, 1, twin_tries.at_most(), levels).h == plan.h);
+        const StepPlan plan = plan_step(state.model, 1, tries.at_most());
+        REQUIRE(plan_step(forgetful.model, 1, twin_tries.at_most()).h == plan.h);
         const StepOutcome outcome = try_step(state, plan, tries);
         forgetful.scratch.parameters.h = 0;  // whatever was tried was not as long
         REQUIRE(try_step(forgetful, plan, twin_tries) == outcome);

@@ -58,7 +58,7 @@ struct ElasticBody {
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
         list = elements_of({mesh.tetrahedra, mesh.nodes}, zones);
         const AppendedElements appended =
-            append_elements(list, mesh.nodes, {}, BlockOrder::fans, 0, 0, elements, element_nodes);
+            append_elements(list, mesh.nodes, BlockOrder::fans, 0, 0, elements, element_nodes);
         blocks = appended.blocks;
         turn_elements(rotation, blocks, elements, element_nodes);
         element_at = appended.element;

@@ -7,13 +7,11 @@
 
 namespace skerry::test {
 
-/// Everything that has a memory at once: stiff and soft elements with levels, also in one body, bodies at rest and
-/// bodies that fall onto them, friction, damping, loads, a mesh collider and a bar that move by scripts, and a held
-/// body.
+/// Everything that has a memory at once: stiff and soft elements, also in one body, bodies at rest and bodies that fall
+/// onto them, friction, damping, loads, a mesh collider and a bar that move by scripts, and a held body.
 inline World lively_scene(Settings settings, int threads = 1) {
     settings.backend = available_backends().front();
     settings.threads = threads;
-    settings.multirate = true;
     settings.sleep_speed = 0.2;
     settings.sleep_time = 0.02;
     World world(settings);

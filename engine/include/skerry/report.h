@@ -219,8 +219,6 @@ struct RunCounters {
     std::uint64_t frozen = 0;                             // contact steps left out since nothing changed there
     std::uint64_t contact_steps = 0;                      // contacts times sweeps, of regions that were swept
     std::uint64_t swept = 0;                              // regions that needed sweeps
-    std::uint64_t element_steps = 0;                      // with multirate: elements times steps
-    std::uint64_t element_impulses = 0;                   // of them, how many were evaluated
     std::uint64_t large_strain_steps = 0;                 // implicit bodies times steps in which their strain was large
     std::uint64_t newton_steps = 0, tangent_factors = 0;  // of those: Newton's method's, and how often it factored
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
@@ -250,8 +248,6 @@ struct WorldReport : RunCounters {
     std::vector<StageReport> stages;                                  // in the order of the step
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;  // per step; sweeps per solved region
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
-    // Multirate: elements of each level in the last step, an impulse every 2^level steps; empty without it.
-    std::vector<std::uint64_t> level_elements;
     // Fast features whose motion was looked at, those that would have crossed, and those that did since no try could
     // stop them.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;

@@ -147,10 +147,8 @@ struct Settings {
     // ones they take one while others take several (docs/methods/implicit_bodies.md 9). With symplectic_euler only.
     Real implicit_step = 0;
     Integrator integrator = Integrator::symplectic_euler;
-    // elements that stand longer steps get impulses less often (docs/integration.md)
-    bool multirate = false;
     // The few elements that would make all steps several times shorter couple the nodes around them instead
-    // (docs/methods/clusters.md). Not with forward_euler and paper_algorithm_1.
+    // (docs/methods/clusters.md). Not with paper_algorithm_1.
     bool clusters = true;
     Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
     int threads = 0;                       // 0: those of the caller's task arena

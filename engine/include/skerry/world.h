@@ -183,10 +183,9 @@ public:
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// External forces on the nodes, kept until set again, N.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
-    /// What a material is now, and what it shall be from now on: bodies that have it keep their shapes and velocities
-    /// and get masses, stable steps and clusters of their new kind. Refused: another model; with multirate, all but
-    /// friction, restitution and damping; what gives one of these bodies no stable step. Kinds of smoothed elements
-    /// stay what Poisson's ratio made them when their bodies were added.
+    /// Reads or changes a material. Bodies that have it keep their shapes and velocities and get masses, stable steps
+    /// and clusters of their new kind. Refused: another model; values that give one of these bodies no stable step.
+    /// Kinds of smoothed elements stay what Poisson's ratio made them when their bodies were added.
     MaterialSettings material(MaterialHandle material) const;
     void set_material(MaterialHandle material, const MaterialSettings& settings);
     void set_surface_properties(BodyHandle body, const SurfaceSettings& surface);

@@ -96,13 +96,10 @@ void weigh(Model& model, std::size_t body) {
         .raise();
 }
 
-void require_changeable(const Settings& settings, const MaterialRow& now, const MaterialRow& next) {
+void require_changeable(const MaterialRow& now, const MaterialRow& next) {
     if (now.constants.model != next.constants.model)
         refuse("model", std::string(name_of(next.constants.model)),
                std::string(name_of(now.constants.model)) + ": the law stays, a new material can have another");
-    if (settings.multirate && !now.same_elements(next))
-        refuse("young_modulus, poisson_ratio, density, loss_factor, bulk_viscosity", "other values",
-               "those that it has: with multirate elements have levels that follow from them");
 }
 
 }  // namespace
@@ -133,7 +130,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     validate(settings, model.settings);
     const MaterialRow now = MaterialRow::of(model.materials, static_cast<std::size_t>(row)),
                       next = MaterialRow::of(settings);
-    require_changeable(model.settings, now, next);
+    require_changeable(now, next);
     if (now.same_elements(next) && now.same_rest(next)) return;
     state_->settle();
     std::vector<std::size_t> bodies = bodies_of(model, row);

@@ -63,8 +63,7 @@ std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
         auto zone = std::find_if(zones.begin(), zones.end(), [&](const auto& z) { return z.material == material; });
         if (zone == zones.end()) {
             const Real poisson_ratio = model.materials.poisson_ratio[static_cast<std::size_t>(material)];
-            zone = zones.insert(zones.end(),
-                                {material, resolved(body.element, poisson_ratio, model.settings.multirate), {}});
+            zone = zones.insert(zones.end(), {material, resolved(body.element, poisson_ratio), {}});
         }
         zone->tetrahedra.push_back(static_cast<Index>(t));
     }
@@ -153,15 +152,9 @@ void find_steps(Model& model, Index row, const NewBody& body, std::span<const Ma
         const Real before = step();
         set_relaxation(model, bodies.nodes[b], blocks, stiffness_sum, bar_speed(model, body, zones), before);
     }
-    // Levels live from the distance that coarse elements keep to their limit (docs/methods/stable_step.md 7.3).
-    const auto& levels = bodies.level_count[b];
-    if (std::all_of(levels.begin() + 1, levels.end(), [](Index count) { return count == 0; })) {
-        kernels().find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
-                                   rows_of(model.elements.mass_share, blocks));
-        bodies.rest_step[b] = bodies.stable_step[b] = choose_mass_forms(model, row, stiffness_sum);
-        return;
-    }
-    bodies.rest_step[b] = bodies.stable_step[b] = step();
+    kernels().find_mass_shares(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum,
+                               rows_of(model.elements.mass_share, blocks));
+    bodies.rest_step[b] = bodies.stable_step[b] = choose_mass_forms(model, row, stiffness_sum);
 }
 
 const KnownElements* known_elements(const Model& model, const NewBody& body) {
@@ -189,10 +182,7 @@ void take_steps(const KnownElements& known, Index row, Model& model) {
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places) {
     const auto b = static_cast<std::size_t>(row);
     const Range blocks = model.bodies.blocks[b];
-    const auto& levels = model.bodies.level_count[b];
-    if (body.kind != BodyKind::deformable || body.has_frame() ||
-        std::any_of(levels.begin() + 1, levels.end(), [](Index count) { return count > 0; }))
-        return;
+    if (body.kind != BodyKind::deformable || body.has_frame()) return;
     constexpr std::size_t most_known = 64;  // a mesh that comes is compared with so many
     if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
     KnownElements& known = model.known_elements.emplace_back();

@@ -50,7 +50,6 @@ struct ExplicitBody {
 ExplicitBody as_explicit(const Model& model, const NewBody& body) {
     Model alone;
     alone.settings = model.settings;
-    alone.settings.multirate = false;
     alone.materials = model.materials;
     Column<Real> stiffness_sum;
     append_body(alone, stiffness_sum, body);

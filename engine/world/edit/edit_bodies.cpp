@@ -12,7 +12,6 @@
 #include "engine/world/step/step.h"
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
-#include "systems/dynamics/stability/element_levels.h"
 #include "systems/dynamics/stability/stable_step.h"
 
 namespace skerry {
@@ -113,38 +112,6 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-std::array<Index, element_level_count> level_count_of(const ElementBlockTable& elements, Range blocks) {
-    std::array<Index, element_level_count> count{};
-    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
-        for (Real volume : elements.volume[b].lane) count[elements.level[b]] += volume > 0;
-    return count;
-}
-
-std::array<Real, element_level_count> steepness_of(const ElementBlockTable& elements, const ElementNodeTable& nodes,
-                                                   Range blocks) {
-    std::array<Real, element_level_count> steepness{};
-    for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            // F' = sum_k (v_k - v) (x) g_k for any v: the gradient of the first node is minus the sum of the others
-            Vec3 of_first = Vec3::Zero();
-            Real sum = 0;
-            for (Index k = 1; k < elements.count[b]; ++k) {
-                const ElementGradient& lanes = nodes.gradient[static_cast<std::size_t>(elements.first[b] + k)];
-                const Vec3 gradient(lanes[0][l], lanes[1][l], lanes[2][l]);
-                of_first -= gradient;
-                sum += gradient.norm();
-            }
-            Real& most = steepness[elements.level[b]];
-            most = std::max(most, sum + of_first.norm());
-        }
-    return steepness;
-}
-
-/// Takes rows `gone` out of every column of a table.
-void erase_rows(auto& table, Range gone) {
-    table.for_each_column([gone](const char*, auto& column, ColumnRole) { column.erase({&gone, 1}); });
-}
-
 /// A new body as the tables have it: rows, and where the elements of the list stand.
 struct BodyRows {
     Index row;
@@ -153,60 +120,11 @@ struct BodyRows {
     AppendedElements elements;
 };
 
-/// Appends the elements of a body at rows.places; `level` of each, or none: all 0.
-void append_elements_of(Model& model, const ElementList& list, std::span<const std::uint8_t> level, BodyRows& rows) {
-    rows.elements =
-        append_elements(list, rows.places, level, rows.nodes.begin, rows.row, model.elements, model.element_nodes);
+/// Appends the elements of a body at rows.places.
+void append_elements_of(Model& model, const ElementList& list, BodyRows& rows) {
+    rows.elements = append_elements(list, rows.places, rows.nodes.begin, rows.row, model.elements, model.element_nodes);
     const Range blocks = rows.elements.blocks;
     start_mass_shares(model.all_elements(), blocks, rows_of(model.elements.mass_share, blocks));
-}
-
-ElementPlaces places_of(const Model& model, const ElementList& list, std::span<const std::uint8_t> level,
-                        const BodyRows& rows) {
-    const BlockOrder order = model.settings.multirate ? BlockOrder::compact : BlockOrder::fans;
-    return find_places(list, rows_of(model.nodes.rest_position, rows.nodes), level, order);
-}
-
-/// Smoothed elements gain energy where neighbours have impulses at several rates.
-bool may_have_levels(const Model& model, std::span<const MaterialZone> zones) {
-    return model.settings.multirate && !zones.empty() &&
-           std::ranges::all_of(zones, [](const MaterialZone& zone) { return zone.kind == ElementKind::linear; });
-}
-
-/// Whether elements of these levels, whose level 0 stands `step` (s), cost so much less than those of one, some of them
-/// implicit where that is allowed, that their viscosity and coarser steps are worth it.
-bool levels_pay(const Model& model, const NewBody& body, std::span<const std::uint8_t> level, Real step) {
-    constexpr Real least_gain = 1.25;
-    std::array<Index, element_level_count> count{};
-    for (const std::uint8_t l : level) ++count[l];
-    const Real least = least_gain * cost_of_levels(count, 1) / step;
-    if (least > element_cost * static_cast<Real>(level.size()) / step) return false;  // one level stands longer steps
-    NewBody of_one_level = body;
-    of_one_level.element = ElementKind::linear;
-    return least <= cost_without_levels(model, of_one_level);
-}
-
-/// Elements by level, where levels pay, so that blocks have one level.
-void sort_by_level(Model& model, const NewBody& body, const ElementList& list, std::span<Real> stiffness_sum,
-                   BodyRows& rows) {
-    const Range blocks = rows.elements.blocks;
-    std::vector<std::uint8_t> at_place(rows.elements.element.size()), level(list.size());
-    const ElementInputs elements = model.all_elements();
-    const Real step =
-        kernels().stable_step(elements, blocks, model.nodes.rest_position, model.nodes.mass, stiffness_sum).step;
-    find_element_levels(elements, blocks, model.nodes.rest_position, model.nodes.mass, step, stiffness_sum, at_place);
-    for (std::size_t place = 0; place < at_place.size(); ++place)
-        if (const Index e = rows.elements.element[place]; e != no_index)
-            level[static_cast<std::size_t>(e)] = at_place[place];
-    if (std::all_of(level.begin(), level.end(), [](std::uint8_t l) { return l == 0; })) return;
-    if (!levels_pay(model, body, level, step)) return;
-
-    erase_rows(model.element_nodes, rows.elements.nodes);
-    erase_rows(model.elements, blocks);
-    rows.places = places_of(model, list, level, rows);
-    append_elements_of(model, list, level, rows);
-    find_viscous_times(rows_of(model.elements.level, rows.elements.blocks), step,
-                       rows_of(model.elements.viscous_time, rows.elements.blocks));
 }
 
 /// The triangles that the user gave, or the boundary of the tetrahedra, which the body has among its rows unless it is
@@ -259,9 +177,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     const KnownElements* const known = known_elements(model, body);
-    rows.places = known ? known->places : places_of(model, list, {}, rows);
-    append_elements_of(model, list, {}, rows);
-    if (!known && may_have_levels(model, zones)) sort_by_level(model, body, list, stiffness_sum, rows);
+    rows.places =
+        known ? known->places : find_places(list, rows_of(model.nodes.rest_position, nodes), BlockOrder::fans);
+    append_elements_of(model, list, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;
@@ -284,10 +202,6 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     bodies.uninverted_until[b] = not_looked_at;
     std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_looked_at);
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
-    bodies.level_count[b] = level_count_of(model.elements, blocks);
-    bodies.steepness[b] = steepness_of(model.elements, model.element_nodes, blocks);
-    bodies.level_cap[b] = step_level_count - 1;
-    bodies.longest_impulse[b] = std::numeric_limits<Real>::max();  // nothing is known yet
     model.body_records.push_back(
         {.name = {},
          .element = kind_of(implicit ? all_zones : zones),

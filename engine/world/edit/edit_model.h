@@ -74,7 +74,7 @@ struct RoundMass {
 RoundMass round_mass(const Model& model, const NewBody& body);
 /// Adds the masses of the tetrahedra to those of the nodes, which are free then.
 void set_masses(Model& model, const NewBody& body, Range nodes);
-/// Finds the mass forms of a body of one level, whose masses are shared, and of linear elements the masses in its frame
+/// Finds the mass forms of a body, whose masses are shared, and of linear elements the masses in its frame
 /// (mass_forms.h, frame_masses.h), and leaves those out that do not make its step at rest longer. Returns that step, s.
 Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum);
 /// Takes both away.
@@ -83,14 +83,13 @@ void forget_mass_forms(Model& model, Range blocks);
 /// new.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
                 Column<Real>& stiffness_sum);
-/// The same after its materials have changed, all that follows from the old ones forgotten. Not for elements of several
-/// levels.
+/// The same after its materials have changed, all that follows from the old ones forgotten.
 void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum);
 /// What bodies that came before have found out for a new one of their mesh, materials and element; nullptr: nothing.
 const KnownElements* known_elements(const Model& model, const NewBody& body);
 /// In place of find_steps, of a body whose elements lie as its mesh does.
 void take_steps(const KnownElements& known, Index row, Model& model);
-/// For those that come: of a new body after find_steps, unless it has several levels. `places` of its elements.
+/// Keeps what find_steps found for a new body, for bodies of the same mesh that come later. `places` of its elements.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
 
 // edit_colliders.cpp; `now` is the time at which they come, s

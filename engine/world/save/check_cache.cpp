@@ -28,10 +28,6 @@ void check_clock(const Hdf5File& file, const Clock& clock, Real kick) {
     expect_between(file, "/clock/step_before", std::array{clock.step_before}, 0.0, long_time);
     expect_between(file, "/clock/kick_before", std::array{clock.kick_before}, 0.0, long_time);
     expect_between(file, "/last_step/kick", std::array{kick}, 0.0, long_time);
-    constexpr int most_levels = step_level_count - 1;
-    expect_between(file, "/clock/cycle/levels", std::array{clock.cycle.levels}, 0, most_levels);
-    expect_between(file, "/clock/cycle/index", std::array{clock.cycle.index}, 0, (1 << clock.cycle.levels) - 1);
-    expect_between(file, "/clock/cycle/h", std::array{clock.cycle.h}, 0.0, long_time);
 }
 
 void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) {

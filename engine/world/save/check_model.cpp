@@ -98,10 +98,6 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     expect_partition(file, "/bodies/tetrahedron_blocks", bodies.tetrahedron_blocks, model.tetrahedra.node.size());
     expect_partition(file, "/bodies/rigid", bodies.rigid, model.rigid_bodies.size());
     expect_partition(file, "/bodies/implicit", bodies.implicit, model.implicit_nodes.size());
-    expect_between(file, "/bodies/level", bodies.level, 0, step_level_count - element_level_count);
-    expect_between(file, "/bodies/level_cap", bodies.level_cap, 0, step_level_count - 1);
-    expect_between(file, "/bodies/touched", bodies.touched, 0, 1);
-    expect_between(file, "/bodies/longest_impulse", bodies.longest_impulse, 0.0, unbounded);
     expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
     expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
     expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, unbounded);
@@ -187,15 +183,12 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
                 file.complain("/elements/count", std::to_string(elements.count[e]) + " at row " + std::to_string(e),
                               "rows of /element_nodes that follow each other, four or more");
             first += elements.count[e];
-            const bool same_level = e > of_body.begin && elements.level[e] == elements.level[e - 1];
-            if (!elements.opens_patch[e] && !same_level)
-                file.complain("/elements/opens_patch", "0 at row " + std::to_string(e),
-                              "1 where a body or a level begins");
+            if (!elements.opens_patch[e] && e == of_body.begin)
+                file.complain("/elements/opens_patch", "0 at row " + std::to_string(e), "1 where a body begins");
         }
         if (first != rows.end) file.complain("/elements/count", std::to_string(first), "all rows of a body");
     }
     expect_rows_of(file, "/elements/material", elements.material, model.materials.slot.size());
-    expect_between(file, "/elements/level", elements.level, 0, element_level_count - 1);
 }
 
 void check_scripts(const Hdf5File& file, const std::string& table, const auto& rows) {

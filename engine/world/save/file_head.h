@@ -11,7 +11,7 @@ namespace skerry {
 
 /// HDF5 files may begin with as much of something else.
 inline constexpr std::size_t head_bytes = 512;
-inline constexpr int world_file_version = 20;
+inline constexpr int world_file_version = 21;
 
 /// The head of a file that goes on with `body`.
 std::string head_of(std::span<const char> body);

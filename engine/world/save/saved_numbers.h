@@ -16,7 +16,6 @@
 #include "components/joint_table.h"
 #include "components/material_table.h"
 #include "components/pair_table.h"
-#include "components/step_levels.h"
 #include "components/step_watch.h"
 #include "engine/world/state/clock.h"
 #include "engine/world/step/balance.h"
@@ -185,16 +184,6 @@ struct MembersOf<Candidate> {
         return std::tuple{Member{"feature", &S::feature}, Member{"first", &S::first}, Member{"second", &S::second}};
     }
 };
-template <>
-struct MembersOf<StepCycle> {
-    static constexpr auto list() {
-        using S = StepCycle;
-        return std::tuple{Member{"levels", &S::levels}, Member{"index", &S::index}, Member{"h", &S::h},
-                          Member{"lead", &S::lead}, Member{"elements", &S::elements}};
-    }
-    static_assert(sizeof(StepCycle) == 2 * sizeof(int) + (1 + 2 * step_level_count) * sizeof(Real),
-                  "a member is not saved");
-};
 /// All but its columns and the look, and what is found anew before each step.
 template <>
 struct MembersOf<StepWatch> {
@@ -213,8 +202,7 @@ struct MembersOf<StepLook> {
                           Member{"known", &S::known},       Member{"deformation", &S::deformation},
                           Member{"in_frame", &S::in_frame}, Member{"element_in_frame", &S::element_in_frame}};
     }
-    static_assert(sizeof(StepLook) == (14 + element_level_count) * sizeof(Real) + element_level_count * sizeof(Index),
-                  "a member is not saved");
+    static_assert(sizeof(StepLook) == 16 * sizeof(Real), "a member is not saved");
 };
 template <>
 struct MembersOf<Balance> {
@@ -261,8 +249,6 @@ struct MembersOf<RunCounters> {
                           Member{"frozen", &S::frozen},
                           Member{"contact_steps", &S::contact_steps},
                           Member{"swept", &S::swept},
-                          Member{"element_steps", &S::element_steps},
-                          Member{"element_impulses", &S::element_impulses},
                           Member{"large_strain_steps", &S::large_strain_steps},
                           Member{"newton_steps", &S::newton_steps},
                           Member{"tangent_factors", &S::tangent_factors},
@@ -277,7 +263,7 @@ struct MembersOf<RunCounters> {
                           Member{"start_penetration", &S::start_penetration},
                           Member{"start_gap_violation", &S::start_gap_violation}};
     }
-    static_assert(sizeof(RunCounters) == 34 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(RunCounters) == 32 * sizeof(Real), "a member is not saved");
 };
 /// All but step_size, which may be none.
 template <>
@@ -287,7 +273,6 @@ struct MembersOf<Settings> {
         return std::tuple{Member{"gravity", &S::gravity},
                           Member{"step_safety", &S::step_safety},
                           Member{"integrator", &S::integrator},
-                          Member{"multirate", &S::multirate},
                           Member{"clusters", &S::clusters},
                           Member{"backend", &S::backend},
                           Member{"threads", &S::threads},

@@ -10,7 +10,7 @@
 namespace skerry {
 
 /// In which order the elements of a body stand, how they share masses and relax, and the step that they stand, as the
-/// mesh lies: a function of mesh, materials and `element` alone. All are of one level. Kept from when the body comes
+/// mesh lies: a function of mesh, materials and `element` alone. Kept from when the body comes
 /// until the world is settled or rows of bodies move.
 struct KnownElements {
     Index body;           // that has the mesh and the materials

@@ -7,7 +7,6 @@
 #include "systems/collision/tree/bvh.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/elements/build_elements.h"
-#include "systems/dynamics/elements/touched_elements.h"
 
 namespace skerry {
 
@@ -62,11 +61,11 @@ Index Model::row(JointHandle joint, const char* call) const {
 }
 
 ElementInputs Model::all_elements() const {
-    return ElementInputs::bind({}, elements, element_nodes, materials, bodies);
+    return ElementInputs::bind({}, elements, element_nodes, materials);
 }
 
-ElementInputs Model::elements_active(const ActiveLevels& active) const {
-    return ElementInputs::bind({}, elements, element_nodes, materials, bodies, active, any_asleep);
+ElementInputs Model::awake_elements() const {
+    return ElementInputs::bind({}, elements, element_nodes, materials, bodies, any_asleep);
 }
 
 std::optional<Model::RoundShape> Model::round_shape(std::size_t body) const {
@@ -159,17 +158,10 @@ void Model::stiffen(std::size_t body) {
 }
 
 void Model::extend_derived() {
-    const std::size_t first_node = patches.slots_of_node.size(), first_body = body_mass.size();
+    const std::size_t first_body = body_mass.size();
     build_patches(elements, nodes.position.size(), element_nodes, patches);
-    for (std::size_t n = first_node; n < nodes.position.size(); ++n) {
-        unsigned levels = 0;
-        for (const Index slot : patches.slots_of_node[n]) levels |= 1u << patches.level[static_cast<std::size_t>(slot)];
-        nodes.levels[n] = static_cast<LevelMask>(levels);
-    }
     body_mass.resize(bodies.slot.size());
     for (std::size_t b = first_body; b < bodies.slot.size(); ++b) {
-        bodies.has_touched[b] =
-            mark_touched(elements, element_nodes, bodies.blocks[b], bodies.nodes[b], patches, nodes.levels);
         body_mass[b] = 0;
         for (const Real mass : rows_of(nodes.mass, bodies.nodes[b])) body_mass[b] += mass;
     }

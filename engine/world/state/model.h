@@ -109,9 +109,10 @@ struct Model {
     Index row(AttachmentHandle attachment, const char* call) const;
     Index row(JointHandle joint, const char* call) const;
 
-    /// For what looks at all elements, whether they are active in the present step or not.
+    /// All elements, including those that do nothing in the present step.
     ElementInputs all_elements() const;
-    ElementInputs elements_active(const ActiveLevels& active) const;
+    /// The elements of bodies that are neither asleep nor unstrained.
+    ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
     /// The number of a tetrahedron in the mesh that the user gave, by its place in the table.
     Index user_tetrahedron(std::size_t body, Index place) const;
@@ -152,7 +153,7 @@ struct Model {
     ElementList elements_of_implicit(std::size_t body) const;
     /// Makes stiff_bodies of a body that moves implicitly, from its record, masses and materials.
     void stiffen(std::size_t body);
-    /// What is derived of the rows that came last; those that have it keep it.
+    /// Computes the derived columns of newly appended rows. Existing rows are unchanged.
     void extend_derived();
     /// The same of all rows, and of loads, and what a step leaves of velocities where it has nothing to do.
     void derive_all();

@@ -24,18 +24,15 @@ SolverSettings solver_settings(const Settings& settings) {
 StepParameters step_parameters(const Settings& settings) {
     StepParameters step;
     step.gravity = settings.gravity;
-    step.integrator = settings.integrator;
     step.contact_regions = settings.contact_regions;
     step.max_strain_step = settings.max_strain_step;
     step.theta = settings.theta;
     step.takes_long_steps = settings.implicit_step > 0;
-    step.limits_impulses = settings.multirate;
     step.sleep = {settings.sleep_speed, settings.sleep && settings.sleep_speed == 0, settings.sleep_time,
                   settings.gravity.norm()};
     step.collision.gravity = settings.gravity.norm();
     step.collision.use_budgets = settings.contact_budgets;
-    // forward Euler drifts with velocities that no contact has seen: there is nothing to hold it to
-    step.collision.continuous = settings.continuous_collision && settings.integrator != Integrator::forward_euler;
+    step.collision.continuous = settings.continuous_collision;
     step.solver = solver_settings(settings);
     // below what keeps a pile that looks still from rest, and no more than a warm start gives at rest anyway
     constexpr Real still_tolerance = 1e-5;

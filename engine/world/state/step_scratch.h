@@ -6,7 +6,6 @@
 #include "components/implicit_coupling.h"
 #include "components/joint_table.h"
 #include "components/region_table.h"
-#include "components/step_levels.h"
 #include "skerry/settings.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/contact/keep_resting_contacts.h"
@@ -31,13 +30,9 @@ struct StepParameters {
     Real kick = 0;  // s, for which forces act: from the time of the velocities before the step to that of those after
     // kick over that of the step before, of which elements still know what relaxed; 0: they do not
     Real kick_over_last = 0;
-    Real longest = 0;  // s, that the next step may be at most, as far as is known
-    Real lag = 0;      // s, by which velocities are behind positions at the kick
-    ActiveLevels active;
-    bool limits_impulses = false;   // multirate: whether impulses may be so long is looked at
-    bool look_at_elements = false;  // for that, where speeds do not tell
-    Vec3 gravity = Vec3::Zero();    // m/s^2
-    Integrator integrator = Integrator::leapfrog;
+    Real longest = 0;             // s, that the next step may be at most, as far as is known
+    Real lag = 0;                 // s, by which velocities are behind positions at the kick
+    Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;
     CollisionSettings collision;
     SolverSettings solver;
@@ -65,7 +60,7 @@ struct StepFindings {
     JointMeasures joints;
     Index unstrained = 0;  // bodies whose elements do nothing in this step
     Real relaxed = 0;      // J, taken out by what relaxes in the elements in this step
-    Real viscous = 0;      // J, by the viscosity of fine elements among coarse in this step
+    Real viscous = 0;      // J, by the viscosity of implicit elements in this step
     Real damped = 0;       // J, taken out by damping in this step
     // J, brought in by clusters that follow what has stiffened before this try
     Real stiffened = 0;
@@ -132,8 +127,6 @@ struct StepScratch {
     InversionMemory inversions;        // of find_inversions
     Column<WatchPart> watch_parts;     // of watch_stable_steps
     Column<WatchPieces> watch_pieces;  // of keep_shapes
-    Column<Real> longest_impulse;      // s, by body, of limit_impulses
-    Column<Real> impulse_parts;        // of the same
     Column<Real> viscous_parts;        // of measure_viscosity
     RestingMemory resting_memory;      // of keep_resting_contacts
 

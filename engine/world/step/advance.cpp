@@ -14,20 +14,18 @@ namespace skerry {
 
 namespace {
 
-/// Steps in which all bodies are looked at for their stable step, which changes with deformation, over many steps: what
-/// a step relies on is never older than two rounds. In cycles of fine steps it is the coarse ones that count: all
-/// elements deform at the pace of the whole. With clusters steps are several times longer, and explicit elements beside
-/// them deform more in each.
+/// Number of steps in which the stable step of every body is evaluated once, since it changes with deformation. The
+/// bound that a step relies on is never older than two rounds. With clusters steps are several times longer, and the
+/// explicit elements beside them deform more in each.
 std::uint64_t steps_per_round(const WorldState& world) {
-    return std::uint64_t{world.model.clusters.empty() ? 128u : 64u} << world.clock.cycle.levels;
+    return world.model.clusters.empty() ? 128u : 64u;
 }
 
 /// Keeps the looks at stable steps going. Returns true when the energies are to be looked at, too.
 bool keep_watch(WorldState& world) {
     StepWatch& watch = world.model.watch;
     ++watch.steps;
-    // within a cycle levels must stay
-    if (watch.steps < steps_per_round(world) || world.clock.cycle.index != 0) return false;
+    if (watch.steps < steps_per_round(world)) return false;
     world.record.balance.work += follow_stiffening(world.model);  // what bodies stand goes by it
     world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
@@ -164,20 +162,10 @@ private:
 
 }  // namespace
 
-VelocityLag lag_between_steps(const WorldState& world) {
-    const Integrator integrator = world.model.settings.integrator;
-    VelocityLag lag;
-    if (integrator == Integrator::forward_euler) return lag;
-    const StepCycle& cycle = world.clock.cycle;
+Real lag_between_steps(const WorldState& world) {
+    if (world.model.settings.integrator == Integrator::leapfrog) return 0;  // positions have drifted back by as much
     const Real before = world.clock.step_before;
-    const Real half = (before > 0 ? before : trusted_step(world.model)) / 2;
-    for (std::size_t l = 0; l < lag.of_level.size(); ++l) {
-        const bool at_start = l == 0 || cycle.levels == 0;  // of the time that an impulse stands for
-        lag.of_level[l] = (at_start ? half : 0) - cycle.lead[l];
-        // positions have drifted back by as much
-        if (integrator == Integrator::leapfrog) lag.of_level[l] -= half;
-    }
-    return lag;
+    return (before > 0 ? before : trusted_step(world.model)) / 2;
 }
 
 StepReport World::advance(Real dt) {
@@ -209,7 +197,6 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     const Real end = clock.time + dt;
     Real left = dt;
     Tries tries = first_tries(world);
-    int levels_of_call = -1;
     world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
@@ -247,7 +234,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             break;
         }
         const Real within = left_in_long_step(model, left, clock.long_step);
-        const StepPlan plan = plan_step(model, clock.cycle, within, tries.at_most(), levels_of_call);
+        const StepPlan plan = plan_step(model, within, tries.at_most());
         keep_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);

@@ -19,25 +19,7 @@ struct Present {
     Real momentum_size = 0;                        // kg m/s, sum of m |v|
 };
 
-/// J, of elastic forces of now, over the time by which velocities lag. Blocks that lag alike follow each other.
-Real elastic_work(const Model& model, const VelocityLag& lag) {
-    const ElementInputs elements = model.all_elements();
-    const auto lag_of = [&](Index block) {
-        const auto b = static_cast<std::size_t>(block);
-        return model.elements.touched[b] ? lag.of_every_step() : lag.of_level[elements.schedule.level_in_world(b)];
-    };
-    const Range all = model.all_blocks();
-    Real work = 0;
-    for (Index begin = all.begin, end; begin < all.end; begin = end) {
-        for (end = begin + 1; end < all.end && lag_of(end) == lag_of(begin);) ++end;
-        if (lag_of(begin) == 0) continue;
-        work +=
-            lag_of(begin) * kernels().elastic_power(elements, {begin, end}, model.nodes.position, model.nodes.velocity);
-    }
-    return work;
-}
-
-Present measure(const Model& model, const VelocityLag& lag) {
+Present measure(const Model& model, Real lag) {
     Present now;
     const NodeTable& nodes = model.nodes;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
@@ -63,14 +45,15 @@ Present measure(const Model& model, const VelocityLag& lag) {
     now.kinetic += added_energy(model);
     // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies
     // keep m v.v' / 2 and their elastic energy together, as leapfrog does.
-    now.kinetic -= elastic_work(model, lag);
-    if (lag.of_every_step() != 0) {
+    if (lag != 0) {
+        now.kinetic -=
+            lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
         if (model.loaded)
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.load[n].dot(nodes.velocity[n]);
-        now.kinetic += lag.of_every_step() * power;
+        now.kinetic += lag * power;
     }
     now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position) + implicit;
     return now;
@@ -128,7 +111,7 @@ void add_step(const StepScratch& step, Balance& balance) {
     balance.energy_flow += std::abs(work);
 }
 
-void check_balance(const Model& model, const VelocityLag& lag, Balance& balance) {
+void check_balance(const Model& model, Real lag, Balance& balance) {
     const Present now = measure(model, lag);
     const Real energy = now.kinetic + now.elastic + now.potential;
     const bool was_open = balance.open;
@@ -154,7 +137,7 @@ void check_balance(const Model& model, const VelocityLag& lag, Balance& balance)
             std::max(balance.momentum_error, (now.momentum - balance.momentum - balance.impulse).norm());
 }
 
-Balance checked_balance(const Model& model, const VelocityLag& lag, Balance balance) {
+Balance checked_balance(const Model& model, Real lag, Balance balance) {
     if (balance.open) check_balance(model, lag, balance);
     return balance;
 }

@@ -1,10 +1,8 @@
 // Whether energy and momentum add up: what a run lost or won without a cause, as an estimate of its error.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-#include "components/step_levels.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -33,24 +31,15 @@ struct Balance {
     void close() { open = false; }
 };
 
-/// s, by which velocities are older than positions, or would be, as far as forces of elements of each level go: half of
-/// the time to the next impulse where they come at the start of the time that they stand for, nothing where they come
-/// in its middle. Below zero where positions are older. All other forces act in every step, as level 0 does.
-struct VelocityLag {
-    std::array<Real, step_level_count> of_level{};
-
-    Real of_every_step() const { return of_level[0]; }
-};
-
 /// Adds what the step just committed exchanged with the outside.
 void add_step(const StepScratch& step, Balance& balance);
 
 /// Compares what is with what ought to be, and notes the difference if it is the worst so far; opens a balance that is
-/// closed. Walks all tables.
-/// Forces of now bring the energy of velocities that lag up to date.
-void check_balance(const Model& model, const VelocityLag& lag, Balance& balance);
+/// closed. Walks all tables. `lag`: time by which velocities are older than positions [s]. Present forces bring the
+/// kinetic energy up to date.
+void check_balance(const Model& model, Real lag, Balance& balance);
 
 /// The same for a report: the balance after such a check.
-Balance checked_balance(const Model& model, const VelocityLag& lag, Balance balance);
+Balance checked_balance(const Model& model, Real lag, Balance balance);
 
 }  // namespace skerry

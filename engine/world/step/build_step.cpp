@@ -9,7 +9,6 @@
 #include "systems/contact/keep_resting_contacts.h"
 #include "systems/contact/match_warm_start.h"
 #include "systems/contact/sum_contact_impulses.h"
-#include "systems/dynamics/checks/limit_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"
@@ -69,11 +68,11 @@ void list_force_branch(WorldState& w, TaskGraph& g) {
                         inputs<UnstrainedInputs>(e, m.element_nodes, m.materials, b, n),
                         outputs<UnstrainedOutputs>(b, e), if_unknown);
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
-                        inputs<ElementInputs>(e, m.element_nodes, m.materials, b, p.active, m.any_asleep),
-                        read(n.position), read(n.velocity), value(p.kick), value(p.kick_over_last), read(e.rotation),
+                        inputs<ElementInputs>(e, m.element_nodes, m.materials, b, m.any_asleep), read(n.position),
+                        read(n.velocity), value(p.kick), value(p.kick_over_last), read(e.rotation),
                         outputs<ElementMemory>(e), outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
     g.stage_with_result("dynamics/stiffen_clusters", w.scratch.findings.stiffened, stiffen_clusters,
-                        inputs<ElementInputs>(e, m.element_nodes, m.materials, b), inputs<StiffenInputs>(b, n),
+                        inputs<ElementInputs>(e, m.element_nodes, m.materials), inputs<StiffenInputs>(b, n),
                         value(p.kick), outputs<PatchForces>(m.patches, m.element_nodes),
                         outputs<StiffenOutputs>(e, m.clusters), if_unknown);
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
@@ -203,16 +202,10 @@ void list_checks(WorldState& w, TaskGraph& g) {
     g.stage_with_result("dynamics/find_inversions", found.inversions, kernels().find_inversions,
                         inputs<InversionInputs>(m.tetrahedra, b, n, pushed), value(p.h), make(w.scratch.inversions),
                         outputs<InversionBudgets>(m.tetrahedra, b), if_possible);
-    const auto if_limited =
-        only_if([](const StepVerdict& verdict, bool limits) { return limits && verdict.fault == StepFault::none; },
-                read(found.verdict), value(p.limits_impulses));
-    g.stage("dynamics/limit_impulses", kernels().limit_impulses,
-            inputs<ImpulseLimitInputs>(b, m.elements, m.element_nodes, n), value(p.h), value(p.max_strain_step),
-            value(p.look_at_elements), make(w.scratch.impulse_parts), write(w.scratch.longest_impulse), if_limited);
     const auto if_viscous = only_if([](std::span<const ElementViscousImpulse> impulse) { return !impulse.empty(); },
                                     read(m.patches.viscous_impulse));
     g.stage_with_result("dynamics/measure_viscosity", found.viscous, kernels().measure_viscosity,
-                        inputs<ElementInputs>(m.elements, m.element_nodes, m.materials, b, p.active, m.any_asleep),
+                        inputs<ElementInputs>(m.elements, m.element_nodes, m.materials, b, m.any_asleep),
                         read(m.patches.blocks), read(m.patches.viscous_impulse), read(m.patches.viscous),
                         read(n.velocity), read(n.velocity_next), make(w.scratch.viscous_parts), if_viscous);
     const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
@@ -240,7 +233,7 @@ void list_commit(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(c, w.model.joints), read(w.scratch.pressed),
             read(a.body), read(a.motion), write(b.asleep), write(b.still_time), if_taken, if_sleepy);
     g.stage("dynamics/advance_positions", kernels().advance_positions,
-            inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h), value(p.integrator),
+            inputs<AdvanceInputs>(k, b, n, n.velocity_next, w.model.any_asleep), value(p.h),
             outputs<AdvanceOutputs>(n, k, w.scratch.regions.pushed), if_taken);
     RigidBodyTable& r = w.model.rigid_bodies;
     g.stage("dynamics/move_rigid_bodies", move_rigid_bodies,

@@ -44,12 +44,6 @@ bool has_elements(const Model& model, std::size_t b) {
     return model.bodies.blocks[b].size() > 0;
 }
 
-/// Elements of several levels share masses among those of their level and coarser ones: none of these is implicit.
-bool has_levels(const Model& model, std::size_t b) {
-    const auto& count = model.bodies.level_count[b];
-    return std::any_of(count.begin() + 1, count.end(), [](Index of_level) { return of_level > 0; });
-}
-
 Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, std::span<Real> stiffness_sum) {
     return kernels()
         .stable_step(model.all_elements(), model.bodies.blocks[b], position, model.nodes.mass, stiffness_sum)
@@ -190,27 +184,10 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }
 
-/// How many times shorter than the own steps of a body, a power of two, those of the world are.
-Real steps_in_own(Real own, Real step) {
-    return std::exp2(std::clamp(std::floor(std::log2(own / step * (1 + 1e-9))), Real(0), Real(most_cycle_levels)));
-}
-
-/// ns, of a step where each body has its own; elements of a body with levels by what these take of it.
-Real multirate_cost(const Model& model, Real step) {
-    Real cost = 0;
-    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        if (!has_elements(model, b)) continue;
-        const Real own = steps_in_own(model.bodies.rest_step[b], step);
-        cost += cost_of_levels(model.bodies.level_count[b], own);
-    }
-    return cost;
-}
-
 /// ns a second, where steps are `step` long.
 Real cost_of(const Model& model, std::size_t entries, Real step) {
     const Real elements = static_cast<Real>(model.elements.first.size() * element_lanes);
-    const Real explicit_cost = model.settings.multirate ? multirate_cost(model, step) : element_cost * elements;
-    return (explicit_cost + entry_cost * static_cast<Real>(entries)) / step;
+    return (element_cost * elements + entry_cost * static_cast<Real>(entries)) / step;
 }
 
 struct PlannedBody {
@@ -232,10 +209,6 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
     Plan plan{.step = step, .body = {}};
     for (std::size_t b = 0; b < model.bodies.slot.size() && plan.possible; ++b) {
         if (!has_elements(model, b) || model.bodies.rest_step[b] >= step) continue;
-        if (has_levels(model, b)) {
-            plan.possible = false;
-            break;
-        }
         const Kept kept(model, b);
         const Found found = searches.find(b, step);
         plan.possible = found.possible;
@@ -296,35 +269,6 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     for (const PlannedBody& body : plan.body) set_cluster_step(model, body.row, step, stands[body.row]);
 }
 
-/// With multirate a body that does not bound the steps of all gets implicit elements where its own can be so much
-/// longer for them: impulses come less often, its clusters move in every step.
-void lengthen_own_steps(Model& model, Real base, std::span<Real> stiffness_sum) {
-    Searches searches(model, stiffness_sum);
-    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
-        const Real rest = model.bodies.rest_step[b];
-        if (!has_elements(model, b) || has_levels(model, b) || model.bodies.cluster_step[b] > 0) continue;
-        if (!(rest >= base) || !std::isfinite(rest)) continue;
-        const auto cost = [&](Real steps, std::size_t entries) {
-            return cost_of_levels(model.bodies.level_count[b], steps) + entry_cost * static_cast<Real>(entries);
-        };
-        const Kept kept(model, b);
-        Plan best{.cost = cost(steps_in_own(rest, base), 0) / least_gain, .body = {}};
-        const Real most = std::min<Real>(base * (1 << most_cycle_levels), most_lengthening * rest);
-        for (Real step = 2 * base * steps_in_own(rest, base); step <= most; step *= 2) {
-            const Found found = searches.find(b, step);
-            const Real found_cost = cost(steps_in_own(step, base), found.sizes.entries);
-            if (found.possible && found_cost <= best.cost) {
-                best = {.step = step, .cost = found_cost, .body = {}};
-                best.body.push_back({b, found.moment, Kept(model, b)});
-            }
-            kept.put_back(model, b);
-            if (!found.possible) break;
-        }
-        for (const PlannedBody& body : best.body)
-            set_cluster_step(model, b, best.step, take_over(model, body, stiffness_sum));
-    }
-}
-
 /// The shortest step of all bodies with elements, at rest.
 Real shortest_step(const Model& model) {
     Real shortest = std::numeric_limits<Real>::infinity();
@@ -361,35 +305,11 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
 
 }  // namespace
 
-Real cost_of_levels(const std::array<Index, element_level_count>& level_count, Real steps) {
-    Real cost = 0, step_count = steps;
-    for (const Index count : level_count) {
-        cost += (element_cost - impulse_cost + impulse_cost / step_count) * static_cast<Real>(count);
-        step_count = std::min<Real>(2 * step_count, 1 << most_cycle_levels);
-    }
-    return cost;
-}
-
-Real cost_without_levels(const Model& model, const NewBody& body) {
-    Model alone;
-    alone.settings = model.settings;
-    alone.settings.multirate = false;
-    alone.materials = model.materials;
-    Column<Real> stiffness_sum;
-    append_body(alone, stiffness_sum, body);
-    const Real one = cost_of(alone, 0, alone.bodies.rest_step[0]);
-    if (!clusters_allowed(alone.settings)) return one;
-    const Plan plan = choose_plan(alone, stiffness_sum.span());
-    return plan.step > 0 ? plan.cost : one;
-}
-
 bool clusters_allowed(const Settings& settings) {
-    return settings.clusters && settings.integrator != Integrator::forward_euler &&
-           settings.contact_regions != ContactRegions::paper_algorithm_1;
+    return settings.clusters && settings.contact_regions != ContactRegions::paper_algorithm_1;
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
-    if (has_levels(model, body)) return false;
     constexpr Real inversion_cost = 0.4;  // ns by cube of the width
     constexpr Real lasts = 128;           // steps, until they may have to be inverted anew
     const Range blocks = model.bodies.blocks[body];
@@ -427,8 +347,6 @@ void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
         if (model.bodies.cluster_step[b] > 0) make_explicit(model, b, sums);
     const Plan plan = choose_plan(model, sums);
     if (plan.step > 0) take_over(model, plan, sums);
-    if (model.settings.multirate)
-        lengthen_own_steps(model, std::min(shortest_step(model), longest_step(model.settings)), sums);
     model.rebuild_clusters();
     look_at_stable_steps(model, stiffness_sum);
 }

@@ -50,7 +50,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
                       RigidHolds::bind({}, r, a), RigidImpulses::bind({}, r), ElasticMotion::bind({}, i, r), n.position,
                       seconds, {r.center_next, r.rotation_next, n.velocity});
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
-                      Integrator::leapfrog, AdvanceOutputs::bind({}, n, k, pushed));
+                      AdvanceOutputs::bind({}, n, k, pushed));
     move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.loaded),
                       RigidImpulses::bind({}, r), ElasticMotion::bind({}, i, r), r.center_next, r.rotation_next, false,
                       RigidMoves::bind({}, r, n, i));

@@ -179,8 +179,7 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     const auto rows = static_cast<Index>(bodies.slot.size());
     const ElementInputs elements = model.all_elements();
     const auto pieces_of = [&](Index row) {
-        const auto b = static_cast<std::size_t>(row);
-        return pieces_of_body(elements, bodies.blocks[b], bodies.level_count[b]);
+        return pieces_of_look(elements, bodies.blocks[static_cast<std::size_t>(row)]);
     };
     // no step can begin before they are counted, and each body's first elements are elsewhere
     constexpr std::size_t bodies_per_block = 64;

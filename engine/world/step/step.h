@@ -5,8 +5,6 @@
 
 namespace skerry {
 
-struct NewBody;
-
 // build_step.cpp
 /// Lists the stages of the step; the graph takes its edges from what they read and write.
 void build_step(WorldState& world);
@@ -45,15 +43,6 @@ Real follow_stiffening(Model& model);
 // choose_clusters.cpp
 /// ns, what an element takes of a step, with its part of nodes and contacts, as choices count it.
 inline constexpr Real element_cost = 70;
-/// The part of it that comes with an impulse. Real meshes with levels: a fifth of the impulses was 0.56 of the time.
-inline constexpr Real impulse_cost = 40;
-/// 64 steps in a cycle of multirate: what is coarser gains less than the nodes and contacts cost, which move in every
-/// step.
-inline constexpr int most_cycle_levels = 6;
-/// ns, of a step of a body of so many elements of each level, whose level 0 has an impulse every `steps` steps.
-Real cost_of_levels(const std::array<Index, element_level_count>& level_count, Real steps);
-/// ns a second, of a new body alone in one level: as it is, or with the clusters that it would have.
-Real cost_without_levels(const Model& model, const NewBody& body);
 /// Whether elements of this world may be implicit.
 bool clusters_allowed(const Settings& settings);
 /// After a change of the world: decides, by what a simulated second is likely to cost, how long steps are to be, and
@@ -66,8 +55,9 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
 Real added_energy(const Model& model);
 
 // advance.cpp
-/// Between steps.
-VelocityLag lag_between_steps(const WorldState& world);
+/// Time by which velocities are older than positions, between steps [s]: half a step with symplectic Euler, zero with
+/// leapfrog.
+Real lag_between_steps(const WorldState& world);
 
 // plan_step.cpp
 struct StepPlan {
@@ -76,27 +66,15 @@ struct StepPlan {
     Real stable = 0;            // s, the longest step that stability or the settings allow
     Index stiffest = no_index;  // row of BodyTable: whose stable step is the shortest
 };
-/// The next step of a call that has `left` seconds to go, where no step may be longer than `fast_limit`. Begins a cycle
-/// between two, of at most 2^levels_of_call steps; below zero, as at the start of a call: to be chosen.
-StepPlan plan_step(Model& model, StepCycle& cycle, Real left, Real fast_limit, int& levels_of_call);
+/// The next step of a call that has `left` seconds to go. No step may be longer than `fast_limit` [s].
+StepPlan plan_step(const Model& model, Real left, Real fast_limit);
 /// s, to the end of the step of implicit bodies that the next step belongs to, or of a call with `left` seconds to go
 /// where there is none. Begins it between two.
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock);
-/// What that is to a step that is planned within it.
+/// Position of the planned step within the current long step of the implicit bodies.
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan);
 /// After a step that was taken.
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
-/// Which levels are due in the step of length parameters.h, and which levels of each body that means.
-void find_active_levels(const StepCycle& cycle, BodyTable& bodies, StepParameters& parameters);
-/// After a step, with multirate: which nodes its contacts act on.
-void note_touched_nodes(const ContactTable& contacts, BodyTable& bodies, NodeTable& nodes);
-/// Whether some element deforms too fast for the impulses of its level in this cycle.
-bool impulses_too_long(const StepCycle& cycle, const BodyTable& bodies);
-/// After the last step of a cycle, where the impulses of all levels cover the same time: elements that are due in every
-/// step of the next one.
-void end_cycle(Model& model, const StepCycle& cycle);
-/// After a committed step: what its impulses covered. A step that was shortened ends the cycle.
-void count_impulses(const StepParameters& parameters, StepCycle& cycle, RunCounters& counters);
 
 // leave_out_step.cpp
 /// Whether the step that is planned would change nothing but time: all bodies rest, what follows scripts stands still,

@@ -60,7 +60,7 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
 
 /// s, for which forces act in a step of length h. Symplectic Euler is leapfrog with velocities half a step before the
 /// positions that their forces belong to: from the middle of the last step to the middle of this one
-/// (docs/methods/time_stepping.md 1.5). The others kick at the time of the velocities, for the step itself.
+/// (docs/methods/time_stepping.md 1.5). Leapfrog kicks at the time of the velocities, for the step itself.
 Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
     Real before = clock.step_before;
@@ -96,8 +96,6 @@ bool run_stages(WorldState& world) {
         if (scratch.findings.verdict.fault != StepFault::none) return false;
     }
     scratch.pressed.clear();
-    find_active_levels(world.clock.cycle, model.bodies, scratch.parameters);
-    if (scratch.parameters.limits_impulses) copy(model.bodies.longest_impulse, scratch.longest_impulse);
     world.transaction.begin_try(model);
     world.record.contact_view_is_current = false;
     if (scratch.left_out) {
@@ -122,16 +120,15 @@ bool run_stages(WorldState& world) {
 /// Elements remember what they found in this step. Of those of unstrained bodies both columns are the same.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
-    const ActiveLevels& levels = world.scratch.parameters.active;
-    if (levels.all() && !world.model.any_asleep) {
+    if (!world.model.any_asleep) {
         elements.rotation.swap(elements.rotation_next);
         elements.viscous_strain.swap(elements.viscous_strain_next);
         return;
     }
-    ElementInputs active = world.model.elements_active(levels);
+    ElementInputs awake = world.model.awake_elements();
     // A body that this step wakes has no frames of this step.
-    if (world.model.any_asleep) active.schedule.body_asleep = world.transaction.rested(world.model.bodies);
-    keep_memory(*world.executor, active, elements);
+    awake.body_asleep = world.transaction.rested(world.model.bodies);
+    keep_memory(*world.executor, awake, elements);
 }
 
 /// Contacts have moved nodes past their velocities.
@@ -152,16 +149,9 @@ void commit(WorldState& world) {
     }
     count_step(scratch, world.record.counters);
     add_step(scratch, world.record.balance);
-    count_impulses(parameters, world.clock.cycle, world.record.counters);
-    if (parameters.limits_impulses) {
-        note_touched_nodes(scratch.contacts, world.model.bodies, world.model.nodes);
-        std::ranges::copy(scratch.longest_impulse, world.model.bodies.longest_impulse.begin());
-        if (impulses_too_long(world.clock.cycle, world.model.bodies)) world.clock.cycle.index = 0;
-        if (world.clock.cycle.index == 0) end_cycle(world.model, world.clock.cycle);
-    }
     world.clock.time += parameters.h;
     world.clock.step_before = parameters.h;
-    world.clock.kick_before = parameters.limits_impulses ? 0 : parameters.kick;
+    world.clock.kick_before = parameters.kick;
 }
 
 /// A strained body stands less than this part of its step at rest.
@@ -295,8 +285,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
     scratch.parameters.kick = kick_of_step(world.model, world.clock, plan);
     scratch.parameters.kick_over_last = kick_over_last(scratch.parameters.kick, world.clock.kick_before);
-    scratch.parameters.lag =
-        scratch.parameters.integrator == Integrator::forward_euler ? 0 : scratch.parameters.kick - plan.h / 2;
+    scratch.parameters.lag = scratch.parameters.kick - plan.h / 2;
     scratch.parameters.let_invert =
         tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
     scratch.parameters.long_step = times_in_long_step(world.clock.long_step, plan);

@@ -71,7 +71,6 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 ///                                                                      the try, as they do at the end of a call; with
 ///                                                                      leapfrog, whose shapes drift before, a copy, of
 ///                                                                      the start of the call
-///     clock.cycle, bodies.level between cycles  plan_step              nothing: written again before it is read
 ///     pairs, their search                       find_candidates        nothing: what a search found of the positions
 ///                                                                      at the start of the step stays true of them;
 ///     search.memory.body_unmeasured                                    what only velocities told is told again

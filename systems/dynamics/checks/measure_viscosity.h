@@ -1,5 +1,4 @@
-// What viscosity takes of fine elements among coarse (docs/methods/stable_step.md 7.4) and of implicit ones
-// (docs/methods/clusters.md 2).
+// Energy taken by the viscosity of implicit elements (docs/methods/clusters.md 2).
 #pragma once
 
 #include <span>
@@ -11,9 +10,10 @@
 
 namespace skerry {
 
-/// J, of the elements that are due: their viscous impulses times the rate of F, the mean of that before and after the
-/// step, as velocities change by much within a step of the highest modes. `impulse` and `viscous` as
-/// compute_element_forces left them. `patches`: their blocks. Parallel over patches, summed up in their order.
+/// Energy taken by the viscous impulses of the elements that are not left out [J]: impulse times the rate of F, the
+/// mean of the rates before and after the step, since velocities change by much within a step of the highest modes.
+/// `impulse` and `viscous` as compute_element_forces left them. `patches`: their blocks. Parallel over patches, summed
+/// in order.
 Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::span<const Range> patches,
                        std::span<const ElementViscousImpulse> impulse, std::span<const std::uint8_t> viscous,
                        std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, Column<Real>& partial);

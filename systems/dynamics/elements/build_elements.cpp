@@ -51,16 +51,12 @@ void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<s
 
 }  // namespace
 
-ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position,
-                          std::span<const std::uint8_t> level, BlockOrder in_patch) {
+ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position, BlockOrder in_patch) {
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
-    const auto level_of = [&](Index e) { return level.empty() ? std::uint8_t{0} : level[static_cast<std::size_t>(e)]; };
     // guards by themselves: they change no sum of others while they do not act
-    const auto group_of = [&](Index e) {
-        return std::pair(level_of(e), list.part[static_cast<std::size_t>(e)] == ElementPart::guard);
-    };
+    const auto group_of = [&](Index e) { return list.part[static_cast<std::size_t>(e)] == ElementPart::guard; };
     std::ranges::stable_sort(order, {}, group_of);
     std::vector<std::size_t> patch_size;
     for (std::size_t first = 0; first < order.size();) {
@@ -138,17 +134,13 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
     return {first_block, static_cast<Index>(table.node.size())};
 }
 
-AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
-                                 std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
-                                 ElementBlockTable& blocks, ElementNodeTable& nodes) {
-    return append_elements(list, find_places(list, rest_position, level, order), level, first_node, body, blocks,
-                           nodes);
+AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position, BlockOrder order,
+                                 Index first_node, Index body, ElementBlockTable& blocks, ElementNodeTable& nodes) {
+    return append_elements(list, find_places(list, rest_position, order), first_node, body, blocks, nodes);
 }
 
-AppendedElements append_elements(const ElementList& list, const ElementPlaces& places,
-                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+AppendedElements append_elements(const ElementList& list, const ElementPlaces& places, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes) {
-    SKERRY_CHECK(level.empty() || level.size() == list.size());
     SKERRY_CHECK(places.order.size() == list.size());
     const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
     AppendedElements appended{{}, {}, places.element};
@@ -176,7 +168,6 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         blocks.body[block] = body;
         blocks.material[block] = list.material[leader];
         blocks.part[block] = list.part[leader];
-        blocks.level[block] = level.empty() ? std::uint8_t{0} : level[leader];
         blocks.opens_patch[block] = places.opens_patch[place / element_lanes];
         for (Real& w : blocks.rotation[block][0].lane) w = 1;
         blocks.rotation_next[block] = blocks.rotation[block];  // kernels of some laws touch neither, and the step swaps
@@ -283,7 +274,7 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
         const auto first_row = static_cast<std::size_t>(blocks.first[begin]);
         const auto end_row = static_cast<std::size_t>(blocks.first[end - 1] + blocks.count[end - 1]);
         for (std::size_t b = begin; b < end; ++b) {
-            SKERRY_CHECK(blocks.body[b] == blocks.body[begin] && blocks.level[b] == blocks.level[begin]);
+            SKERRY_CHECK(blocks.body[b] == blocks.body[begin]);
             const NodeLane* const node = nodes.node.data() + blocks.first[b];
             blocks.continues_fan[b] = b > begin && blocks.count[b] == 4 && blocks.count[b - 1] == 4 &&
                                       continues_fan(nodes.node.data() + blocks.first[b - 1], node);
@@ -303,9 +294,7 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
                 nodes.slot[row][l] = slot_width * slot_of(nodes.node[row][l]);
         const Range slots{first_slot, static_cast<Index>(patches.node.size())};
         for (Index s = slots.begin; s < slots.end; ++s) slot_of(patches.node[static_cast<std::size_t>(s)]) = no_index;
-        patches.level.resize(patches.node.size(), blocks.level[begin]);
         patches.blocks.push_back({static_cast<Index>(begin), static_cast<Index>(end)});
-        patches.touched.push_back(0);
         patches.slots.push_back(slots);
         begin = end;
     }
@@ -324,12 +313,10 @@ void truncate_patches(Index block_count, Index node_count, ElementPatches& patch
                                                patches.blocks.begin());
     const std::size_t slots = kept > 0 ? static_cast<std::size_t>(patches.slots[kept - 1].end) : 0;
     patches.blocks.resize(kept);
-    patches.touched.resize(kept);
     patches.relaxed.resize(kept);
     if (!patches.viscous_impulse.empty()) patches.resize_viscous(static_cast<std::size_t>(block_count));
     patches.slots.resize(kept);
     patches.node.resize(slots);
-    patches.level.resize(slots);
     Ragged<Index>& of_node = patches.slots_of_node;
     if (static_cast<std::size_t>(node_count) < of_node.size())
         of_node.offset.resize(static_cast<std::size_t>(node_count) + 1);

@@ -25,9 +25,8 @@ Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const 
 Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                         Index first_node, TetrahedronBlockTable& table);
 
-/// How elements of four nodes stand in a patch. Fans (element_fans.h) are quicker; `compact` keeps them in their order,
-/// so that blocks have few nodes: with multirate all of a block gets an impulse in every step where a contact acts on
-/// one of its nodes.
+/// Order of elements of four nodes within a patch. Fans (element_fans.h) are quicker; `compact` keeps the elements in
+/// their order.
 enum class BlockOrder : std::uint8_t { fans, compact };
 
 /// Where the elements of a list go.
@@ -45,20 +44,16 @@ struct AppendedElements {
 /// Elements stand patch after patch: compact groups of up to elements_per_patch in space, found by
 /// halving the longest side again and again. Within a patch blocks have elements of one part and one material, those
 /// with as many nodes together, so that few rows are left over; those of four nodes stand as `order` says, the others
-/// keep their order.
-/// `rest_position`: m, of the body's nodes. `level` of each element of the list, or none: all 0; elements are sorted by
-/// level, and a patch has one. Guards have patches of their own, behind the others of their level.
-ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position,
-                          std::span<const std::uint8_t> level, BlockOrder order);
+/// keep their order. `rest_position`: positions of the body's nodes at rest [m]. Guards have patches of their own,
+/// behind the others.
+ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position, BlockOrder order);
 
-/// Appends the elements of a new body at their places, which were found for a list with the same nodes and `level`.
-AppendedElements append_elements(const ElementList& list, const ElementPlaces& places,
-                                 std::span<const std::uint8_t> level, Index first_node, Index body,
+/// Appends the elements of a new body at their places, which were found for a list with the same nodes.
+AppendedElements append_elements(const ElementList& list, const ElementPlaces& places, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);
-/// The same at places that are found here.
-AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position,
-                                 std::span<const std::uint8_t> level, BlockOrder order, Index first_node, Index body,
-                                 ElementBlockTable& blocks, ElementNodeTable& nodes);
+/// Finds the places of the elements of a new body and appends the elements there.
+AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position, BlockOrder order,
+                                 Index first_node, Index body, ElementBlockTable& blocks, ElementNodeTable& nodes);
 
 /// Turns the rest shape of elements: their gradients, and the mass forms that they have.
 void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, ElementNodeTable& nodes);

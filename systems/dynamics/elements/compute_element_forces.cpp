@@ -30,12 +30,11 @@ constexpr std::size_t near_nodes = 512;
 /// Whether the kick is known to be as long as that of the step before: what is booked as lost is had for less then.
 enum class Kicks { alike, any };
 
-/// Blocks of a patch, one after the other, that are of one material and due for one time.
+/// Blocks of a patch, one after the other, that are of one material.
 struct Run {
     std::size_t begin, end;
     const ElementInputs& elements;
     MaterialConstants material;
-    Real duration;                   // in kicks
     Real kick;                       // s
     Real kick_over_last;             // 0: what relaxed in the step before is not known
     PatchRows<const Real> position;  // m, of the patch
@@ -75,16 +74,15 @@ struct Run {
         return load_part<T>(column[block], part);
     }
 
-    /// What is kept of the stretch of both viscous parts while the dashpots give way for as long as the block is due.
+    /// What is kept of the stretch of both viscous parts while the dashpots give way for the time of the kick.
     template <class T>
     struct Kept {
         T strain, volume;
     };
     template <class T>
     [[gnu::always_inline]] Kept<T> kept_of(std::size_t block, std::size_t part) const {
-        const Real time = duration * kick;
-        const T forgets = time * part_of<T>(elements.relaxation_rate, block, part);
-        const T forgets_volume = (time / bulk_time) * part_of<T>(elements.own_frequency, block, part);
+        const T forgets = kick * part_of<T>(elements.relaxation_rate, block, part);
+        const T forgets_volume = (kick / bulk_time) * part_of<T>(elements.own_frequency, block, part);
         // backward Euler: never more than all; one division for both
         const T less = 1.0 + forgets, less_volume = 1.0 + forgets_volume, over_both = 1.0 / (less * less_volume);
         return {over_both * less_volume, over_both * less};
@@ -183,7 +181,6 @@ struct Run {
     /// Whether all elements of the block are implicit ones far from what they are made for, or explicit ones beside
     /// such: most are, in most steps.
     [[gnu::always_inline]] bool rests_easy(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
-        if (elements.implicit_modulus.empty()) return false;
         bool any_implicit = false, easy = true;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
@@ -194,11 +191,6 @@ struct Run {
             any_implicit |= !all(taken <= 0.0);
         }
         return any_implicit && easy;
-    }
-
-    bool has_implicit(std::size_t block) const {
-        return !elements.implicit_modulus.empty() &&
-               std::ranges::any_of(elements.implicit_modulus[block].lane, [](Real modulus) { return modulus > 0; });
     }
 
     /// Pa s, of implicit elements that are stretched or pressed by much; 0 of the others. Returns whether any is.
@@ -231,19 +223,17 @@ struct Run {
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
 
-    /// Adds the stress of the strain rate where there is one, times `scale`, and keeps its impulse.
+    /// Adds the stress of the strain rate of implicit elements where there is one, times `scale`, and keeps its
+    /// impulse.
     void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F, const Parts<KernelReal>& scale,
                             Parts<LaneMat3<KernelReal>>& P) const {
-        const bool implicit = has_implicit(block);
         Parts<KernelReal> viscosity;
-        const bool acts = !implicit || viscosity_of_implicit(block, F, viscosity);
-        note(block, acts, implicit && is_stiffening(block, F));
+        const bool acts = viscosity_of_implicit(block, F, viscosity);
+        note(block, acts, is_stiffening(block, F));
         if (!acts) return;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);
-            const LaneMat3<KernelReal> of_rate =
-                implicit ? bounded_viscous_stress(viscosity[part], F[part], rate)
-                         : viscous_stress(material, elements.viscous_time[block], F[part], rate);
+            const LaneMat3<KernelReal> of_rate = viscous_stress(viscosity[part], F[part], rate);
             if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, block, part);
             P[part] = P[part] + scale[part] * of_rate;
         }
@@ -259,17 +249,17 @@ struct Run {
 
     void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t block, std::size_t part) const {
         ElementViscousImpulse& impulse = patches.viscous_impulse[block];
-        const KernelReal scale = (duration * kick) * part_of<KernelReal>(elements.volume, block, part);
+        const KernelReal scale = kick * part_of<KernelReal>(elements.volume, block, part);
         const KernelReal entry[9] = {stress.c0.x, stress.c0.y, stress.c0.z, stress.c1.x, stress.c1.y,
                                      stress.c1.z, stress.c2.x, stress.c2.y, stress.c2.z};
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
     }
 
-    /// What makes forces of a stress: less the volume, m^3, as often as it is due.
+    /// Factor that makes forces of a stress: minus the volume [m^3].
     [[gnu::always_inline]] Parts<KernelReal> scale_of(std::size_t block) const {
         Parts<KernelReal> scale;
         for (std::size_t part = 0; part < kernel_parts; ++part)
-            scale[part] = (-duration) * part_of<KernelReal>(elements.volume, block, part);
+            scale[part] = -part_of<KernelReal>(elements.volume, block, part);
         return scale;
     }
 
@@ -315,9 +305,8 @@ struct Run {
         return P;
     }
 
-    /// J, of the sum over the elements. What the dashpots took is that of two steps and twice the strain, and the scale
-    /// is as often as the elements are due.
-    Real dissipated_of(const Parts<KernelReal>& sum) const { return (-0.25 / duration) * sum_of_parts(sum); }
+    /// Dissipated energy from the sum over the elements [J]. The dashpots took that of two steps and twice the strain.
+    static Real dissipated_of(const Parts<KernelReal>& sum) { return -0.25 * sum_of_parts(sum); }
 
     [[gnu::always_inline]] void add(const LaneVec3<KernelReal>& f, const NodeLane& node, std::size_t part) const {
         add_lanes(f, node.lane + lanes_of<KernelReal> * part, force);
@@ -438,12 +427,11 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 
-/// Where blocks are not as block `begin` is. `touched`: blocks of the patch may be due for different times.
-std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end, bool touched) {
+/// The first block after `begin` that is not of the same material, part and kind.
+std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     std::size_t b = begin + 1;
     while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin] &&
-           (elements.count[b] == 4) == (elements.count[begin] == 4) &&
-           (!touched || elements.schedule.duration(b) == elements.schedule.duration(begin)))
+           (elements.count[b] == 4) == (elements.count[begin] == 4))
         ++b;
     return b;
 }
@@ -456,32 +444,29 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                             const PatchForces& patches) {
     SKERRY_CHECK(patches.force.size() == patches.node.size() && patches.position.size() == patches.node.size());
     SKERRY_CHECK(rotation.size() == elements.blocks() && next.rotation.size() == elements.blocks());
+    SKERRY_CHECK(elements.viscous_time.empty() || elements.implicit_modulus.size() == elements.blocks());
     parallel_for(executor, patches.blocks.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t p = first; p < last; ++p) {
             const auto begin = static_cast<std::size_t>(patches.blocks[p].begin),
                        end = static_cast<std::size_t>(patches.blocks[p].end);
-            const bool touched = !patches.touched.empty() && patches.touched[p];
             if (!patches.relaxed.empty()) patches.relaxed[p] = 0;
             const auto slot = static_cast<std::size_t>(patches.slots[p].begin);
             const auto node = patches.node.subspan(slot, static_cast<std::size_t>(patches.slots[p].size()));
             const bool idle = is_idle(elements, begin, end);
             if (idle) std::ranges::fill(patches.force.subspan(slot, node.size()), PaddedVec3{});
-            if (idle || (!touched && elements.schedule.duration(begin) == 0)) continue;
+            if (idle || elements.is_left_out(begin)) continue;
             std::array<PaddedVec3, near_nodes> near;
             PaddedVec3 *const x = node.size() <= near_nodes ? near.data() : patches.position.data() + slot,
                               *const force = patches.force.data() + slot;
             fetch(node, position, x, force);
             for (std::size_t b = begin; b < end;) {
-                const Real duration = elements.schedule.duration(b);
-                const std::size_t after = end_of_run(elements, b, end, touched);
-                if (duration > 0) {
-                    const Run run{b,        after,          elements,  elements.material_of(b), duration,
-                                  kick,     kick_over_last, {x->lane}, {force->lane},           velocity,
-                                  rotation, next,           patches};
-                    const Real relaxed =
-                        elements.count[b] == 4 ? compute_run(run, Fans{run}) : compute_run(run, AnyElements{run});
-                    if (!patches.relaxed.empty()) patches.relaxed[p] += relaxed;
-                }
+                const std::size_t after = end_of_run(elements, b, end);
+                const Run run{b,        after,          elements,  elements.material_of(b),
+                              kick,     kick_over_last, {x->lane}, {force->lane},
+                              velocity, rotation,       next,      patches};
+                const Real relaxed =
+                    elements.count[b] == 4 ? compute_run(run, Fans{run}) : compute_run(run, AnyElements{run});
+                if (!patches.relaxed.empty()) patches.relaxed[p] += relaxed;
                 b = after;
             }
         }

@@ -28,7 +28,7 @@ struct UnstrainedInputs {
 
     static UnstrainedInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                                  const MaterialTable& material, const BodyTable& body, const NodeTable& node) {
-        return {.elements = ElementInputs::bind_explicit(binder, element, nodes, material, body),
+        return {.elements = ElementInputs::bind_explicit(binder, element, nodes, material),
                 .body_nodes = binder.read(body.nodes),
                 .body_blocks = binder.read(body.blocks),
                 .body_asleep = binder.read(body.asleep),

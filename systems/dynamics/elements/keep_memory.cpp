@@ -18,9 +18,8 @@ void keep_memory(Executor& executor, const ElementInputs& elements, ElementBlock
     const std::span<ElementStrain> strain = table.viscous_strain.span();
     constexpr std::size_t blocks_per_job = 256;
     parallel_for(executor, rotation.size(), blocks_per_job, [&](std::size_t begin, std::size_t end) {
-        if (elements.schedule.none_active(begin, end)) return;
         for (std::size_t b = begin; b < end; ++b) {
-            if (elements.schedule.duration(b) == 0) continue;
+            if (elements.is_left_out(b)) continue;
             const MaterialConstants& material = elements.constants[static_cast<std::size_t>(elements.material[b])];
             if (turns(material)) rotation[b] = rotation_next[b];
             if (material.relaxes()) std::swap(strain[b], strain_next[b]);

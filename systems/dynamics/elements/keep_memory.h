@@ -1,4 +1,4 @@
-// What the elements remember of a committed step, where not every block was due.
+// Memory of the elements after a committed step in which some bodies rested.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// rotation and viscous_strain = those of the step, of the blocks that were due and whose law or losses have them, and
-/// viscous_strain_next = that of before; the others keep those of their own last impulse. Parallel over blocks.
+/// rotation and viscous_strain = those of the step, and viscous_strain_next = that of before, for the blocks that were
+/// not left out and whose law or losses have them. The others keep theirs. Parallel over blocks.
 void keep_memory(Executor& executor, const ElementInputs& elements, ElementBlockTable& table);
 
 }  // namespace skerry

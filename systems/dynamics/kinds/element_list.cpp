@@ -27,10 +27,9 @@ void append(const ElementList& from, std::span<const Index> tetrahedra, ElementL
 
 }  // namespace
 
-ElementKind resolved(ElementKind kind, Real poisson_ratio, bool multirate) {
+ElementKind resolved(ElementKind kind, Real poisson_ratio) {
     constexpr Real largest_edge_smoothed_ratio = 0.25;
     if (kind != ElementKind::smoothed) return kind;
-    if (multirate) return ElementKind::linear;
     return poisson_ratio > largest_edge_smoothed_ratio ? ElementKind::edge_node_smoothed : ElementKind::edge_smoothed;
 }
 

@@ -77,9 +77,8 @@ inline constexpr Real guarded_volume = 0.5;
 void add_guards(const RestMesh& mesh, std::span<const MaterialZone> zones, ElementList& list);
 
 /// Which kind `smoothed` stands for: above a Poisson ratio of 0.25 the volumetric modulus lambda is more than the shear
-/// modulus, and elements by edges alone begin to lock (docs/methods/elasticity.md 7.3). With impulses at several rates
-/// smoothed elements gain energy: multirate has linear ones.
-ElementKind resolved(ElementKind kind, Real poisson_ratio, bool multirate);
+/// modulus, and elements by edges alone begin to lock (docs/methods/elasticity.md 7.3).
+ElementKind resolved(ElementKind kind, Real poisson_ratio);
 
 /// Every tetrahedron is an element: constant strain, the stiffest there is.
 void add_tetrahedron_elements(const RestMesh& mesh, ElementList& list);

@@ -39,11 +39,9 @@ void drift_pushed(std::span<const Vec3> velocity, Real h, std::span<Vec3> push_o
 
 }  // namespace
 
-void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, Integrator integrator,
-                       const AdvanceOutputs& out) {
+void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, const AdvanceOutputs& out) {
     SKERRY_CHECK(nodes.velocity_next.size() == out.position.size() && out.velocity.size() == out.position.size());
     SKERRY_CHECK(out.push_out.empty() || out.push_out.size() == out.position.size());
-    const bool forward = integrator == Integrator::forward_euler;
     parallel_for(executor, nodes.block_begin.size(), moved_blocks_per_job, [&](std::size_t first, std::size_t last) {
         for (std::size_t b = first; b < last; ++b) {
             const auto begin = static_cast<std::size_t>(nodes.block_begin[b]);
@@ -52,11 +50,10 @@ void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, I
                                   velocity = out.velocity.subspan(begin, count);
             const std::span<const Vec3> velocity_next = nodes.velocity_next.subspan(begin, count);
             if (nodes.body_asleep.empty() || !nodes.body_asleep[static_cast<std::size_t>(nodes.block_body[b])]) {
-                const std::span<const Vec3> with = forward ? std::span<const Vec3>(velocity) : velocity_next;
                 if (out.push_out.empty())
-                    drift(with, h, position);
+                    drift(velocity_next, h, position);
                 else
-                    drift_pushed(with, h, out.push_out.subspan(begin, count), position);
+                    drift_pushed(velocity_next, h, out.push_out.subspan(begin, count), position);
                 std::copy(velocity_next.begin(), velocity_next.end(), velocity.begin());
             }
             const MovingFrame frame = nodes.body_frame.empty()

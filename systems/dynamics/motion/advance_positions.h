@@ -7,7 +7,6 @@
 #include "components/body_table.h"
 #include "components/node_block_table.h"
 #include "components/node_table.h"
-#include "components/options.h"
 #include "components/types.h"
 #include "jobs/access.h"
 #include "jobs/executor.h"
@@ -49,11 +48,9 @@ struct AdvanceOutputs {
     }
 };
 
-/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Forward Euler drifts
-/// with the velocity before the step instead. Nodes at rest are passed over. In the same pass, while positions are at
-/// hand: how far the nodes of each block are from their displacement origins, for measure_displacement. Parallel over
-/// node blocks.
-void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, Integrator integrator,
-                       const AdvanceOutputs& out);
+/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Nodes at rest are passed over. In
+/// the same pass, while positions are at hand: how far the nodes of each block are from their displacement origins, for
+/// measure_displacement. Parallel over node blocks.
+void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, const AdvanceOutputs& out);
 
 }  // namespace skerry

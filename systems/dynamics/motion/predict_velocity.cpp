@@ -1,6 +1,5 @@
 #include "systems/dynamics/motion/predict_velocity.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -28,22 +27,10 @@ struct Kick {
             fly(begin, end);
             return;
         }
-        const unsigned counts = nodes.active.body_active.empty() ? ~0u : nodes.active.body_active[body];
-        unsigned around = 0;
-        for (const LevelMask levels :
-             nodes.active.node_levels.subspan(nodes.active.node_levels.empty() ? 0 : begin, levels_in(begin, end)))
-            around |= levels;
-        if ((around & ~counts) == 0) {
-            all(begin, end);
-            return;
-        }
-        // Few nodes have a slot that counts: what all get first, without a branch on it, then those few in full.
-        const bool free = !nodes.body_pinned_count.empty() && nodes.body_pinned_count[body] == 0;
-        if (free && nodes.load.empty() && nodes.gravity == Vec3::Zero())
-            std::copy(velocity.begin() + begin, velocity.begin() + end, velocity_next.begin() + begin);
+        if (nodes.load.empty() && are_free(begin, end))
+            all_free(begin, end);
         else
-            for (std::size_t n = begin; n < end; ++n) add(n, Vec3::Zero());
-        kick_due(begin, end, counts);
+            sum_slots(begin, end, [&](std::size_t n, const Real4& sum) { add(n, {sum[0], sum[1], sum[2]}); });
     }
 
 private:
@@ -72,12 +59,6 @@ private:
             visit(n, sum);
         }
     }
-    void all(std::size_t begin, std::size_t end) const {
-        if (nodes.load.empty() && are_free(begin, end))
-            all_free(begin, end);
-        else
-            sum_slots(begin, end, [&](std::size_t n, const Real4& sum) { add(n, {sum[0], sum[1], sum[2]}); });
-    }
     bool are_free(std::size_t begin, std::size_t end) const {
         const Real* const inverse_mass = nodes.inverse_mass.data();
         unsigned held = 0;
@@ -105,38 +86,6 @@ private:
             next[3 * n + 1] = v[3 * n + 1] + kick * (f[3 * n + 1] + m * gy);
             next[3 * n + 2] = v[3 * n + 2] + kick * (f[3 * n + 2] + m * gz);
         }
-    }
-    std::size_t levels_in(std::size_t begin, std::size_t end) const {
-        return nodes.active.node_levels.empty() ? 0 : end - begin;
-    }
-
-    void kick_due(std::size_t begin, std::size_t end, unsigned counts) const {
-        std::array<Index, nodes_per_block> due;
-        std::size_t due_count = 0;
-        SKERRY_CHECK(end - begin <= due.size());
-        // A list without a branch: which nodes are due is hard to foretell.
-        for (std::size_t n = begin; n < end; ++n) {
-            due[due_count] = static_cast<Index>(n);
-            due_count += (nodes.active.node_levels[n] & counts) != 0;
-        }
-        const auto add_all = [&](std::size_t n, const Real4& sum) { add(n, {sum[0], sum[1], sum[2]}); };
-        for (std::size_t k = 0; k < due_count; ++k) {
-            const auto n = static_cast<std::size_t>(due[k]);
-            if ((nodes.active.node_levels[n] & ~counts) == 0)
-                sum_slots(n, n + 1, add_all);
-            else
-                add(n, sum_of_due(n, counts));
-        }
-    }
-
-    Vec3 sum_of_due(std::size_t n, unsigned counts) const {
-        Real4 sum{};
-        for (const Index slot : nodes.slots_of_node[n]) {
-            const unsigned level = nodes.active.level[static_cast<std::size_t>(slot)];
-            if (counts >> level == 0) break;  // patches are sorted by level: nothing that counts comes after
-            if ((counts >> level & 1) != 0) sum = sum + force_of(slot);
-        }
-        return {sum[0], sum[1], sum[2]};
     }
     [[gnu::always_inline]] void add(std::size_t n, const Vec3& sum) const {
         Vec3 total = sum + nodes.mass[n] * nodes.gravity;

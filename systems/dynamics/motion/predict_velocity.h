@@ -8,29 +8,19 @@
 #include "components/node_block_table.h"
 #include "components/node_table.h"
 #include "components/ragged.h"
-#include "components/step_levels.h"
 #include "jobs/access.h"
 #include "jobs/executor.h"
 
 namespace skerry {
-
-/// Which element forces count in this step. With empty spans all do.
-struct ActiveSlots {
-    std::span<const LevelMask> body_active = {};  // BodyTable
-    std::span<const LevelMask> node_levels = {};  // NodeTable
-    std::span<const std::uint8_t> level = {};     // ElementPatches, by slot
-};
 
 struct KickInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
     // of ElementPatches
     RaggedView<Index> slots_of_node;
     std::span<const PaddedVec3> patch_force;
-    ActiveSlots active;
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
     std::span<const Vec3> load = {};                 // N; empty: none
-    std::span<const Index> body_pinned_count = {};   // BodyTable; empty: any node may be without freedom
     std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are passed over; empty: none
     // BodyTable: of such nodes elements have nothing to say; empty: none
     std::span<const std::uint16_t> body_unstrained = {};
@@ -44,21 +34,17 @@ struct KickInputs {
                 .block_body = binder.read(block.body),
                 .slots_of_node = binder.read(patches.slots_of_node),
                 .patch_force = binder.read(patches.force),
-                .active = {.body_active = binder.read(body.active),
-                           .node_levels = binder.read(node.levels),
-                           .level = binder.read(patches.level)},
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass),
                 .gravity = binder.value(gravity),
                 .load = binder.read_if(binder.value(loaded), node.load),
-                .body_pinned_count = binder.read(body.pinned_count),
                 .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
                 .body_unstrained = binder.read(body.unstrained)};
     }
 };
 
 /// velocity_next = velocity + kick F inverse_mass, `kick` (s) the time for which forces act in this step, with F = sum
-/// of what the patches around the node that are due do to it, in a fixed order, + mass gravity + load. Nodes without
+/// of the forces of the patches around the node, in a fixed order, + mass gravity + load. Nodes without
 /// freedom (inverse mass 0) keep their velocity; of them alone F is written to `force`: what holds them is its
 /// opposite. One pass, since F of all nodes, kept and read again, took as long as the kick itself. Nodes of an
 /// unstrained body without loads and held nodes stay alike, bit by bit. Parallel over node blocks.

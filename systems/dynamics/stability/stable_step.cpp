@@ -12,7 +12,6 @@
 #include "components/check.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
-#include "systems/dynamics/stability/element_levels.h"
 #include "systems/dynamics/stability/stiffness_share.h"
 #include "systems/dynamics/stability/without_guards.h"
 #include "systems/material/extract_rotation.h"
@@ -22,15 +21,6 @@ namespace skerry {
 
 namespace {
 
-/// One more than the highest level of a range of blocks.
-int levels_of(const ElementInputs& elements, Range blocks) {
-    int top = 0;
-    if (!elements.schedule.level.empty())
-        for (Index b = blocks.begin; b < blocks.end; ++b)
-            top = std::max<int>(top, elements.schedule.level[static_cast<std::size_t>(b)]);
-    return top + 1;
-}
-
 /// Blocks whose stiffness is summed in one piece: they take as long as the bound of one.
 constexpr Index blocks_summed = 8;
 
@@ -38,34 +28,28 @@ Index sums_of(Range blocks) {
     return (blocks.size() + blocks_summed - 1) / blocks_summed;
 }
 
-/// What pieces of a look do: add up what has to be known of all elements, or bound them by the masses of the frame
-/// (frame_masses.h) or by forms and shares. A body with masses of the frame has one level, which is bounded by these
-/// first.
+/// The kinds of pieces of a look: sums over all elements, bounds by the masses of the frame (frame_masses.h), and
+/// bounds by forms or shares. A body with masses of the frame is bounded by these first.
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
-/// Pieces of a look that do not wait for each other: sums of a level, or bounds of one wave of its blocks. Waves hold
-/// 1, 1, 2, 4, 8... blocks, so that few in each are above all that the waves before have found.
+/// Pieces of a look that do not wait for each other: sums, or bounds of one wave of blocks. Waves hold 1, 1, 2, 4, 8...
+/// blocks, so that few in each are above all that the waves before have found.
 struct PieceRun {
-    int level;
     PieceWork work;
     bool opens_wave;
     Range blocks;
     std::uint64_t end;  // the piece after the last
 };
 
-/// Those from the piece `from` on, which is before `until`. Levels come from the coarsest down: an element shares
-/// masses with those of its level and of coarser ones alone (element_levels.h).
-PieceRun run_from(Range blocks, int levels, bool framed, std::uint64_t from, std::uint64_t until) {
-    const Index sums = sums_of(blocks), passes = framed ? 2 : 1;
-    const auto of_level = static_cast<std::uint64_t>(sums + passes * blocks.size());
-    const int level = levels - 1 - static_cast<int>(from / of_level);
-    const auto place = static_cast<Index>(from % of_level);
+/// The run of pieces that starts at `from`, which is before `until`.
+PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
+    const Index sums = sums_of(blocks);
+    const auto place = static_cast<Index>(from);
     const auto most = [&](Index pieces) { return static_cast<Index>(std::min<std::uint64_t>(until - from, pieces)); };
     if (place < sums) {
         const Index count = most(sums - place);
         const Index first = blocks.begin + place * blocks_summed;
-        return {
-            level, PieceWork::sum, false, {first, std::min(first + count * blocks_summed, blocks.end)}, from + count};
+        return {PieceWork::sum, false, {first, std::min(first + count * blocks_summed, blocks.end)}, from + count};
     }
     const bool in_frame = framed && place - sums < blocks.size();
     const Index bound = (place - sums) % blocks.size();
@@ -73,11 +57,8 @@ PieceRun run_from(Range blocks, int levels, bool framed, std::uint64_t from, std
     const Index wave_end = std::min(bound == 0 ? 1 : 2 * wave, blocks.size());
     const Index count = most(wave_end - bound);
     const Index first = blocks.begin + bound;
-    return {level,
-            in_frame ? PieceWork::bound_in_frame : PieceWork::bound,
-            bound == wave,
-            {first, first + count},
-            from + count};
+    return {
+        in_frame ? PieceWork::bound_in_frame : PieceWork::bound, bound == wave, {first, first + count}, from + count};
 }
 
 /// The work of a look's pieces.
@@ -87,15 +68,13 @@ struct Pieces {
     std::span<const Real> mass;
     std::span<Real> stiffness_sum;
 
-    /// visit(block) for each of the level.
-    void for_each_block(Range blocks, int level, auto&& visit) const {
-        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
-            if (elements.schedule.level.empty() ? level == 0 : elements.schedule.level[b] == level) visit(b);
+    static void for_each_block(Range blocks, auto&& visit) {
+        for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) visit(b);
     }
     void sum(const PieceRun& run, StepLook& look) const {
         if (frame_bound(elements, run.blocks) > 0)
-            for_each_block(run.blocks, run.level, [&](std::size_t b) { add_deformation(b, look.deformation); });
-        for_each_block(run.blocks, run.level, [&](std::size_t b) {
+            for_each_block(run.blocks, [&](std::size_t b) { add_deformation(b, look.deformation); });
+        for_each_block(run.blocks, [&](std::size_t b) {
             if (has_mass_form(elements, b)) return;
             add_stiffness(elements, b, deformation_of(elements, b, position), stiffness_sum,
                           [](std::size_t) { return true; });
@@ -110,17 +89,17 @@ struct Pieces {
     /// The same as bound(), by the masses of the frame: in the rotation of the body.
     void bound_in_frame(Range blocks, const Mat3& rotation, Real enough, auto&& visit) const {
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
-        for_each_block(blocks, 0, [&](std::size_t b) {
+        for_each_block(blocks, [&](std::size_t b) {
             visit(b,
                   frequency_squared_in_frame(elements, b, deformation_of(elements, b, position), rotation, q, enough));
         });
     }
     /// visit(block, bound of omega^2 by lane); bounds below `enough` (1/s^2) need not be known.
-    void bound(Range blocks, int level, Real enough, auto&& visit) const {
+    void bound(Range blocks, Real enough, auto&& visit) const {
         // The frame of a corotational element starts from the same lane of the block before it: neighbours turn
         // together.
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
-        for_each_block(blocks, level, [&](std::size_t b) {
+        for_each_block(blocks, [&](std::size_t b) {
             const LaneMat3<Real8> F = deformation_of(elements, b, position);
             visit(b, has_mass_form(elements, b) ? frequency_squared_by_form(elements, b, F, q, enough)
                                                 : frequency_squared_of(elements, b, F, mass, stiffness_sum, q, enough));
@@ -135,8 +114,7 @@ struct Greatest {
 };
 Greatest greatest_of(StepLook& look, const PieceRun& run) {
     if (run.work == PieceWork::bound_in_frame) return {look.in_frame, look.element_in_frame};
-    const auto level = static_cast<std::size_t>(run.level);
-    return {look.highest[level], look.element[level]};
+    return {look.highest, look.element};
 }
 
 /// Adds the greatest bound of a block to what is known.
@@ -163,14 +141,13 @@ constexpr Real well_in_frame = 1.25;
 
 /// Goes on with a look; the blocks of a wave are cut by in_chunks(run, body(begin, end, look of this chunk)).
 template <class InChunks>
-void look_on(const Pieces& pieces, Range blocks, int levels, std::uint64_t until, StepLook& look,
-             InChunks&& in_chunks) {
+void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepLook& look, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
     const Real at_rest = frame_bound(pieces.elements, blocks);
     std::optional<Mat3> rotation;  // found once, for all waves that this goes on with
     while (look.piece < until) {
-        const PieceRun run = run_from(blocks, levels, at_rest > 0, look.piece, until);
+        const PieceRun run = run_from(blocks, at_rest > 0, look.piece, until);
         if (run.opens_wave) look.known = greatest_of(look, run).bound;
         if (run.work == PieceWork::sum) {
             pieces.sum(run, look);
@@ -185,7 +162,7 @@ void look_on(const Pieces& pieces, Range blocks, int levels, std::uint64_t until
                 if (run.work == PieceWork::bound_in_frame)
                     pieces.bound_in_frame(some, *rotation, look.known, note);
                 else
-                    pieces.bound(some, run.level, look.known, note);
+                    pieces.bound(some, look.known, note);
             });
         }
         look.piece = run.end;
@@ -197,22 +174,21 @@ void clear_stiffness(const ElementInputs& elements, Range blocks, std::span<Real
         clear_stiffness(elements, static_cast<std::size_t>(b), stiffness_sum);
 }
 
-/// s, of an element whose bound of omega^2 this is.
-Real step_of(Real bound, int level) {
-    return step_of_level(step_times_frequency / std::sqrt(bound), level);
+/// Stable step of an element with this bound of omega^2 [s].
+Real step_of(Real bound) {
+    return step_times_frequency / std::sqrt(bound);
 }
 
 }  // namespace
 
-std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks, int levels) {
+std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks) {
     blocks = without_guards(elements, blocks);
     const Index passes = frame_bound(elements, blocks) > 0 ? 2 : 1;
-    return static_cast<std::uint64_t>(levels) * static_cast<std::uint64_t>(sums_of(blocks) + passes * blocks.size());
+    return static_cast<std::uint64_t>(sums_of(blocks) + passes * blocks.size());
 }
 
-void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, int levels,
-                   std::span<const Vec3> position, std::span<const Real> mass, std::span<Real> stiffness_sum,
-                   std::uint64_t until, StepLook& look) {
+void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look) {
     constexpr Index least = 8, most_chunks = 64;  // blocks, some 20 us; what fits on the stack
     const auto in_chunks = [&](const PieceRun& run, auto&& body) {
         const Index count = run.blocks.size();
@@ -236,32 +212,26 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
             most.element = here.element;
         }
     };
-    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), levels, until, look,
-            in_chunks);
+    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), until, look, in_chunks);
 }
 
 StableStep result_of(const StepLook& look) {
     if (look.broken != no_index) return {0, look.broken};
     StableStep found{std::numeric_limits<Real>::infinity(), no_index};
-    for (int level = element_level_count - 1; level >= 0; --level) {
-        const auto at = static_cast<std::size_t>(level);
-        if (!(look.highest[at] > 0)) continue;
-        if (const Real step = step_of(look.highest[at], level); step < found.step) found = {step, look.element[at]};
-    }
+    if (look.highest > 0) found = {step_of(look.highest), look.element};
     if (!(look.in_frame > 0)) return found;
     // both are bounds, if the body was looked at in both ways
-    const Real step = step_of(look.in_frame, 0);
-    if (!(look.highest[0] > 0) || step > found.step) found = {step, look.element_in_frame};
+    const Real step = step_of(look.in_frame);
+    if (!(look.highest > 0) || step > found.step) found = {step, look.element_in_frame};
     return found;
 }
 
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum) {
     clear_stiffness(elements, blocks, stiffness_sum);
-    const int levels = levels_of(elements, blocks);
     StepLook look;
-    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), levels,
-            pieces_of_look(elements, blocks, levels), look,
+    look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks),
+            pieces_of_look(elements, blocks), look,
             [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), look); });
     return result_of(look);
 }
@@ -270,7 +240,6 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step) {
     SKERRY_CHECK(step.size() == static_cast<std::size_t>(blocks.size()));
     clear_stiffness(elements, blocks, stiffness_sum);
-    const int levels = levels_of(elements, blocks);
     ElementInputs by_shares = elements;
     by_shares.mass_form = {};
     by_shares.frame_bound = {};
@@ -278,19 +247,19 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     const Range of_body = without_guards(elements, blocks);
     for (ElementLane& lanes : step.subspan(static_cast<std::size_t>(of_body.size())))
         std::ranges::fill(lanes.lane, std::numeric_limits<Real>::infinity());
-    const std::uint64_t count = pieces_of_look(by_shares, of_body, levels);
+    const std::uint64_t count = pieces_of_look(by_shares, of_body);
     StepLook look;
     for (std::uint64_t piece = 0; piece < count;) {
-        const PieceRun run = run_from(of_body, levels, false, piece, count);
+        const PieceRun run = run_from(of_body, false, piece, count);
         piece = run.end;
         if (run.work == PieceWork::sum) {
             pieces.sum(run, look);
             continue;
         }
-        pieces.bound(run.blocks, run.level, 0, [&](std::size_t b, const Real8& bound) {
+        pieces.bound(run.blocks, 0, [&](std::size_t b, const Real8& bound) {
             for (std::size_t l = 0; l < element_lanes; ++l)
                 step[b - static_cast<std::size_t>(blocks.begin)][l] =
-                    bound[l] > 0 ? step_of(bound[l], run.level) : std::numeric_limits<Real>::infinity();
+                    bound[l] > 0 ? step_of(bound[l]) : std::numeric_limits<Real>::infinity();
         });
     }
 }

@@ -21,19 +21,16 @@ struct StableStep {
 /// or mass_forms.h, where they have such, or in proportion to their stiffness and their mass_share, and omega_max^2 <=
 /// max_e lambda_max(M_e^-1/2 K_e M_e^-1/2), with the material Hessian of the present deformation bounded as
 /// docs/methods/stable_step.md 4 gives it. A rigorous bound (never above the exact limit), sequential, deterministic.
-/// Where elements have levels it is the step of level 0 for which every level has what element_levels.h asks.
 /// `stiffness_sum` is scratch, one entry a node.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
-/// The same in parts: a look has so many pieces, which take about as long as each other. `levels`: one more than the
-/// highest level of the elements.
-std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks, int levels);
+/// Number of pieces of the same computation done in parts, a look. All pieces take about as long as each other.
+std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks);
 /// Goes on with a look until `until` of its pieces are done. `stiffness_sum` is zero at the nodes of the body before
 /// the first; all inputs stay the same until the last. Where a look is cut does not change what it finds.
-void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, int levels,
-                   std::span<const Vec3> position, std::span<const Real> mass, std::span<Real> stiffness_sum,
-                   std::uint64_t until, StepLook& look);
+void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look);
 /// What a look has found when all of its pieces are done.
 StableStep result_of(const StepLook& look);
 

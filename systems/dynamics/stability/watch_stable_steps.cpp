@@ -7,28 +7,12 @@
 
 namespace skerry {
 
-namespace {
-
-/// One more than the highest level of a body.
-int levels_of_body(const std::array<Index, element_level_count>& level_count) {
-    int levels = element_level_count;
-    while (levels > 1 && level_count[static_cast<std::size_t>(levels - 1)] == 0) --levels;
-    return levels;
-}
-
-}  // namespace
-
-std::uint64_t pieces_of_body(const ElementInputs& elements, Range blocks,
-                             const std::array<Index, element_level_count>& level_count) {
-    return pieces_of_look(elements, blocks, levels_of_body(level_count));
-}
-
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch) {
     parts.clear();
     parts.reserve(inputs.body_blocks.size());  // however many are due in a later step
     for (bool whole = true; whole && watch.body < watch.kept; watch.body += whole) {
         const auto b = static_cast<std::size_t>(watch.body);
-        const std::uint64_t pieces = pieces_of_body(inputs.elements, inputs.body_blocks[b], inputs.level_count[b]);
+        const std::uint64_t pieces = pieces_of_look(inputs.elements, inputs.body_blocks[b]);
         if (watch.step[b] != StepWatch::not_looked_at) {
             const std::uint64_t due = watch.target > watch.before ? std::min(pieces, watch.target - watch.before) : 0;
             whole = due == pieces;
@@ -42,8 +26,8 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
         for (std::size_t p = begin; p < end; ++p) {
             WatchPart& part = parts[p];
             const auto b = static_cast<std::size_t>(part.body);
-            continue_look(executor, inputs.elements, inputs.body_blocks[b], levels_of_body(inputs.level_count[b]),
-                          watch.position, inputs.mass, watch.stiffness_sum, part.until, part.look);
+            continue_look(executor, inputs.elements, inputs.body_blocks[b], watch.position, inputs.mass,
+                          watch.stiffness_sum, part.until, part.look);
         }
     });
     for (const WatchPart& part : parts) {

@@ -1,7 +1,6 @@
 // The looks at the stable steps of bodies that are taken beside the steps (docs/methods/stable_step.md 6).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -16,21 +15,15 @@ namespace skerry {
 struct WatchInputs {
     ElementInputs elements;
     std::span<const Range> body_blocks;  // BodyTable
-    std::span<const std::array<Index, element_level_count>> level_count;
-    std::span<const Real> mass;  // kg, by node
+    std::span<const Real> mass;          // kg, by node
 
     static WatchInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                             const MaterialTable& material, const BodyTable& body, const NodeTable& node) {
-        return {.elements = ElementInputs::bind_explicit(binder, element, nodes, material, body),
+        return {.elements = ElementInputs::bind_explicit(binder, element, nodes, material),
                 .body_blocks = binder.read(body.blocks),
-                .level_count = binder.read(body.level_count),
                 .mass = binder.read(node.mass)};
     }
 };
-
-/// Pieces of the look at one body; none where it has no elements.
-std::uint64_t pieces_of_body(const ElementInputs& elements, Range blocks,
-                             const std::array<Index, element_level_count>& level_count);
 
 /// Pieces of looks at bodies: of those before the one whose look is under way, of those whose shape is kept, of all.
 struct WatchPieces {

@@ -46,8 +46,8 @@ TEST_CASE("lanes that are left over have no volume, no gradient and a node of th
     ElementNodeTable nodes;
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra) == Range{0, 1});
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 8, tetrahedra) == Range{1, 2});
-    CHECK(append_elements(list, mesh.nodes, {}, BlockOrder::fans, 0, 0, elements, nodes).blocks == Range{0, 1});
-    const AppendedElements second = append_elements(list, mesh.nodes, {}, BlockOrder::fans, 8, 1, elements, nodes);
+    CHECK(append_elements(list, mesh.nodes, BlockOrder::fans, 0, 0, elements, nodes).blocks == Range{0, 1});
+    const AppendedElements second = append_elements(list, mesh.nodes, BlockOrder::fans, 8, 1, elements, nodes);
     CHECK(second.blocks == Range{1, 2});
     CHECK(second.nodes == Range{4, 8});
     CHECK(elements.body[1] == 1);
@@ -94,7 +94,7 @@ TEST_CASE("no tetrahedra make no blocks", "[unit]") {
     ElementBlockTable elements;
     ElementNodeTable nodes;
     CHECK(append_tetrahedra({}, {}, 0, tetrahedra) == Range{0, 0});
-    CHECK(append_elements({}, {}, {}, BlockOrder::fans, 0, 0, elements, nodes).blocks == Range{0, 0});
+    CHECK(append_elements({}, {}, BlockOrder::fans, 0, 0, elements, nodes).blocks == Range{0, 0});
     ElementPatches patches;
     build_patches(elements, 3, nodes, patches);
     CHECK(patches.blocks.empty());
@@ -149,26 +149,6 @@ TEST_CASE("a patch has every node of its elements once, and a node its patches i
     CHECK(std::accumulate(times.begin(), times.end(), std::size_t{0}) == patches.node.size());
 }
 
-TEST_CASE("a patch has one level", "[unit]") {
-    const test::TetMesh mesh = jittered_box({5, 5, 5}, 0.1, 0.1, 1);
-    const ElementList list = elements_of({mesh.tetrahedra, mesh.nodes}, ElementKind::linear);
-    std::vector<std::uint8_t> level;
-    for (std::size_t e = 0; e < list.size(); ++e) level.push_back(static_cast<std::uint8_t>(e % 3));
-    ElementBlockTable blocks;
-    ElementNodeTable nodes;
-    const AppendedElements appended = append_elements(list, mesh.nodes, level, BlockOrder::fans, 0, 0, blocks, nodes);
-    ElementPatches patches;
-    build_patches(blocks, mesh.nodes.size(), nodes, patches);
-    CHECK(patches.blocks.size() == 3);  // 250 elements each
-    CHECK(std::is_sorted(blocks.level.begin(), blocks.level.end()));
-    for (std::size_t place = 0; place < appended.element.size(); ++place)
-        if (const Index e = appended.element[place]; e != no_index)
-            CHECK(blocks.level[place / element_lanes] == level[static_cast<std::size_t>(e)]);
-    for (std::size_t p = 0; p < 3; ++p)
-        for (Index s = patches.slots[p].begin; s < patches.slots[p].end; ++s)
-            CHECK(patches.level[static_cast<std::size_t>(s)] == p);
-}
-
 TEST_CASE("patches of bodies that come one after the other, and go again, are those of all at once", "[unit]") {
     ElementBlockTable blocks;
     ElementNodeTable nodes;
@@ -180,14 +160,13 @@ TEST_CASE("patches of bodies that come one after the other, and go again, are th
         CHECK(std::ranges::equal(a.blocks, b.blocks));
         CHECK(std::ranges::equal(a.slots, b.slots));
         CHECK(std::ranges::equal(a.node, b.node));
-        CHECK(std::ranges::equal(a.level, b.level));
         CHECK(std::ranges::equal(a.slots_of_node.offset, b.slots_of_node.offset));
         CHECK(std::ranges::equal(a.slots_of_node.item, b.slots_of_node.item));
     };
     for (Index body = 0; body < 4; ++body) {
         const test::TetMesh mesh = jittered_box({3 + body, 4, 3}, 0.1, 0.1, 1);
         const ElementKind kind = body % 2 == 0 ? ElementKind::linear : ElementKind::edge_node_smoothed;
-        append_elements(elements_of({mesh.tetrahedra, mesh.nodes}, kind), mesh.nodes, {}, BlockOrder::fans, node_count,
+        append_elements(elements_of({mesh.tetrahedra, mesh.nodes}, kind), mesh.nodes, BlockOrder::fans, node_count,
                         body, blocks, nodes);
         node_count += static_cast<Index>(mesh.nodes.size());
         if (body == 1) ++node_count;  // a node without elements

@@ -38,14 +38,13 @@ struct Nodes {
         displacement_squared.resize(begin.size());
     }
     void predict(Real h, const Vec3& gravity = Vec3::Zero(), bool loaded = true) {
-        KickInputs inputs{begin, end, body, slots_of_node.view(), {}, {}, mass, inverse_mass, gravity};
+        KickInputs inputs{begin, end, body, slots_of_node.view(), {}, mass, inverse_mass, gravity};
         if (loaded) inputs.load = load;
         predict_velocity(*executor, inputs, velocity, h, force, next);
     }
-    void advance(Real h, bool pushed, Integrator integrator = Integrator::symplectic_euler,
-                 std::span<const std::uint8_t> asleep = {}) {
+    void advance(Real h, bool pushed, std::span<const std::uint8_t> asleep = {}) {
         const std::span<Vec3> none;
-        advance_positions(*executor, {begin, end, body, asleep, next, origin}, h, integrator,
+        advance_positions(*executor, {begin, end, body, asleep, next, origin}, h,
                           {pushed ? std::span<Vec3>(push) : none, position, velocity, displacement_squared});
     }
 };
@@ -97,7 +96,7 @@ TEST_CASE("nodes that are kicked together have the bits of one after the other",
             if (held) inverse_mass[middle] = 0;
             const std::vector<Index> begin{0}, end{count}, body{0};
             std::vector<Vec3> force(velocity.size()), next(velocity.size());
-            predict_velocity(*executor, {begin, end, body, slots.view(), patch_force, {}, mass, inverse_mass, gravity},
+            predict_velocity(*executor, {begin, end, body, slots.view(), patch_force, mass, inverse_mass, gravity},
                              velocity, h, force, next);
             for (std::size_t n = 0; n < next.size(); ++n) {
                 const Vec3 total = sum[n] + mass[n] * gravity;
@@ -132,11 +131,10 @@ TEST_CASE("a drift commits velocity and push-out, and uses the push-out up", "[u
     CHECK(nodes.velocity[1] == Vec3(0, 0, 0));  // the push-out moves positions only
     CHECK(nodes.push[0] == Vec3::Zero());
     CHECK(nodes.push[1] == Vec3::Zero());
-    advance_positions(*nodes.executor, {}, 0.5, Integrator::symplectic_euler, {});
+    advance_positions(*nodes.executor, {}, 0.5, {});
 }
 
 TEST_CASE("a drift without a push-out has the bits of one with a push-out of zero", "[unit]") {
-    const auto integrator = GENERATE(Integrator::symplectic_euler, Integrator::forward_euler);
     const std::vector<std::uint8_t> asleep{0, 1};
     std::mt19937_64 random(5);
     std::uniform_real_distribution<Real> uniform(-1, 1);
@@ -148,13 +146,11 @@ TEST_CASE("a drift without a push-out has the bits of one with a push-out of zer
         for (Nodes* copy : {&plain, &pushed, &start}) {
             copy->position = nodes.position, copy->velocity = nodes.velocity, copy->next = nodes.next,
             copy->origin = nodes.origin;
-            if (copy != &start)
-                copy->advance(0.3, copy == &pushed, integrator, rest ? asleep : std::vector<std::uint8_t>());
+            if (copy != &start) copy->advance(0.3, copy == &pushed, rest ? asleep : std::vector<std::uint8_t>());
         }
         for (std::size_t n = 0; n < 11; ++n) {
             const bool moves = n < 3 || !rest;
-            const Vec3 with = integrator == Integrator::forward_euler ? start.velocity[n] : start.next[n];
-            CHECK(plain.position[n] == (moves ? Vec3(start.position[n] + 0.3 * with) : start.position[n]));
+            CHECK(plain.position[n] == (moves ? Vec3(start.position[n] + 0.3 * start.next[n]) : start.position[n]));
             CHECK(plain.velocity[n] == (moves ? start.next[n] : start.velocity[n]));
             CHECK(pushed.position[n] == plain.position[n]);
             CHECK(pushed.velocity[n] == plain.velocity[n]);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "systems/dynamics/checks/measure_viscosity.h"
 #include "systems/dynamics/clusters/build_clusters.h"
 #include "systems/dynamics/clusters/find_implicit_elements.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
@@ -208,6 +209,54 @@ TEST_CASE("whether elements are less stiff than they are taken to be is what the
     }
     CHECK(less > 0);
     CHECK(more > 0);
+}
+
+TEST_CASE("the energy that viscosity takes is the work of its impulses on the nodes", "[unit][clusters]") {
+    constexpr Real kick = 1e-4;
+    SliverBox box(ElementKind::edge_node_smoothed);
+    const auto executor = make_executor(Backend::serial, 1);
+    std::mt19937_64 random(9);
+    std::vector<Vec3> next;
+    for (std::size_t n = 0; n < box.body.position.size(); ++n) {
+        box.body.position[n].x() *= 3;  // implicit elements are viscous far from rest
+        box.body.velocity[n] = test::random_vector(random);
+        next.push_back(box.body.velocity[n] + 0.5 * test::random_vector(random));
+    }
+    const std::size_t blocks = box.body.elements.first.size();
+    std::vector<std::uint8_t> viscous(blocks);
+    std::vector<ElementViscousImpulse> impulse(blocks);
+    std::vector<Real> time(blocks);
+    find_viscous_times(box.body.elements.implicit_modulus, box.cluster_step[0], time);
+    ElementInputs inputs = box.body.inputs();
+    inputs.implicit_modulus = box.body.elements.implicit_modulus;
+    PatchForces patches = box.body.patch_forces();
+    patches.viscous = viscous;
+    patches.viscous_impulse = impulse;
+    const auto forces = [&] {
+        compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, kick, 0,
+                               box.body.elements.rotation,
+                               {box.body.elements.rotation_next, box.body.elements.viscous_strain_next}, patches);
+        box.body.gather();
+        return box.body.force;
+    };
+    const std::vector<Vec3> elastic = forces();
+    inputs.viscous_time = time;
+    const std::vector<Vec3> all = forces();
+    Real expected = 0;
+    for (std::size_t n = 0; n < all.size(); ++n)
+        expected -= kick * (all[n] - elastic[n]).dot(box.body.velocity[n] + next[n]) / 2;
+    Column<Real> parts;
+    const auto taken = [&] {
+        return measure_viscosity(*executor, inputs, box.body.patches.blocks, impulse, viscous, box.body.velocity, next,
+                                 parts);
+    };
+    CHECK(expected > 0);
+    CHECK(taken() == Approx(expected).epsilon(1e-9));
+    const std::vector<Index> of_body(blocks, 0);
+    const std::vector<std::uint8_t> asleep{1};
+    inputs.body = of_body;
+    inputs.body_asleep = asleep;
+    CHECK(taken() == 0);
 }
 
 }  // namespace skerry::test::stiffen_clusters_test

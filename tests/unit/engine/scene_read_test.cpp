@@ -101,6 +101,30 @@ TEST_CASE("unknown keys are named with their place and the nearest known key", "
     });
 }
 
+TEST_CASE("withdrawn keys and values are refused with what to use instead", "[unit]") {
+    check_messages({
+        {"a key",
+         scene_with(R"("settings": {"multirate": true})"),
+         {"settings.multirate: found a withdrawn key", "clusters", "\"implicit\" or \"automatic\""}},
+        {"a key that is off", scene_with(R"("settings": {"multirate": false})"), {"delete the key"}},
+        {"a value",
+         scene_with(R"("settings": {"integrator": "forward_euler"})"),
+         {"settings.integrator: found the withdrawn value \"forward_euler\"", "\"symplectic_euler\"", "\"leapfrog\""}},
+    });
+}
+
+TEST_CASE("withdrawn keys and values are refused with what to use instead", "[unit]") {
+    check_messages({
+        {"a key",
+         scene_with(R"("settings": {"multirate": true})"),
+         {"settings.multirate: found a withdrawn key", "clusters", "\"implicit\" or \"automatic\""}},
+        {"a key that is off", scene_with(R"("settings": {"multirate": false})"), {"delete the key"}},
+        {"a value",
+         scene_with(R"("settings": {"integrator": "forward_euler"})"),
+         {"settings.integrator: found the withdrawn value \"forward_euler\"", "\"symplectic_euler\"", "\"leapfrog\""}},
+    });
+}
+
 TEST_CASE("a key that is near none gets no suggestion", "[unit]") {
     for (const char* key : {"pressure", "weight", "colour", "x"}) {
         CAPTURE(key);
