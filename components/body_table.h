@@ -9,6 +9,7 @@
 #include "components/column_role.h"
 #include "components/material_table.h"
 #include "components/range.h"
+#include "components/row_type.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -17,6 +18,8 @@ enum class BodyKind : std::uint8_t {
     deformable,
     kinematic,  // a mesh collider: nodes without elements, moved by its collider
 };
+template <>
+inline constexpr std::uint64_t value_count<BodyKind> = 2;
 
 /// A frame that moves with a body without turning. Distances between bodies, and within one, change by what nodes move
 /// in their frames and by what the frames move against each other: common motion costs nothing.
@@ -26,6 +29,8 @@ struct MovingFrame {
     Vec3 position = Vec3::Zero();  // m, how far since the body was added
     Real path = 0;                 // m, the length of that way
 };
+template <>
+struct NumbersOf<MovingFrame> : Reals<10> {};
 
 struct BodyTable {
     Column<std::uint32_t> slot;  // handle slot of the body, or of the collider that a kinematic body belongs to

@@ -7,11 +7,14 @@
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/material_table.h"
+#include "components/row_type.h"
 #include "components/types.h"
 
 namespace skerry {
 
 enum class ColliderShape : std::uint8_t { plane, sphere, box, capsule, cylinder, bucket, mesh };
+template <>
+inline constexpr std::uint64_t value_count<ColliderShape> = 7;
 
 /// A shape in its own frame, centred at the origin; axes along z.
 struct ColliderGeometry {
@@ -20,6 +23,10 @@ struct ColliderGeometry {
     // segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height, wall): floor at z = 0, open
     // above, material of thickness `wall` below and around. mesh: unused, see BodyTable::collider
     Vec3 size;
+};
+template <>
+struct MembersOf<ColliderGeometry> {
+    static std::span<const Member> list();
 };
 
 /// Where a rigid shape is and how it moves during this step.
@@ -31,6 +38,8 @@ struct RigidMotion {
 
     bool stands_still() const { return velocity.isZero(0) && angular_velocity.isZero(0); }
 };
+template <>
+struct NumbersOf<RigidMotion> : Reals<18> {};
 
 /// One key of a script; between keys position is linear and rotation turns about a fixed axis.
 struct Keyframe {
@@ -38,6 +47,8 @@ struct Keyframe {
     Vec3 position;  // m
     Vec3 rotation;  // rad, axis times angle
 };
+template <>
+struct NumbersOf<Keyframe> : Reals<7> {};
 
 /// How a collider or an attachment moves.
 struct MotionScript {
@@ -46,6 +57,10 @@ struct MotionScript {
     Index key_begin;        // range in ColliderTable::keyframe or AttachmentTable::keyframe
     Index key_end;
     Real start = 0;  // s, when it was at its initial pose, when there are no keys
+};
+template <>
+struct MembersOf<MotionScript> {
+    static std::span<const Member> list();
 };
 
 struct ColliderTable {

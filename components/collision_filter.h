@@ -5,6 +5,7 @@
 
 #include "components/column.h"
 #include "components/column_role.h"
+#include "components/row_type.h"
 
 namespace skerry {
 
@@ -15,6 +16,8 @@ struct CollisionFilter {
 
     bool operator==(const CollisionFilter&) const = default;
 };
+template <>
+struct NumbersOf<CollisionFilter> : SameNumbers<NumberType::uint32, 2> {};
 
 inline bool may_touch(const CollisionFilter& a, const CollisionFilter& b) {
     return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;

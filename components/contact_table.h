@@ -6,13 +6,18 @@
 
 #include "components/column.h"
 #include "components/column_role.h"
+#include "components/row_type.h"
 #include "components/types.h"
 
 namespace skerry {
 
 /// The last three are of a body's node, edge and face with an analytic collider.
 enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider, edge_collider, face_collider };
+template <>
+inline constexpr std::uint64_t value_count<ContactKind> = 5;
 enum class ContactState : std::uint8_t { open, stick, slide };
+template <>
+inline constexpr std::uint64_t value_count<ContactState> = 3;
 
 /// Names the features that touch, across steps. `pair` holds what touches: bits 63..62 the kind of pair (0 two bodies,
 /// 1 body and collider), then the two handle slots (31 bits each). `feature` holds which parts: bit 63 set for
@@ -25,11 +30,17 @@ struct ContactKey {
 
     auto operator<=>(const ContactKey&) const = default;
 };
+template <>
+struct NumbersOf<ContactKey> : SameNumbers<NumberType::uint64, 2> {};
 
 /// A weighted stencil: relative velocity v = sum_a weight[a] u[node[a]]. Unused places repeat node[0] with weight 0.
 struct Stencil {
     std::array<Index, 4> node;  // rows of NodeTable
     std::array<Real, 4> weight;
+};
+template <>
+struct MembersOf<Stencil> {
+    static std::span<const Member> list();
 };
 
 /// What find_contacts writes of one contact, all at once.

@@ -9,12 +9,15 @@
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/joint_kind.h"
+#include "components/row_type.h"
 #include "components/types.h"
 
 namespace skerry {
 
 /// What drives the axis of a hinge or a slider: nothing, towards a speed, or towards a position.
 enum class JointDrive : std::uint8_t { none, speed, position };
+template <>
+inline constexpr std::uint64_t value_count<JointDrive> = 3;
 
 struct JointMotorRow {
     Real target = 0;      // rad/s or m/s; rad or m
@@ -23,12 +26,16 @@ struct JointMotorRow {
 
     bool operator==(const JointMotorRow&) const = default;
 };
+template <>
+struct NumbersOf<JointMotorRow> : Reals<3> {};
 
 /// Where a joint sits on a body, or in the world: its origin, and its axis as the third of the frame.
 struct JointFrame {
     Vec3 point = Vec3::Zero();  // m, in the frame of the mesh, or the world
     Mat3 axes = Mat3::Identity();
 };
+template <>
+struct NumbersOf<JointFrame> : Reals<12> {};
 
 /// The relative coordinate is the angle of a hinge (rad) or the way of a slider (m), zero where the joint was made.
 struct JointTable {

@@ -6,6 +6,7 @@
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/options.h"
+#include "components/row_type.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -21,10 +22,16 @@ struct MaterialConstants {
 
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
+template <>
+struct MembersOf<MaterialConstants> {
+    static std::span<const Member> list();
+};
 
 /// Which part of the stress an element gives: all of it, what goes with one of Lame's constants alone, or what keeps a
 /// tetrahedron from turning over, which no other element has.
 enum class ElementPart : std::uint8_t { whole, shear, volume, guard };
+template <>
+inline constexpr std::uint64_t value_count<ElementPart> = 4;
 
 /// Pa, of the law of guards, over the modulus lambda + 2 mu of the material.
 inline constexpr Real guard_modulus = 5;
@@ -51,6 +58,8 @@ struct SurfaceProperties {
 
     bool operator==(const SurfaceProperties&) const = default;
 };
+template <>
+struct NumbersOf<SurfaceProperties> : Reals<3> {};
 
 struct MaterialTable {
     Column<MaterialConstants> constants;

@@ -11,6 +11,7 @@
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/contact_table.h"
+#include "components/row_type.h"
 #include "components/types.h"
 
 namespace skerry {
@@ -22,11 +23,19 @@ struct Candidate {
     Index first;            // vertex, or edge of the first body
     Index second;           // triangle, edge, or collider
 };
+template <>
+struct MembersOf<Candidate> {
+    static std::span<const Member> list();
+};
 
 enum class PairKind : std::uint8_t { bodies, collider, self };
+template <>
+inline constexpr std::uint64_t value_count<PairKind> = 3;
 
 /// Whether the surfaces of a pair are known not to go through each other.
 enum class PairState : std::uint8_t { unknown, apart, overlapping };
+template <>
+inline constexpr std::uint64_t value_count<PairState> = 3;
 
 /// Place in the concatenated candidate lists.
 struct CandidatePlace {

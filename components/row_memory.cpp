@@ -1,7 +1,10 @@
 #include "components/row_memory.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <new>
+#include <utility>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -33,6 +36,61 @@ void* allocate_rows(std::size_t bytes) {
 
 void free_rows(void* memory) noexcept {
     ::operator delete (memory, std::align_val_t{row_alignment});
+}
+
+void RowMemory::move_to_room_for(std::size_t count, std::size_t row_bytes) {
+    if (count > static_cast<std::size_t>(PTRDIFF_MAX) / row_bytes) throw std::bad_array_new_length();
+    void* const memory = allocate_rows(count * row_bytes);
+    if (size_ > 0) std::memcpy(memory, rows_, size_ * row_bytes);
+    free_rows(rows_);
+    rows_ = memory;
+    capacity_ = count;
+}
+
+void RowMemory::reserve(std::size_t count, std::size_t row_bytes) {
+    if (count > capacity_) move_to_room_for(count, row_bytes);
+}
+
+void RowMemory::make_room(std::size_t more, std::size_t row_bytes) {
+    if (more > capacity_ - size_) move_to_room_for(size_ + std::max(size_, more), row_bytes);
+}
+
+void RowMemory::copy(const RowMemory& other, std::size_t row_bytes) {
+    if (this == &other) return;
+    if (other.size_ > capacity_) {
+        RowMemory larger;
+        larger.reserve(other.size_, row_bytes);
+        swap(larger);
+    }
+    size_ = other.size_;
+    if (size_ > 0) std::memcpy(rows_, other.rows_, size_ * row_bytes);
+}
+
+void RowMemory::swap(RowMemory& other) noexcept {
+    std::swap(rows_, other.rows_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+}
+
+void RowMemory::erase(std::span<const Range> gone, std::size_t row_bytes) {
+    const auto place = [&](Index row) { return std::min(static_cast<std::size_t>(row), size_); };
+    if (gone.empty() || place(gone.front().begin) == size_) return;
+    auto* const rows = static_cast<std::byte*>(rows_);
+    std::size_t to = place(gone.front().begin);
+    for (std::size_t i = 0; i < gone.size(); ++i) {
+        const std::size_t from = place(gone[i].end), end = i + 1 < gone.size() ? place(gone[i + 1].begin) : size_;
+        if (from == end) continue;
+        std::memmove(rows + to * row_bytes, rows + from * row_bytes, (end - from) * row_bytes);
+        to += end - from;
+    }
+    size_ = to;
+}
+
+void RowMemory::erase(std::size_t first, std::size_t count, std::size_t row_bytes) {
+    auto* const to = static_cast<std::byte*>(rows_) + first * row_bytes;
+    if (const std::size_t left = size_ - first - count; left > 0)
+        std::memmove(to, to + count * row_bytes, left * row_bytes);
+    size_ -= count;
 }
 
 }  // namespace skerry

@@ -24,6 +24,24 @@ hid_t open_file(const std::filesystem::path& path, const std::string& expected) 
 
 }  // namespace
 
+hid_t hdf5_type(NumberType type) {
+    switch (type) {
+        case NumberType::real:
+            return H5T_NATIVE_DOUBLE;
+        case NumberType::int32:
+            return H5T_NATIVE_INT32;
+        case NumberType::uint8:
+            return H5T_NATIVE_UINT8;
+        case NumberType::uint16:
+            return H5T_NATIVE_UINT16;
+        case NumberType::uint32:
+            return H5T_NATIVE_UINT32;
+        case NumberType::uint64:
+            return H5T_NATIVE_UINT64;
+    }
+    return H5I_INVALID_HID;
+}
+
 Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expected)
     : name_(path.string()), file_(open_file(path, expected), H5Fclose) {}
 

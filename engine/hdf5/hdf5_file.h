@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "components/row_type.h"
 #include "components/types.h"
 #include "jobs/function_ref.h"
 #include "skerry/error.h"
@@ -47,6 +48,9 @@ private:
     H5E_auto2_t handler_ = nullptr;
     void* data_ = nullptr;
 };
+
+/// The type of HDF5 that such numbers have in memory and in files.
+hid_t hdf5_type(NumberType type);
 
 /// An open file. Paths are absolute, "/group/field". All reading throws SceneError on what is missing or of another
 /// kind.

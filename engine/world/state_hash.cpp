@@ -4,6 +4,7 @@
 #include <numeric>
 #include <vector>
 
+#include "components/check.h"
 #include "components/hash.h"
 
 namespace skerry {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr std::uint32_t nothing = 0xffffffffu;
 
-// Rows of tables have no bytes between their fields, but for two.
 template <class T>
 void add_rows(Hash& hash, std::span<const T> rows) {
     hash.add(rows.data(), rows.size_bytes());
@@ -21,27 +21,33 @@ template <class T>
 void add_row(Hash& hash, const T& row) {
     hash.add(&row, sizeof row);
 }
-void add_row(Hash& hash, const MaterialConstants& row) {
-    static_assert(sizeof row == 6 * sizeof(Real), "a field is not hashed");
-    hash.add(static_cast<std::uint64_t>(row.model));
-    for (Real number : {row.shear_modulus, row.lame_lambda, row.density, row.loss_factor, row.bulk_viscosity})
-        add_row(hash, number);
+/// A struct may have bytes between its members, which are not hashed. Its enums count as numbers of 64 bits.
+void add_members(Hash& hash, const RowType& type, const std::byte* row) {
+    for (const Member& member : type.members()) {
+        const std::byte* const place = row + member.offset;
+        if (member.type->values > 0)
+            hash.add(static_cast<std::uint64_t>(number_at(place, member.type->number)));
+        else
+            hash.add(place, member.type->bytes);
+    }
 }
-void add_rows(Hash& hash, std::span<const MaterialConstants> rows) {
-    for (const MaterialConstants& row : rows) add_row(hash, row);
-}
-void add_row(Hash& hash, const ColliderGeometry& row) {
-    hash.add(static_cast<std::uint64_t>(row.shape));
-    add_row(hash, row.size);
+
+void add_rows(Hash& hash, AnyColumn column, std::size_t first, std::size_t count) {
+    const RowType& type = column.type();
+    SKERRY_CHECK(first + count <= column.size());
+    const std::byte* const rows = column.read() + first * type.bytes;
+    if (type.members == nullptr)
+        hash.add(rows, count * type.bytes);
+    else
+        for (std::size_t i = 0; i < count; ++i) add_members(hash, type, rows + i * type.bytes);
 }
 
 /// Rows begin .. end - 1 of every column that is plain state.
-void add_state(Hash& hash, auto& table, Range rows) {
-    table.for_each_column([&](const char*, const auto& column, ColumnRole role) {
-        if (role != ColumnRole::state) return;
-        add_rows(hash,
-                 column.span().subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size())));
-    });
+void add_state(Hash& hash, AnyTable table, Range rows) {
+    for (const ColumnInfo& info : table.columns())
+        if (info.role == ColumnRole::state)
+            add_rows(hash, table.column(info), static_cast<std::size_t>(rows.begin),
+                     static_cast<std::size_t>(rows.size()));
 }
 
 Range single(std::size_t row) {
@@ -115,10 +121,9 @@ void add_filter(Hash& hash, const CollisionFilter& filter) {
 }
 
 /// Columns with one row per collider or attachment, but for links.
-void add_row_state(Hash& hash, auto& table, std::size_t row) {
-    table.for_each_row_column([&](const char*, const auto& column, ColumnRole role) {
-        if (role == ColumnRole::state) add_row(hash, column[row]);
-    });
+void add_row_state(Hash& hash, AnyTable table, std::size_t row) {
+    for (const ColumnInfo& info : table.columns())
+        if (info.role == ColumnRole::state && info.has_row_each) add_rows(hash, table.column(info), row, 1);
 }
 
 void add_attachment(Hash& hash, Model& model, std::size_t a) {
@@ -217,8 +222,11 @@ std::uint64_t state_hash(WorldState& world) {
     for (std::size_t a : in_slot_order(model.attachments.slot)) add_attachment(hash, model, a);
     for (std::size_t j : in_slot_order(model.joints.slot)) add_joint(hash, model, j);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
-    WarmStartTable& warm_start = world.cache.warm_start;
-    warm_start.for_each_column([&](const char*, const auto& column, ColumnRole) { add_rows(hash, column.span()); });
+    const AnyTable warm_start(world.cache.warm_start);
+    for (const ColumnInfo& info : warm_start.columns()) {
+        const AnyColumn column = warm_start.column(info);
+        add_rows(hash, column, 0, column.size());
+    }
     if (RestingContactTable& resting = world.cache.resting; !resting.empty())
         add_state(hash, resting, {0, static_cast<Index>(resting.size())});
     add_pairs(hash, model, world.cache.pairs);

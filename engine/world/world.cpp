@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "components/any_table.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
@@ -157,7 +158,7 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
     validate(material, state_->model.settings);
     MaterialTable& table = state_->model.materials;
     const std::size_t row = table.slot.size();
-    table.for_each_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
+    AnyTable(table).resize(row + 1);
     MaterialRow::of(material).write(table, row);
     const MaterialHandle handle = state_->model.material_map.insert(static_cast<Index>(row));
     table.slot[row] = handle.slot;

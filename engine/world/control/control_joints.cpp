@@ -118,7 +118,7 @@ JointHandle Joints::add(const JointSettings& joint) {
     if (first == second) refuse_joint("second", "the first body again", "another body, or none: the world");
     JointTable& table = model.joints;
     const std::size_t row = table.size();
-    table.for_each_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
+    AnyTable(table).resize(row + 1);
     const JointHandle handle = model.joint_map.insert(static_cast<Index>(row));
     const Vec3 axis = joint.axis.normalized();
     const TangentFrame tangents = tangent_frame(axis);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "components/any_table.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
@@ -30,7 +31,7 @@ Range appended(std::size_t before, std::size_t after) {
 Range append_nodes(Model& model, const NewBody& body, Index row) {
     NodeTable& nodes = model.nodes;
     const std::size_t begin = nodes.position.size(), end = begin + body.nodes.size();
-    nodes.for_each_column([end](const char*, auto& column, ColumnRole) { column.resize(end); });
+    AnyTable(nodes).resize(end);
     for (std::size_t n = begin; n < end; ++n) {
         nodes.rest_position[n] = body.nodes[n - begin];
         nodes.position[n] = nodes.displacement_origin[n] = nodes.still_position[n] =
@@ -41,7 +42,7 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     const auto looked_at = static_cast<std::size_t>(step_nodes_of(appended(begin, end), body.core_nodes).end);
     for (std::size_t first = begin; first < looked_at; first += nodes_per_block) {
         const std::size_t block = model.node_blocks.begin.size();
-        model.node_blocks.for_each_column([block](const char*, auto& column, ColumnRole) { column.resize(block + 1); });
+        AnyTable(model.node_blocks).resize(block + 1);
         model.node_blocks.begin[block] = static_cast<Index>(first);
         model.node_blocks.end[block] = static_cast<Index>(std::min<std::size_t>(first + nodes_per_block, looked_at));
         model.node_blocks.body[block] = row;
@@ -76,8 +77,7 @@ void set_masses_and_motion(Model& model, const NewBody& body, Range range) {
 
 Range append_implicit_nodes(Model& model, Index count) {
     const std::size_t begin = model.implicit_nodes.size(), end = begin + static_cast<std::size_t>(count);
-    model.implicit_nodes.for_each_column(
-        [&](const char*, auto& column, ColumnRole) { column.resize(end, Vec3::Zero()); });
+    AnyTable(model.implicit_nodes).resize(end);
     return appended(begin, end);
 }
 
@@ -162,7 +162,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     BodyTable& bodies = model.bodies;
     const std::size_t b = bodies.slot.size();
     const auto row = static_cast<Index>(b);
-    bodies.for_each_column([b](const char*, auto& column, ColumnRole) { column.resize(b + 1); });
+    AnyTable(bodies).resize(b + 1);
 
     const auto first_block = static_cast<Index>(model.node_blocks.begin.size());
     const Range nodes = append_nodes(model, body, row);

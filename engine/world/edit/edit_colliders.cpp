@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "components/any_table.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
 #include "systems/dynamics/motion/move_colliders.h"
@@ -100,7 +101,7 @@ Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<
                         const RigidPose& pose, const Motion& motion, Real now) {
     AttachmentTable& table = model.attachments;
     const std::size_t row = table.slot.size();
-    table.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
+    AnyTable(table).resize(row + 1);
     table.slot[row] = slot;
     table.body[row] = body;
     table.initial[row] = initial_of(pose, motion, now);
@@ -150,7 +151,7 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
                       const ColliderSettings& settings, Real now) {
     ColliderTable& table = model.colliders;
     const std::size_t row = table.slot.size();
-    table.for_each_row_column([row](const char*, auto& column, ColumnRole) { column.resize(row + 1); });
+    AnyTable(table).resize(row + 1);
     table.slot[row] = slot;
     table.geometry[row] = std::visit(GeometryOf{}, shape);
     const RigidPose frame = shape_frame(shape);

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "components/any_table.h"
 #include "engine/world/edit/erase_gone.h"
 #include "systems/collision/inputs/contact_key.h"
 
@@ -97,7 +98,7 @@ void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, Cont
         },
         [&](std::size_t p) { rows.renumber(p); });
     move_lists(gone, count, pairs);
-    pairs.for_each_row_column([&](const char*, auto& column, ColumnRole) { column.erase(gone); });
+    AnyTable(pairs).erase(gone);
     search.body_valid_until.erase(moves.gone.bodies);
     search.memory.rebase.erase(moves.gone.bodies);
     search.collider_valid_until.erase(moves.colliders_gone);
@@ -127,7 +128,7 @@ std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body
             contacts.second_body[c] = now(moves.body_now, contacts.second_body[c]);
             contacts.collider[c] = now(moves.collider_now, contacts.collider[c]);
         });
-    contacts.for_each_column([&](const char*, auto& column, ColumnRole) { column.erase(gone); });
+    AnyTable(contacts).erase(gone);
     return gone;
 }
 

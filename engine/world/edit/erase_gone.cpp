@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "components/any_table.h"
 #include "systems/dynamics/elements/build_elements.h"
 
 namespace skerry {
@@ -119,10 +120,6 @@ private:
     OfBodyTables<Index> down_;
 };
 
-void erase_rows(auto& table, std::span<const Range> gone) {
-    table.for_each_column([gone](const char*, auto& column, ColumnRole) { column.erase(gone); });
-}
-
 /// Takes rows out of what has one entry a row.
 template <class Record>
 void erase_records(std::span<const Index> row_now, std::vector<Record>& records) {
@@ -139,7 +136,7 @@ void erase_scripts(std::span<const Range> gone, auto& table) {
     std::ranges::sort(keys, {}, &Range::begin);
     for (const Range& of_script : keys) append_gone(of_script, merged);
     table.keyframe.erase(merged);
-    table.for_each_row_column([gone](const char*, auto& column, ColumnRole) { column.erase(gone); });
+    AnyTable(table).erase(gone);
     for (MotionScript& script : table.script) {
         script.key_begin = row_without(script.key_begin, merged);
         script.key_end = row_without(script.key_end, merged);
@@ -195,22 +192,22 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
         if (moves.body_now[b] != no_index) RowsOfBody(model, b, moves.down[b]).renumber();
     const OfBodyTables<std::vector<Range>>& gone = moves.gone;
-    erase_rows(model.nodes, gone.nodes);
-    erase_rows(model.node_blocks, gone.node_blocks);
-    erase_rows(model.tetrahedra, gone.tetrahedron_blocks);
-    erase_rows(model.elements, gone.blocks);
-    erase_rows(model.element_nodes, gone.element_nodes);
-    erase_rows(model.surface.triangles, gone.triangles);
-    erase_rows(model.surface.edges, gone.edges);
-    erase_rows(model.surface.vertices, gone.vertices);
+    AnyTable(model.nodes).erase(gone.nodes);
+    AnyTable(model.node_blocks).erase(gone.node_blocks);
+    AnyTable(model.tetrahedra).erase(gone.tetrahedron_blocks);
+    AnyTable(model.elements).erase(gone.blocks);
+    AnyTable(model.element_nodes).erase(gone.element_nodes);
+    AnyTable(model.surface.triangles).erase(gone.triangles);
+    AnyTable(model.surface.edges).erase(gone.edges);
+    AnyTable(model.surface.vertices).erase(gone.vertices);
     model.surface.vertex_triangle.erase(gone.vertex_triangles);
-    erase_rows(model.bvh, gone.bvh_nodes);
-    erase_rows(model.bvh_leaves, gone.bvh_leaves);
-    erase_rows(model.rigid_bodies, gone.rigid);
-    erase_rows(model.implicit_nodes, gone.implicit);
+    AnyTable(model.bvh).erase(gone.bvh_nodes);
+    AnyTable(model.bvh_leaves).erase(gone.bvh_leaves);
+    AnyTable(model.rigid_bodies).erase(gone.rigid);
+    AnyTable(model.implicit_nodes).erase(gone.implicit);
     for (auto rows = gone.rigid.rbegin(); rows != gone.rigid.rend(); ++rows)
         model.stiff_bodies.erase(model.stiff_bodies.begin() + rows->begin, model.stiff_bodies.begin() + rows->end);
-    erase_rows(model.bodies, gone.bodies);
+    AnyTable(model.bodies).erase(gone.bodies);
     erase_records(moves.body_now, model.body_records);
     model.body_mass.erase(gone.bodies);
     model.watch.erase(gone.bodies, gone.nodes);

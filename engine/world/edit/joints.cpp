@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "components/any_table.h"
 #include "systems/dynamics/rigid/rigid_motion.h"
 
 namespace skerry {
@@ -17,7 +18,7 @@ void erase_joints(std::span<const std::uint8_t> gone, Model& model) {
         row_now.push_back(gone[j] != 0 ? no_index : next++);
     }
     if (ranges.empty()) return;
-    model.joints.for_each_column([&](const char*, auto& column, ColumnRole) { column.erase(ranges); });
+    AnyTable(model.joints).erase(ranges);
     model.joint_map.rows_moved(row_now);
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "components/any_table.h"
 #include "systems/dynamics/implicit/free_large_step.h"
 #include "systems/dynamics/rigid/rigid_motion.h"
 
@@ -132,11 +133,8 @@ void give_nodes_velocity(Model& model, std::size_t body) {
 void append_rigid_body(Model& model, Index row, const NewBody& body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = table.size();
-    table.for_each_column([r](const char*, auto& column, ColumnRole) { column.resize(r + 1); });
+    AnyTable(table).resize(r + 1);
     model.stiff_bodies.resize(r + 1);
-    table.for_each_column([r]<class T>(const char*, Column<T>& column, ColumnRole) {
-        if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Mat3>) column[r].setZero();
-    });
     table.body[r] = row;
     table.holder[r] = no_index;
     table.large[r] = 0;

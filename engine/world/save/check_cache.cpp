@@ -45,26 +45,19 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
 
     PairTable& pairs = cache.pairs;
     const std::size_t count = pairs.size();
-    pairs.for_each_row_column([&](const char* name, auto& column, ColumnRole role) {
-        if (is_saved(role))
-            expect_size(file, std::string("/pairs/") + name, column.size(), count);
-        else
-            column.resize(count);
-    });
+    expect_one_size(file, "pairs", pairs, count);
     expect_ascending(file, "/pairs/key", pairs.key);
     expect_rows_of(file, "/pairs/first", pairs.first, bodies);
     for (std::size_t p = 0; p < count; ++p) {
         if (model.bodies.kind[pairs.first[p]] != BodyKind::deformable)
-            file.complain("/pairs/first", std::to_string(pairs.first[p]) + " at row " + std::to_string(p),
-                          "a body that deforms");
+            file.complain("/pairs/first", at_row(pairs.first[p], p), "a body that deforms");
         const bool of_collider = pairs.kind[p] == PairKind::collider;
         const Index second = pairs.second[p];
         expect_rows_of(file, "/pairs/second", {&second, 1}, of_collider ? colliders : bodies);
         if (of_collider && model.colliders.geometry[second].shape == ColliderShape::mesh)
-            file.complain("/pairs/second", std::to_string(second) + " at row " + std::to_string(p),
-                          "a collider that is no mesh");
+            file.complain("/pairs/second", at_row(second, p), "a collider that is no mesh");
         if (pairs.kind[p] == PairKind::self && second != pairs.first[p])
-            file.complain("/pairs/second", std::to_string(second) + " at row " + std::to_string(p), "the same body");
+            file.complain("/pairs/second", at_row(second, p), "the same body");
     }
 
     // either none, which starts a search, or one for each
@@ -124,8 +117,9 @@ namespace {
 
 void check_rows(const Hdf5File& file, const Model& model, const std::string& group, ContactTable& contacts) {
     const std::size_t count = contacts.size();
-    contacts.for_each_column(
-        [&](const char* name, auto& column, ColumnRole) { expect_size(file, group + name, column.size(), count); });
+    const AnyTable table(contacts);
+    for (const ColumnInfo& info : table.columns())
+        expect_size(file, group + info.name, table.column(info).size(), count);
     expect_rows_of(file, group + "first_body", contacts.first_body, model.bodies.slot.size());
     expect_rows_of(file, group + "second_body", contacts.second_body, model.bodies.slot.size(), true);
     expect_rows_of(file, group + "collider", contacts.collider, model.colliders.slot.size(), true);

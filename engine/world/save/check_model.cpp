@@ -13,21 +13,11 @@ namespace {
 
 constexpr Real unbounded = std::numeric_limits<Real>::infinity();
 
-/// All saved columns of a table have as many rows; those that are not saved get them.
-void expect_one_size(const Hdf5File& file, const std::string& table, std::size_t rows, auto&& visit_columns) {
-    visit_columns([&](const char* name, auto& column, ColumnRole role) {
-        if (is_saved(role))
-            expect_size(file, "/" + table + "/" + name, column.size(), rows);
-        else
-            column.resize(rows);
-    });
-}
-
 void check_sizes(const Hdf5File& file, Model& model) {
     const std::size_t nodes = model.nodes.position.size();
     model.nodes.rest_position.resize(nodes);
-    const auto all = [&](const char* table, auto& columns, std::size_t rows) {
-        expect_one_size(file, table, rows, [&](auto&& visit) { columns.for_each_column(visit); });
+    const auto all = [&](const char* name, AnyTable table, std::size_t rows) {
+        expect_one_size(file, name, table, rows);
     };
     all("nodes", model.nodes, nodes);
     all("node_blocks", model.node_blocks, model.node_blocks.begin.size());
@@ -39,10 +29,8 @@ void check_sizes(const Hdf5File& file, Model& model) {
     all("implicit_nodes", model.implicit_nodes, model.implicit_nodes.size());
     all("materials", model.materials, model.materials.slot.size());
     all("joints", model.joints, model.joints.size());
-    expect_one_size(file, "colliders", model.colliders.slot.size(),
-                    [&](auto&& visit) { model.colliders.for_each_row_column(visit); });
-    expect_one_size(file, "attachments", model.attachments.slot.size(),
-                    [&](auto&& visit) { model.attachments.for_each_row_column(visit); });
+    all("colliders", model.colliders, model.colliders.slot.size());
+    all("attachments", model.attachments, model.attachments.slot.size());
     expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
 }
 
@@ -142,14 +130,13 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
     const ElementBlockTable& elements = model.elements;
     const auto expect_body = [&](const char* path, Index found, std::size_t body, Index row) {
         if (found != static_cast<Index>(body))
-            file.complain(path, std::to_string(found) + " at row " + std::to_string(row),
-                          "body " + std::to_string(body) + ", whose range it is in");
+            file.complain(path, at_row(found, row), "body " + std::to_string(body) + ", whose range it is in");
     };
     const auto expect_nodes = [&](const char* path, const NodeLane& lanes, Range nodes, Index row) {
         for (const Index n : lanes.lane)
             if (n < nodes.begin || n >= nodes.end)
                 file.complain(
-                    path, "node " + std::to_string(n) + " at row " + std::to_string(row),
+                    path, "node " + at_row(n, row),
                     "a node of its body, " + std::to_string(nodes.begin) + " to " + std::to_string(nodes.end - 1));
     };
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
@@ -162,7 +149,7 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
             expect_body("/node_blocks/body", blocks.body[k], b, k);
             if (blocks.begin[k] != next || blocks.end[k] <= next || blocks.end[k] - next > nodes_per_block ||
                 blocks.end[k] > nodes.end)
-                file.complain("/node_blocks/end", std::to_string(blocks.end[k]) + " at row " + std::to_string(k),
+                file.complain("/node_blocks/end", at_row(blocks.end[k], k),
                               "blocks of at most 256 nodes that follow each other");
             next = blocks.end[k];
         }
@@ -180,7 +167,7 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
             constexpr Index fewest_nodes = 4;
             if (elements.first[e] != first || elements.count[e] < fewest_nodes ||
                 elements.count[e] > rows.end - elements.first[e])
-                file.complain("/elements/count", std::to_string(elements.count[e]) + " at row " + std::to_string(e),
+                file.complain("/elements/count", at_row(elements.count[e], e),
                               "rows of /element_nodes that follow each other, four or more");
             first += elements.count[e];
             if (!elements.opens_patch[e] && e == of_body.begin)
@@ -213,8 +200,7 @@ void check_moved(const Hdf5File& file, const Model& model) {
     for (std::size_t c = 0; c < model.colliders.slot.size(); ++c) {
         const Index body = model.colliders.body[c];
         if (body != no_index && model.bodies.collider[body] != static_cast<Index>(c))
-            file.complain("/colliders/body", std::to_string(body) + " at row " + std::to_string(c),
-                          "the body that has this collider");
+            file.complain("/colliders/body", at_row(body, c), "the body that has this collider");
     }
     check_scripts(file, "colliders", model.colliders);
     const AttachmentTable& attachments = model.attachments;
@@ -241,7 +227,7 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
                            (slots.is_collider ? lives(model.collider_map, slots.second)
                                               : lives(model.body_map, slots.second) && slots.first < slots.second);
         if (!named || (i > 0 && !(keys[i - 1] < keys[i])))
-            file.complain("/disabled_pairs/key", std::to_string(keys[i]) + " at row " + std::to_string(i),
+            file.complain("/disabled_pairs/key", at_row(std::to_string(keys[i]), i),
                           "pairs of two bodies, or of a body and a collider, that are there, ascending");
     }
 }

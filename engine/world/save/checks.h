@@ -2,10 +2,12 @@
 // Each check complains by the file, which knows its name, and by the data set.
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
+#include "components/any_table.h"
 #include "components/range.h"
 #include "engine/hdf5/hdf5_file.h"
 #include "engine/world/world_state.h"
@@ -23,47 +25,29 @@ void check_resting_contacts(const Hdf5File& file, const Model& model, RestingCon
 /// `kick`: s, of the last step.
 void check_clock(const Hdf5File& file, const Clock& clock, Real kick);
 
+/// "5 at row 7"
+std::string at_row(const std::string& found, std::size_t row);
+std::string at_row(Index found, std::size_t row);
+
 /// Columns of one table, all as long as it.
-inline void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected) {
-    if (found != expected)
-        file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", as its table has");
-}
+void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected);
+
+/// All saved columns of a table have as many rows; those that are not saved get them. Lists that rows have ranges of
+/// may have any length.
+void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows);
 
 /// Every entry is a row of something that has `count` rows; `none`: or no row.
-inline void expect_rows_of(const Hdf5File& file, const std::string& path, std::span<const Index> rows,
-                           std::size_t count, bool none = false) {
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        if ((rows[i] < 0 && !(none && rows[i] == no_index)) || rows[i] >= static_cast<Index>(count))
-            file.complain(path, std::to_string(rows[i]) + " at row " + std::to_string(i),
-                          "a row of " + std::to_string(count) + (none ? ", or -1" : ""));
-}
+void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const Index> rows, std::size_t count,
+                    bool none = false);
 
-inline void expect_between(const Hdf5File& file, const std::string& path, auto&& values, auto least, auto most) {
-    std::size_t row = 0;
-    for (const auto& value : values) {
-        if (!(value >= least && value <= most))
-            file.complain(path, std::to_string(value) + " at row " + std::to_string(row),
-                          "a number from " + std::to_string(least) + " to " + std::to_string(most));
-        ++row;
-    }
-}
+void expect_between(const Hdf5File& file, std::string_view path, std::span<const Real> values, Real least, Real most);
+void expect_between(const Hdf5File& file, std::string_view path, std::span<const Index> values, Index least,
+                    Index most);
+void expect_between(const Hdf5File& file, std::string_view path, std::span<const std::uint8_t> values,
+                    std::uint8_t least, std::uint8_t most);
 
 /// Ranges that follow each other and leave out none of `count` rows.
-inline void expect_partition(const Hdf5File& file, const std::string& path, std::span<const Range> ranges,
-                             std::size_t count) {
-    Index end = 0;
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-        if (ranges[i].begin != end || ranges[i].end < end)
-            file.complain(path,
-                          std::to_string(ranges[i].begin) + " to " + std::to_string(ranges[i].end) + " at row " +
-                              std::to_string(i),
-                          "a range that begins at " + std::to_string(end) + ", where the one before ends");
-        end = ranges[i].end;
-    }
-    if (end != static_cast<Index>(count))
-        file.complain(path, "ranges that end at " + std::to_string(end),
-                      std::to_string(count) + ", the rows there are");
-}
+void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count);
 
 inline std::span<const Index> part(std::span<const Index> rows, Range range) {
     return rows.subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));

@@ -2,7 +2,9 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <string_view>
+#include <vector>
 
 #include "engine/hdf5/hdf5_file.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -41,73 +43,92 @@ bool may_be_infinite(std::string_view path) {
 }
 
 /// The archive that reads.
-class Reader {
+class Reader final : public Archive {
 public:
     explicit Reader(const Hdf5File& file) : file_(file) {}
 
-    template <class T>
-    void column(const std::string& path, Column<T>& column) {
-        rows<T>(path, [&](std::size_t count) {
+    void column(const std::string& path, AnyColumn column) override {
+        read(path, column.type(), [&](std::size_t count) {
             column.resize(count);
-            return column.data();
-        });
-    }
-    template <class T>
-    void value(const std::string& path, T& value) {
-        rows<T>(path, [&](std::size_t count) {
-            if (count != 1) file_.complain(path, std::to_string(count) + " rows", "one");
-            return &value;
+            return column.write();
         });
     }
 
 private:
-    template <class T, class Place>
-    void rows(const std::string& path, Place&& place) {
-        if constexpr (HasMembers<T>) {
-            std::size_t count = 0;
-            bool first = true;
-            std::apply([&](const auto&... member) { (members(path, place, member, count, first), ...); },
-                       MembersOf<T>::list());
-        } else {
-            using Number = typename NumbersOf<T>::type;
-            constexpr std::size_t width = NumbersOf<T>::count;
-            Number* numbers = nullptr;
-            std::size_t count = 0;
-            file_.read_rows(path, hdf5_type<Number>(), width, [&](std::size_t found) -> void* {
-                count = found;
-                return numbers = reinterpret_cast<Number*>(place(found));
-            });
-            for (std::size_t i = 0; i < count * width; ++i) check<T>(path, numbers[i], i / width);
-        }
+    using Place = FunctionRef<std::byte*(std::size_t)>;  // makes room for so many rows
+
+    void put_value(const std::string& path, void* value, const RowType& type) override {
+        read(path, type, [&](std::size_t count) {
+            if (count != 1) file_.complain(path, std::to_string(count) + " rows", "one");
+            return static_cast<std::byte*>(value);
+        });
+    }
+    void read(const std::string& path, const RowType& type, Place place) const {
+        if (type.members == nullptr)
+            read_numbers(path, type, place);
+        else
+            read_members(path, type, place);
+    }
+    void read_numbers(const std::string& path, const RowType& type, Place place) const {
+        const std::byte* rows = nullptr;
+        std::size_t count = 0;
+        file_.read_rows(path, hdf5_type(type.number), type.width, [&](std::size_t found) -> void* {
+            count = found;
+            std::byte* const room = place(found);
+            rows = room;
+            return room;
+        });
+        check(path, type, rows, count);
     }
     /// The first member makes room for all.
-    template <class S, class T>
-    void members(const std::string& path, auto& place, const Member<S, T>& member, std::size_t& count, bool& first) {
-        const std::string of_member = path + "/" + member.name;
-        std::unique_ptr<T[]> values;
-        std::size_t found = 0;
-        rows<T>(of_member, [&](std::size_t wanted) {
-            found = wanted;
-            values = std::make_unique<T[]>(wanted);
-            return values.get();
-        });
-        if (!first && found != count) file_.complain(of_member, std::to_string(found) + " rows", std::to_string(count));
-        count = found;
-        first = false;
-        S* const into = place(count);
-        for (std::size_t i = 0; i < count; ++i) into[i].*member.place = values[i];
-    }
-    template <class T>
-    void check(const std::string& path, auto number, std::size_t row) const {
-        const auto refuse = [&](const std::string& expected) {
-            file_.complain(path, std::to_string(number) + " at row " + std::to_string(row), expected);
-        };
-        if constexpr (std::is_same_v<decltype(number), Real>) {
-            if (std::isnan(number) || (std::isinf(number) && !may_be_infinite(path))) refuse("finite numbers");
-        } else if constexpr (value_count<T> > 0) {
-            if (static_cast<std::uint64_t>(number) >= value_count<T>)
-                refuse("0 to " + std::to_string(value_count<T> - 1));
+    void read_members(const std::string& path, const RowType& type, Place place) const {
+        std::byte* rows = nullptr;
+        std::size_t count = 0;
+        bool first = true;
+        for (const Member& member : type.members()) {
+            const std::string of_member = path + "/" + member.name;
+            const std::size_t bytes = member.type->bytes;
+            std::vector<std::byte> values;
+            std::size_t found = 0;
+            read(of_member, *member.type, [&](std::size_t wanted) {
+                found = wanted;
+                values.resize(wanted * bytes);
+                return values.data();
+            });
+            if (first) {
+                count = found;
+                rows = place(count);
+                first = false;
+            }
+            if (found != count) file_.complain(of_member, std::to_string(found) + " rows", std::to_string(count));
+            for (std::size_t i = 0; i < count; ++i)
+                std::memcpy(rows + i * type.bytes + member.offset, values.data() + i * bytes, bytes);
         }
+    }
+    void check(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
+        if (type.number == NumberType::real)
+            check_reals(path, type, rows, count);
+        else if (type.values > 0)
+            check_values(path, type, rows, count);
+    }
+    void check_reals(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
+        const bool infinite = may_be_infinite(path);
+        for (std::size_t i = 0; i < count * type.width; ++i) {
+            Real number;
+            std::memcpy(&number, rows + i * sizeof number, sizeof number);
+            if (std::isnan(number) || (std::isinf(number) && !infinite))
+                refuse(path, std::to_string(number), i / type.width, "finite numbers");
+        }
+    }
+    void check_values(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
+        for (std::size_t i = 0; i < count * type.width; ++i) {
+            const std::int64_t number = number_at(rows + i * bytes_of(type.number), type.number);
+            if (static_cast<std::uint64_t>(number) >= type.values)
+                refuse(path, std::to_string(number), i / type.width, "0 to " + std::to_string(type.values - 1));
+        }
+    }
+    void refuse(const std::string& path, const std::string& found, std::size_t row, const std::string& expected) const {
+        file_.complain(path, found + " at row " + std::to_string(row), expected);
     }
 
     const Hdf5File& file_;

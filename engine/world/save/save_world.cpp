@@ -1,3 +1,4 @@
+#include <cstring>
 #include <ostream>
 #include <vector>
 
@@ -13,36 +14,30 @@ namespace skerry {
 namespace {
 
 /// The archive that writes.
-class Writer {
+class Writer final : public Archive {
 public:
     explicit Writer(Hdf5Image& image) : image_(image) {}
 
-    template <class T>
-    void column(const std::string& path, const Column<T>& column) {
-        rows(path, column.data(), column.size());
-    }
-    template <class T>
-    void value(const std::string& path, const T& value) {
-        rows(path, &value, 1);
+    void column(const std::string& path, AnyColumn column) override {
+        put_rows(path, column.type(), column.read(), column.size());
     }
 
 private:
-    template <class T>
-    void rows(const std::string& path, const T* first, std::size_t count) {
-        if constexpr (HasMembers<T>) {
-            std::apply([&](const auto&... member) { (members(path, first, count, member), ...); },
-                       MembersOf<T>::list());
-        } else {
-            using Numbers = NumbersOf<T>;
-            static_assert(sizeof(T) == Numbers::count * sizeof(typename Numbers::type), "a row with gaps");
-            image_.put_rows(path, hdf5_type<typename Numbers::type>(), count, Numbers::count, first);
-        }
+    void put_value(const std::string& path, void* value, const RowType& type) override {
+        put_rows(path, type, static_cast<const std::byte*>(value), 1);
     }
-    template <class S, class T>
-    void members(const std::string& path, const S* first, std::size_t count, const Member<S, T>& member) {
-        const auto values = std::make_unique<T[]>(count);
-        for (std::size_t i = 0; i < count; ++i) values[i] = first[i].*member.place;
-        rows(path + "/" + member.name, values.get(), count);
+    void put_rows(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) {
+        if (type.members == nullptr) {
+            image_.put_rows(path, hdf5_type(type.number), count, type.width, rows);
+            return;
+        }
+        for (const Member& member : type.members()) {
+            const std::size_t bytes = member.type->bytes;
+            std::vector<std::byte> values(count * bytes);
+            for (std::size_t i = 0; i < count; ++i)
+                std::memcpy(values.data() + i * bytes, rows + i * type.bytes + member.offset, bytes);
+            put_rows(path + "/" + member.name, *member.type, values.data(), count);
+        }
     }
 
     Hdf5Image& image_;
@@ -58,7 +53,8 @@ void save_world(WorldState& world, const SavedNote& note, const std::filesystem:
     Writer writer(image);
     list_settings(world.model.settings, saved, writer);
     list_state(world, saved, writer);
-    writer.value("/state_hash", state_hash(world));
+    std::uint64_t hash = state_hash(world);
+    writer.value("/state_hash", hash);
     image.put_text("/note", note.text);
     const std::vector<char> body = image.bytes();
     write_file(file, [&](std::ostream& out) {

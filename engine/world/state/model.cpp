@@ -36,6 +36,12 @@ ClusterInputs inputs_of_clusters(const Model& model) {
 
 }  // namespace
 
+std::vector<AnyTable> Model::tables() {
+    std::vector<AnyTable> all;
+    for_each_table([&](const char* name, auto& table) { all.emplace_back(table, name); });
+    return all;
+}
+
 void Model::set_world(std::uint32_t number) {
     material_map.set_world(number);
     body_map.set_world(number);

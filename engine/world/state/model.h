@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "components/any_table.h"
 #include "components/attachment_table.h"
 #include "components/body_table.h"
 #include "components/bvh_table.h"
@@ -174,6 +175,8 @@ struct Model {
     /// The same for all bodies, in place of what there is.
     void rebuild_outlines();
 
+    /// Those that for_each_table visits.
+    std::vector<AnyTable> tables();
     void for_each_table(auto&& visit) {
         visit("nodes", nodes);
         visit("node_blocks", node_blocks);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "components/any_table.h"
 #include "components/check.h"
 #include "systems/dynamics/elements/element_fans.h"
 
@@ -148,7 +149,7 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         return std::span<const Index>(appended.element).subspan(place, element_lanes);
     };
     const std::size_t end_block = first_block + appended.element.size() / element_lanes;
-    blocks.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(end_block); });
+    AnyTable(blocks).resize(end_block);
     std::size_t end_row = first_row;
     for (std::size_t block = first_block; block < end_block; ++block) {
         std::size_t count = 0;
@@ -158,7 +159,7 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         blocks.count[block] = static_cast<Index>(count);
         end_row += count;
     }
-    nodes.for_each_column([&](const char*, auto& column, ColumnRole) { column.resize(end_row); });
+    AnyTable(nodes).resize(end_row);
     for (std::size_t block = first_block; block < end_block; ++block) {
         const std::size_t place = (block - first_block) * element_lanes;
         const std::span<const Index> lanes = lanes_of(place);

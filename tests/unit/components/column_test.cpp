@@ -1,5 +1,6 @@
 #include "components/column.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <fstream>
@@ -144,5 +145,44 @@ TEST_CASE("spans of a column show its rows", "[unit]") {
 static_assert(!std::is_convertible_v<const Column<int>&, std::span<int>>);
 // A column of vectors is a flat array of reals, which output and snapshots rely on.
 static_assert(sizeof(Vec3) == 3 * sizeof(Real) && sizeof(Mat3) == 9 * sizeof(Real));
+
+TEST_CASE("a row of a column can be appended to it, also where that moves all rows", "[unit]") {
+    Column<int> column = counting(1);
+    for (int i = 0; i < 100; ++i) column.push_back(column[0]);
+    CHECK(column.size() == 101);
+    CHECK(std::ranges::all_of(column, [](int row) { return row == 0; }));
+    column[0] = 7;
+    column.resize(1000, column[0]);
+    CHECK(column[999] == 7);
+    column.assign(2000, column[0]);
+    CHECK(column[1999] == 7);
+}
+
+TEST_CASE("a copy of a column has its rows and keeps its own memory where they fit", "[unit]") {
+    const Column<int> five = counting(5);
+    Column<int> copy = counting(8);
+    const int* const place = copy.data();
+    copy = five;
+    CHECK(std::vector<int>(copy.begin(), copy.end()) == std::vector<int>{0, 1, 2, 3, 4});
+    CHECK(copy.data() == place);
+    copy = Column<int>(copy);
+    CHECK(copy.size() == 5);
+    const Column<int> larger = counting(50);
+    copy = larger;
+    CHECK(copy[49] == 49);
+}
+
+TEST_CASE("a column that is moved from has no rows", "[unit]") {
+    Column<int> from = counting(5);
+    const Column<int> made = std::move(from);
+    CHECK(made.size() == 5);
+    CHECK(from.size() == 0);
+    Column<int> other = counting(3), to = counting(4);
+    to = std::move(other);
+    CHECK(to.size() == 3);
+    CHECK(other.size() == 0);
+    other.push_back(1);
+    CHECK(other[0] == 1);
+}
 
 }  // namespace skerry::test::column_test

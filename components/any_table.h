@@ -1,0 +1,81 @@
+// Tables and columns whose types the caller does not know. Code that is rarely run goes over them by these, so that it
+// is compiled once and not once for every column of every table.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+#include "components/column.h"
+#include "components/column_role.h"
+#include "components/row_type.h"
+
+namespace skerry {
+
+/// Refers to a column, as a pointer does.
+class AnyColumn {
+public:
+    template <class T>
+    AnyColumn(Column<T>& column) : AnyColumn(&column.memory_, row_type<T>) {}
+    AnyColumn(RowMemory* memory, const RowType& type) : memory_(memory), type_(&type) {}
+
+    const RowType& type() const { return *type_; }
+    std::size_t size() const { return seen().size(); }
+    const std::byte* read() const { return static_cast<const std::byte*>(seen().rows()); }
+    std::byte* write() const { return static_cast<std::byte*>(changed().rows()); }
+    /// New rows are value-initialised.
+    void resize(std::size_t count) const;
+    /// As Column::erase.
+    void erase(std::span<const Range> gone) const { changed().erase(gone, type_->bytes); }
+    bool is(const void* column) const { return memory_ == column; }
+
+private:
+    const RowMemory& seen() const {
+        check_access(memory_, sizeof *memory_, false);
+        return *memory_;
+    }
+    RowMemory& changed() const {
+        check_access(memory_, sizeof *memory_, true);
+        return *memory_;
+    }
+
+    RowMemory* memory_;
+    const RowType* type_;
+};
+
+/// A column as its table registers it.
+struct ColumnInfo {
+    const char* name;
+    ColumnRole role;
+    bool has_row_each;   // false: a list that rows of the table have ranges of
+    std::size_t offset;  // bytes from the table
+    const RowType* type;
+};
+
+/// The columns of a table in the order in which it lists them. any_table.cpp has this for each table.
+template <class Table>
+std::span<const ColumnInfo> columns_of();
+
+/// Refers to a table.
+class AnyTable {
+public:
+    template <class Table>
+    requires(!std::is_same_v<Table, AnyTable>) AnyTable(Table& table, const char* name = "")
+        : name_(name), table_(reinterpret_cast<std::byte*>(&table)), columns_(columns_of<Table>()) {}
+
+    const char* name() const { return name_; }
+    std::span<const ColumnInfo> columns() const { return columns_; }
+    AnyColumn column(const ColumnInfo& info) const {
+        return {reinterpret_cast<RowMemory*>(table_ + info.offset), *info.type};
+    }
+    /// Of all columns that have one row each.
+    void resize(std::size_t rows) const;
+    void erase(std::span<const Range> gone) const;
+
+private:
+    const char* name_;
+    std::byte* table_;
+    std::span<const ColumnInfo> columns_;
+};
+
+}  // namespace skerry

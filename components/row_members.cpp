@@ -1,0 +1,82 @@
+// Members of the structs in tables whose numbers have more than one type, with their names in saved worlds.
+#include <array>
+#include <cstring>
+#include <stdexcept>
+
+#include "components/collider_table.h"
+#include "components/contact_table.h"
+#include "components/material_table.h"
+#include "components/pair_table.h"
+
+namespace skerry {
+
+namespace {
+
+template <class T>
+T copy_of(const std::byte* place) {
+    T number;
+    std::memcpy(&number, place, sizeof number);
+    return number;
+}
+
+}  // namespace
+
+std::int64_t number_at(const std::byte* place, NumberType type) {
+    switch (type) {
+        case NumberType::int32:
+            return copy_of<std::int32_t>(place);
+        case NumberType::uint8:
+            return copy_of<std::uint8_t>(place);
+        case NumberType::uint16:
+            return copy_of<std::uint16_t>(place);
+        case NumberType::uint32:
+            return copy_of<std::uint32_t>(place);
+        case NumberType::uint64:
+            return static_cast<std::int64_t>(copy_of<std::uint64_t>(place));
+        case NumberType::real:
+            break;
+    }
+    throw std::logic_error("a real is no integer");
+}
+
+std::span<const Member> MembersOf<MaterialConstants>::list() {
+    using S = MaterialConstants;
+    static_assert(sizeof(MaterialConstants) == 6 * sizeof(Real), "a member is not saved");
+    static const std::array list{Member{"model", &S::model},
+                                 Member{"shear_modulus", &S::shear_modulus},
+                                 Member{"lame_lambda", &S::lame_lambda},
+                                 Member{"density", &S::density},
+                                 Member{"loss_factor", &S::loss_factor},
+                                 Member{"bulk_viscosity", &S::bulk_viscosity}};
+    return list;
+}
+
+std::span<const Member> MembersOf<ColliderGeometry>::list() {
+    using S = ColliderGeometry;
+    static const std::array list{Member{"shape", &S::shape}, Member{"size", &S::size}};
+    return list;
+}
+
+std::span<const Member> MembersOf<MotionScript>::list() {
+    using S = MotionScript;
+    static_assert(sizeof(MotionScript) == 8 * sizeof(Real), "a member is not saved");
+    static const std::array list{Member{"velocity", &S::velocity}, Member{"angular_velocity", &S::angular_velocity},
+                                 Member{"key_begin", &S::key_begin}, Member{"key_end", &S::key_end},
+                                 Member{"start", &S::start}};
+    return list;
+}
+
+std::span<const Member> MembersOf<Stencil>::list() {
+    using S = Stencil;
+    static const std::array list{Member{"node", &S::node}, Member{"weight", &S::weight}};
+    return list;
+}
+
+std::span<const Member> MembersOf<Candidate>::list() {
+    using S = Candidate;
+    static const std::array list{Member{"feature", &S::feature}, Member{"first", &S::first},
+                                 Member{"second", &S::second}};
+    return list;
+}
+
+}  // namespace skerry

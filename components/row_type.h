@@ -1,0 +1,161 @@
+// What the rows of a column consist of, for code that does not know their type: it saves, loads, hashes, resizes or
+// erases them. A struct that tables hold has its NumbersOf or MembersOf below its definition.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <span>
+#include <type_traits>
+
+#include "components/lanes.h"
+#include "components/range.h"
+#include "components/types.h"
+
+namespace skerry {
+
+enum class NumberType : std::uint8_t { real, int32, uint8, uint16, uint32, uint64 };
+
+inline constexpr std::size_t bytes_of(NumberType type) {
+    constexpr std::array<std::size_t, 6> bytes{8, 4, 1, 2, 4, 8};
+    return bytes[static_cast<std::size_t>(type)];
+}
+
+/// The integer at a place. Throws std::logic_error for reals.
+std::int64_t number_at(const std::byte* place, NumberType type);
+
+struct Member;
+
+struct RowType {
+    std::size_t bytes;                               // of a row
+    void (*make)(void* rows, std::size_t count);     // value-initialises rows; vectors and matrices are zero
+    std::size_t width = 0;                           // numbers of a row, which have no gaps; 0: it has members
+    NumberType number = NumberType::uint8;           // of which type they are
+    std::uint64_t values = 0;                        // how many values an enum has; 0: the type is no enum
+    std::span<const Member> (*members)() = nullptr;  // null: none
+
+    /// Whether rows are known well enough to be saved.
+    bool is_known() const { return width > 0 || members != nullptr; }
+};
+
+/// A row consists of `n` numbers of one type.
+template <NumberType type, std::size_t n>
+struct SameNumbers {
+    static constexpr NumberType number = type;
+    static constexpr std::size_t count = n;
+};
+template <std::size_t n>
+using Reals = SameNumbers<NumberType::real, n>;
+
+template <class T>
+struct NumbersOf;
+template <>
+struct NumbersOf<Real> : Reals<1> {};
+template <class T>
+requires(std::is_integral_v<T> && (std::is_unsigned_v<T> || sizeof(T) == sizeof(std::int32_t))) struct NumbersOf<T>
+    : SameNumbers<std::is_signed_v<T> ? NumberType::int32
+                  : sizeof(T) == 1    ? NumberType::uint8
+                  : sizeof(T) == 2    ? NumberType::uint16
+                  : sizeof(T) == 4    ? NumberType::uint32
+                                      : NumberType::uint64,
+                  1> {
+};
+template <class E>
+requires std::is_enum_v<E>
+struct NumbersOf<E> : NumbersOf<std::underlying_type_t<E>> {
+};
+template <int rows, int columns>
+struct NumbersOf<Eigen::Matrix<Real, rows, columns>> : Reals<std::size_t{rows * columns}> {};
+template <class T>
+concept HasNumbers = requires {
+    NumbersOf<T>::count;
+};
+template <HasNumbers T, std::size_t n>
+struct NumbersOf<std::array<T, n>> : SameNumbers<NumbersOf<T>::number, n * NumbersOf<T>::count> {};
+template <HasNumbers T, int n>
+struct NumbersOf<Lanes<T, n>> : SameNumbers<NumbersOf<T>::number, std::size_t{n} * NumbersOf<T>::count> {};
+template <>
+struct NumbersOf<Range> : SameNumbers<NumberType::int32, 2> {};
+
+/// A struct whose numbers have more than one type: `list()` returns an array of its Members.
+template <class S>
+struct MembersOf;
+
+template <class Enum>
+struct EnumNames;
+
+/// How many values an enum has, from 0 on. 0: no enum, or one whose numbers are not checked.
+template <class T>
+inline constexpr std::uint64_t value_count = 0;
+template <class E>
+requires requires {
+    EnumNames<E>::table;
+}
+inline constexpr std::uint64_t value_count<E> = EnumNames<E>::table.size();
+template <>
+inline constexpr std::uint64_t value_count<bool> = 2;
+
+namespace row_type_detail {
+
+template <class T>
+void make(void* rows, std::size_t count) {
+    T* const first = static_cast<T*>(rows);
+    for (std::size_t row = 0; row < count; ++row) {
+        if constexpr (requires { T::Zero(); })
+            ::new (static_cast<void*>(first + row)) T(T::Zero());
+        else
+            ::new (static_cast<void*>(first + row)) T();
+    }
+}
+template <class S>
+std::span<const Member> members();
+
+template <class T>
+constexpr RowType describe() {
+    RowType type{.bytes = sizeof(T), .make = make<T>};
+    if constexpr (requires { MembersOf<T>::list(); }) {
+        type.members = members<T>;
+    } else if constexpr (HasNumbers<T>) {
+        type.width = NumbersOf<T>::count;
+        type.number = NumbersOf<T>::number;
+        type.values = value_count<T>;
+        static_assert(sizeof(T) == NumbersOf<T>::count * bytes_of(NumbersOf<T>::number), "a row with gaps");
+    }
+    return type;
+}
+
+}  // namespace row_type_detail
+
+template <class T>
+inline constexpr RowType row_type = row_type_detail::describe<T>();
+
+/// One in the list of a MembersOf.
+struct Member {
+    template <class S, class T>
+    Member(const char* its_name, T S::*place) : name(its_name), offset(offset_of(place)), type(&row_type<T>) {}
+
+    const char* name;
+    std::size_t offset;  // bytes
+    const RowType* type;
+
+private:
+    template <class S, class T>
+    static std::size_t offset_of(T S::*place) {
+        alignas(S) static const std::byte row[sizeof(S)]{};
+        const auto* const of_row = &(reinterpret_cast<const S*>(row)->*place);
+        return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(of_row) - row);
+    }
+};
+
+namespace row_type_detail {
+
+template <class S>
+std::span<const Member> members() {
+    static const auto list = MembersOf<S>::list();
+    return list;
+}
+
+}  // namespace row_type_detail
+
+}  // namespace skerry

@@ -1,0 +1,76 @@
+#include "engine/world/save/checks.h"
+
+namespace skerry {
+
+namespace {
+
+template <class T>
+void expect_numbers(const Hdf5File& file, std::string_view path, std::span<const T> values, T least, T most) {
+    for (std::size_t row = 0; row < values.size(); ++row)
+        if (!(values[row] >= least && values[row] <= most))
+            file.complain(std::string(path), at_row(std::to_string(values[row]), row),
+                          "a number from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+}  // namespace
+
+std::string at_row(const std::string& found, std::size_t row) {
+    return found + " at row " + std::to_string(row);
+}
+
+std::string at_row(Index found, std::size_t row) {
+    return at_row(std::to_string(found), row);
+}
+
+void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected) {
+    if (found != expected)
+        file.complain(std::string(path), std::to_string(found) + " rows",
+                      std::to_string(expected) + ", as its table has");
+}
+
+void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows) {
+    for (const ColumnInfo& info : table.columns()) {
+        if (!info.has_row_each) continue;
+        const AnyColumn column = table.column(info);
+        if (is_saved(info.role))
+            expect_size(file, std::string("/") + name + "/" + info.name, column.size(), rows);
+        else
+            column.resize(rows);
+    }
+}
+
+void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const Index> rows, std::size_t count,
+                    bool none) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if ((rows[i] < 0 && !(none && rows[i] == no_index)) || rows[i] >= static_cast<Index>(count))
+            file.complain(std::string(path), at_row(rows[i], i),
+                          "a row of " + std::to_string(count) + (none ? ", or -1" : ""));
+}
+
+void expect_between(const Hdf5File& file, std::string_view path, std::span<const Real> values, Real least, Real most) {
+    expect_numbers(file, path, values, least, most);
+}
+void expect_between(const Hdf5File& file, std::string_view path, std::span<const Index> values, Index least,
+                    Index most) {
+    expect_numbers(file, path, values, least, most);
+}
+void expect_between(const Hdf5File& file, std::string_view path, std::span<const std::uint8_t> values,
+                    std::uint8_t least, std::uint8_t most) {
+    expect_numbers(file, path, values, least, most);
+}
+
+void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count) {
+    Index end = 0;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        if (ranges[i].begin != end || ranges[i].end < end)
+            file.complain(std::string(path),
+                          at_row(std::to_string(ranges[i].begin) + " to " + std::to_string(ranges[i].end), i),
+                          "a range that begins at " + std::to_string(end) + ", where the one before ends");
+        end = ranges[i].end;
+    }
+    if (end != static_cast<Index>(count))
+        file.complain(std::string(path), "ranges that end at " + std::to_string(end),
+                      std::to_string(count) + ", the rows there are");
+}
+
+}  // namespace skerry
