@@ -130,22 +130,22 @@ constexpr RowType describe() {
 template <class T>
 inline constexpr RowType row_type = row_type_detail::describe<T>();
 
+/// Bytes from the start of an S to a member of it.
+template <class S, class T>
+std::size_t member_offset(T S::*member) {
+    alignas(S) static const std::byte memory[sizeof(S)]{};
+    const auto* const place = &(reinterpret_cast<const S*>(memory)->*member);
+    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(place) - memory);
+}
+
 /// One in the list of a MembersOf.
 struct Member {
     template <class S, class T>
-    Member(const char* its_name, T S::*place) : name(its_name), offset(offset_of(place)), type(&row_type<T>) {}
+    Member(const char* its_name, T S::*place) : name(its_name), offset(member_offset(place)), type(&row_type<T>) {}
 
     const char* name;
     std::size_t offset;  // bytes
     const RowType* type;
-
-private:
-    template <class S, class T>
-    static std::size_t offset_of(T S::*place) {
-        alignas(S) static const std::byte row[sizeof(S)]{};
-        const auto* const of_row = &(reinterpret_cast<const S*>(row)->*place);
-        return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(of_row) - row);
-    }
 };
 
 namespace row_type_detail {

@@ -49,10 +49,12 @@ Json group_schema(const KeyGroup& group) {
 
 }  // namespace
 
-void RuleTable::add_key(std::string_view name, const KeyDoc& doc,
-                        std::function<void(const Json&, const Place&, const KeyDoc&, void* object)> read,
-                        Json (*describe)(SchemaBook&, const KeyDoc&)) {
-    keys_.push_back({std::string(name), doc, std::move(read), describe});
+RuleTable::RuleTable(std::string name, std::string meaning) : name_(std::move(name)), meaning_(std::move(meaning)) {}
+RuleTable::RuleTable(const RuleTable& other) = default;
+RuleTable::~RuleTable() = default;
+
+void RuleTable::add_key(std::string_view name, const KeyDoc& doc, std::size_t offset, const ValueFunctions& value) {
+    keys_.push_back({std::string(name), doc, offset, value});
 }
 
 void RuleTable::add_group(KeyGroup::Kind kind, std::vector<std::string> keys) {
@@ -113,14 +115,15 @@ void RuleTable::read_keys(const Json& json, const Place& place, void* object) co
     // Table order, not file order, so that of several mistakes the same one is named whatever the order of keys.
     for (const Key& key : keys_)
         for (const auto& [name, value] : json.items())
-            if (find(name) == &key) key.read(value, place.key(name), key.doc, object);
+            if (find(name) == &key)
+                key.value.read(value, place.key(name), key.doc, static_cast<std::byte*>(object) + key.offset);
 }
 
 Json RuleTable::schema(SchemaBook& book) const {
     Json schema = {{"type", "object"}, {"description", meaning_}, {"additionalProperties", false}};
     Json properties = Json::object(), required = Json::array(), all = Json::array();
     for (const Key& key : keys_) {
-        Json property = key.describe(book, key.doc);
+        Json property = key.value.describe(book, key.doc);
         std::string description(key.doc.meaning);
         if (!key.doc.unit.empty()) description.append(" [").append(key.doc.unit).append("]");
         property["description"] = std::move(description);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "components/row_type.h"
 #include "components/types.h"
 #include "engine/scene/place.h"
 
@@ -64,18 +65,23 @@ public:
     Json schema(SchemaBook& book) const;
 
 protected:
+    /// How the value of a key is read and described, whatever its type.
+    struct ValueFunctions {
+        void (*read)(const Json&, const Place&, const KeyDoc&, void* value);
+        Json (*describe)(SchemaBook&, const KeyDoc&);
+    };
     struct Key {
         std::string name;
         KeyDoc doc;
-        std::function<void(const Json&, const Place&, const KeyDoc&, void* object)> read;
-        Json (*describe)(SchemaBook&, const KeyDoc&);
+        std::size_t offset;  // of the value in the object [bytes]
+        ValueFunctions value;
     };
 
-    RuleTable(std::string name, std::string meaning) : name_(std::move(name)), meaning_(std::move(meaning)) {}
+    RuleTable(std::string name, std::string meaning);
+    RuleTable(const RuleTable& other);
+    ~RuleTable();
 
-    void add_key(std::string_view name, const KeyDoc& doc,
-                 std::function<void(const Json&, const Place&, const KeyDoc&, void* object)> read,
-                 Json (*describe)(SchemaBook&, const KeyDoc&));
+    void add_key(std::string_view name, const KeyDoc& doc, std::size_t offset, const ValueFunctions& value);
     void add_group(KeyGroup::Kind kind, std::vector<std::string> keys);
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
     /// Where the object stands, called by its own name if it has one.
@@ -94,6 +100,11 @@ private:
     std::vector<Withdrawn> withdrawn_;
 };
 
+template <class V>
+void read_value(const Json& json, const Place& place, const KeyDoc& doc, void* value) {
+    Value<V>::read(json, place, doc, *static_cast<V*>(value));
+}
+
 /// The keys of objects of type T.
 template <class T>
 class Rule : public RuleTable {
@@ -103,12 +114,7 @@ public:
 
     template <class V>
     Rule& key(std::string_view name, V T::*member, const KeyDoc& doc) {
-        add_key(
-            name, doc,
-            [member](const Json& json, const Place& place, const KeyDoc& of_key, void* object) {
-                Value<V>::read(json, place, of_key, static_cast<T*>(object)->*member);
-            },
-            [](SchemaBook& book, const KeyDoc& of_key) { return Value<V>::schema(book, of_key); });
+        add_key(name, doc, member_offset(member), {read_value<V>, Value<V>::schema});
         return *this;
     }
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }

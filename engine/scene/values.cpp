@@ -116,12 +116,82 @@ void Value<std::uint32_t>::read(const Json& json, const Place& place, const KeyD
     out = static_cast<std::uint32_t>(read_whole(json, place, doc, 0, largest));
 }
 
-int read_number_key(const std::string& key, const Place& place) {
-    int number = 0;
-    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
-    if (error != std::errc{} || end != key.data() + key.size() || std::to_string(number) != key)
-        place.refuse("the key " + in_quotes(key), "a whole number as a key, such as \"1\"");
-    return number;
+std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names) {
+    if (!json.is_string()) place.refuse(described(json), "one of " + listed(names));
+    const auto& text = json.get_ref<const std::string&>();
+    const auto found = std::ranges::find(names, text);
+    if (found == names.end()) place.refuse(in_quotes(text), "one of " + listed(names), nearest_hint(text, names));
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+void read_items(const Json& json, const Place& place, FunctionRef<void(const Json&, const Place&)> item) {
+    if (!json.is_array()) place.refuse(described(json), "a list");
+    for (std::size_t i = 0; i < json.size(); ++i) item(json[i], place.item(i));
+}
+
+void read_named(const Json& json, const Place& place, FunctionRef<bool(const std::string&)> has,
+                FunctionRef<void(const std::string&, const Json&, const Place&)> item) {
+    if (!json.is_object()) place.refuse(described(json), "an object: one key for each name");
+    for (const auto& [name, value] : json.items()) {
+        if (has(name))
+            place.key(name).refuse("the name " + in_quotes(name) + " again", "a name that no included scene has");
+        item(name, value, place.key(name));
+    }
+}
+
+void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item) {
+    if (!json.is_object()) place.refuse(described(json), "an object: one key for each number");
+    for (const auto& [key, value] : json.items()) {
+        int number = 0;
+        const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
+        if (error != std::errc{} || end != key.data() + key.size() || std::to_string(number) != key)
+            place.key(key).refuse("the key " + in_quotes(key), "a whole number as a key, such as \"1\"");
+        item(number, value, place.key(key));
+    }
+}
+
+Json text_schema() {
+    return {{"type", "string"}, {"minLength", 1}};
+}
+
+Json boolean_schema() {
+    return {{"type", "boolean"}};
+}
+
+Json enum_schema(const std::vector<std::string>& names) {
+    return {{"enum", names}};
+}
+
+Json list_schema(Json items) {
+    return {{"type", "array"}, {"items", std::move(items)}};
+}
+
+Json list_schema(Json items, std::size_t count) {
+    return {{"type", "array"}, {"items", std::move(items)}, {"minItems", count}, {"maxItems", count}};
+}
+
+Json named_schema(Json value) {
+    return {{"type", "object"}, {"additionalProperties", std::move(value)}};
+}
+
+Json numbered_schema(Json value) {
+    return {{"type", "object"},
+            {"propertyNames", {{"pattern", "^(0|-?[1-9][0-9]{0,9})$"}}},
+            {"additionalProperties", std::move(value)}};
+}
+
+Json either_schema(Json one, Json other) {
+    return {{"oneOf", Json::array({std::move(one), std::move(other)})}};
+}
+
+Json rule_schema(SchemaBook& book, const RuleTable& rule) {
+    const std::string& name = rule.name();
+    if (!book.contains(name)) {
+        book[name] = nullptr;  // taken, in case the type contains itself
+        Json definition = rule.schema(book);
+        book[name] = std::move(definition);
+    }
+    return {{"$ref", "#/$defs/" + name}};
 }
 
 void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc&, std::string& out) {
@@ -160,7 +230,7 @@ void Value<RotationRows>::read(const Json& json, const Place& place, const KeyDo
 }
 
 Json Value<RotationRows>::schema(SchemaBook& book, const KeyDoc&) {
-    return {{"type", "array"}, {"items", Value<Vec3>::schema(book, {})}, {"minItems", 3}, {"maxItems", 3}};
+    return list_schema(Value<Vec3>::schema(book, {}), 3);
 }
 
 void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& doc, Rotation& out) {
@@ -183,7 +253,7 @@ void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& d
 }
 
 Json Value<Rotation>::schema(SchemaBook& book, const KeyDoc& doc) {
-    return {{"oneOf", {Value<AxisAngle>::schema(book, doc), Value<RotationRows>::schema(book, doc)}}};
+    return either_schema(Value<AxisAngle>::schema(book, doc), Value<RotationRows>::schema(book, doc));
 }
 
 }  // namespace skerry

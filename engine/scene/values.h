@@ -10,6 +10,7 @@
 
 #include "components/options.h"
 #include "engine/scene/rules.h"
+#include "jobs/function_ref.h"
 
 namespace skerry {
 
@@ -43,11 +44,21 @@ struct RotationRows {
 
 Real read_number(const Json& json, const Place& place, const KeyDoc& doc);
 Json number_schema(const char* type, const KeyDoc& doc);
+Json text_schema();
+Json boolean_schema();
+Json enum_schema(const std::vector<std::string>& names);
+Json list_schema(Json items);
+Json list_schema(Json items, std::size_t count);
+Json named_schema(Json value);
+Json numbered_schema(Json value);
+Json either_schema(Json one, Json other);
+/// A reference to the definition of a rule, which is put into the book if it is not there.
+Json rule_schema(SchemaBook& book, const RuleTable& rule);
 
 template <>
 struct Value<bool> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, bool& out);
-    static Json schema(SchemaBook&, const KeyDoc&) { return {{"type", "boolean"}}; }
+    static Json schema(SchemaBook&, const KeyDoc&) { return boolean_schema(); }
 };
 template <>
 struct Value<Real> {
@@ -69,12 +80,12 @@ struct Value<std::uint32_t> {
 template <>
 struct Value<std::string> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, std::string& out);
-    static Json schema(SchemaBook&, const KeyDoc&) { return {{"type", "string"}, {"minLength", 1}}; }
+    static Json schema(SchemaBook&, const KeyDoc&) { return text_schema(); }
 };
 template <>
 struct Value<FilePath> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, FilePath& out);
-    static Json schema(SchemaBook&, const KeyDoc&) { return {{"type", "string"}, {"minLength", 1}}; }
+    static Json schema(SchemaBook&, const KeyDoc&) { return text_schema(); }
 };
 template <>
 struct Value<RotationRows> {
@@ -95,9 +106,7 @@ struct Value<std::array<T, N>> {
         check_count(json, place, N, "numbers");
         for (std::size_t i = 0; i < N; ++i) Value<T>::read(json[i], place.item(i), doc, out[i]);
     }
-    static Json schema(SchemaBook& book, const KeyDoc& doc) {
-        return {{"type", "array"}, {"items", Value<T>::schema(book, doc)}, {"minItems", N}, {"maxItems", N}};
-    }
+    static Json schema(SchemaBook& book, const KeyDoc& doc) { return list_schema(Value<T>::schema(book, doc), N); }
 };
 template <>
 struct Value<Vec3> {
@@ -109,6 +118,9 @@ struct Value<Vec3> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<std::array<Real, 3>>::schema(book, doc); }
 };
 
+/// Which of the names a text is.
+std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names);
+
 /// An enum by one of its names.
 template <class Enum>
 requires std::is_enum_v<Enum>
@@ -119,13 +131,9 @@ struct Value<Enum> {
         return list;
     }
     static void read(const Json& json, const Place& place, const KeyDoc&, Enum& out) {
-        if (!json.is_string()) place.refuse(described(json), "one of " + listed(names()));
-        const std::string text = json.get<std::string>();
-        const std::optional<Enum> value = from_name<Enum>(text);
-        if (!value) place.refuse(in_quotes(text), "one of " + listed(names()), nearest_hint(text, names()));
-        out = *value;
+        out = EnumNames<Enum>::table[read_name(json, place, names())].first;
     }
-    static Json schema(SchemaBook&, const KeyDoc&) { return {{"enum", names()}}; }
+    static Json schema(SchemaBook&, const KeyDoc&) { return enum_schema(names()); }
 };
 
 template <class T>
@@ -135,16 +143,17 @@ struct Value<std::optional<T>> {
     }
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<T>::schema(book, doc); }
 };
+/// Calls item(value, place) for each value of a list.
+void read_items(const Json& json, const Place& place, FunctionRef<void(const Json&, const Place&)> item);
+
 /// Appends: the lists of an included scene come first.
 template <class T>
 struct Value<std::vector<T>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, std::vector<T>& out) {
-        if (!json.is_array()) place.refuse(described(json), "a list");
-        for (std::size_t i = 0; i < json.size(); ++i) Value<T>::read(json[i], place.item(i), doc, out.emplace_back());
+        read_items(json, place,
+                   [&](const Json& value, const Place& at) { Value<T>::read(value, at, doc, out.emplace_back()); });
     }
-    static Json schema(SchemaBook& book, const KeyDoc& doc) {
-        return {{"type", "array"}, {"items", Value<T>::schema(book, doc)}};
-    }
+    static Json schema(SchemaBook& book, const KeyDoc& doc) { return list_schema(Value<T>::schema(book, doc)); }
 };
 template <class T>
 struct Value<OneOrMore<T>> {
@@ -155,43 +164,42 @@ struct Value<OneOrMore<T>> {
             Value<T>::read(json, place, doc, out.items.emplace_back());
     }
     static Json schema(SchemaBook& book, const KeyDoc& doc) {
-        return {{"oneOf", {Value<T>::schema(book, doc), Value<std::vector<T>>::schema(book, doc)}}};
+        return either_schema(Value<T>::schema(book, doc), Value<std::vector<T>>::schema(book, doc));
     }
 };
+/// Calls item(name, value, place) for each key of an object. `has` says which names there are already.
+void read_named(const Json& json, const Place& place, FunctionRef<bool(const std::string&)> has,
+                FunctionRef<void(const std::string&, const Json&, const Place&)> item);
+
 template <class T>
 struct Value<Named<T>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, Named<T>& out) {
-        if (!json.is_object()) place.refuse(described(json), "an object: one key for each name");
-        for (const auto& [name, value] : json.items()) {
-            const auto same = std::find_if(out.items.begin(), out.items.end(),
-                                           [&, &wanted = name](const auto& item) { return item.first == wanted; });
-            if (same != out.items.end())
-                place.key(name).refuse("the name " + in_quotes(name) + " again", "a name that no included scene has");
-            Value<T>::read(value, place.key(name), doc, out.items.emplace_back(name, T{}).second);
-        }
+        read_named(
+            json, place,
+            [&](const std::string& name) {
+                for (const auto& item : out.items)
+                    if (item.first == name) return true;
+                return false;
+            },
+            [&](const std::string& name, const Json& value, const Place& at) {
+                Value<T>::read(value, at, doc, out.items.emplace_back(name, T{}).second);
+            });
     }
-    static Json schema(SchemaBook& book, const KeyDoc& doc) {
-        return {{"type", "object"}, {"additionalProperties", Value<T>::schema(book, doc)}};
-    }
+    static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
 };
 
-/// The number that a key is, and nothing else: no sign but minus, no leading zeros, 32 bits.
-int read_number_key(const std::string& key, const Place& place);
+/// Calls item(number, value, place) for each key of an object. Keys are numbers and nothing else: no sign but minus, no
+/// leading zeros, 32 bits.
+void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item);
 
 template <class T>
 struct Value<ByNumber<T>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, ByNumber<T>& out) {
-        if (!json.is_object()) place.refuse(described(json), "an object: one key for each number");
-        for (const auto& [name, value] : json.items()) {
-            const int number = read_number_key(name, place.key(name));
-            Value<T>::read(value, place.key(name), doc, out.items.emplace_back(number, T{}).second);
-        }
+        read_numbered(json, place, [&](int number, const Json& value, const Place& at) {
+            Value<T>::read(value, at, doc, out.items.emplace_back(number, T{}).second);
+        });
     }
-    static Json schema(SchemaBook& book, const KeyDoc& doc) {
-        return {{"type", "object"},
-                {"propertyNames", {{"pattern", "^(0|-?[1-9][0-9]{0,9})$"}}},
-                {"additionalProperties", Value<T>::schema(book, doc)}};
-    }
+    static Json schema(SchemaBook& book, const KeyDoc& doc) { return numbered_schema(Value<T>::schema(book, doc)); }
 };
 
 /// Everything else is an object with a rule.
@@ -200,15 +208,7 @@ struct Value {
     static void read(const Json& json, const Place& place, const KeyDoc&, T& out) {
         rule_of<T>().read(json, place, out);
     }
-    static Json schema(SchemaBook& book, const KeyDoc&) {
-        const std::string& name = rule_of<T>().name();
-        if (!book.contains(name)) {
-            book[name] = nullptr;  // taken, in case the type contains itself
-            Json definition = rule_of<T>().schema(book);
-            book[name] = std::move(definition);
-        }
-        return {{"$ref", "#/$defs/" + name}};
-    }
+    static Json schema(SchemaBook& book, const KeyDoc&) { return rule_schema(book, rule_of<T>()); }
 };
 
 }  // namespace skerry
