@@ -14,7 +14,7 @@
 #include "components/pair_table.h"
 #include "components/rigid_body_table.h"
 
-using namespace skerry;
+namespace skerry::test::any_table_test {
 
 namespace {
 
@@ -126,3 +126,5 @@ TEST_CASE("integers of every type are read as they are", "[unit]") {
     CHECK(read(std::uint64_t{1} << 40, NumberType::uint64) == std::int64_t{1} << 40);
     CHECK_THROWS(read(Real{1}, NumberType::real));
 }
+
+}  // namespace skerry::test::any_table_test
