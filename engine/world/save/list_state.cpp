@@ -134,7 +134,6 @@ void list_state(WorldState& world, SavedRows& saved, Archive& archive) {
     archive.value("/clock/offset", world.clock.offset);
     archive.value("/clock/step_before", world.clock.step_before);
     archive.value("/clock/kick_before", world.clock.kick_before);
-    archive.value("/clock/cycle", world.clock.cycle);
     list_records(saved, archive);
     list_model(world.model, archive);
     list_cache(world.cache, saved, archive);
