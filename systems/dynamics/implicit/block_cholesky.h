@@ -36,8 +36,6 @@ public:
     void solve(std::span<Vec3> x) const { solve_in_place(x.data()); }
     /// The same for three columns at once.
     void solve(std::span<Mat3> x) const { solve_in_place(x.data()); }
-    /// Blocks of L, the diagonal among them.
-    std::size_t blocks() const { return row_.size() + inverse_diagonal_.size(); }
 
 private:
     template <class X>

@@ -164,8 +164,6 @@ public:
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // bytes
     std::uint64_t columns_made() const { return columns_made_; }
 
-    std::size_t factor_blocks() const { return factor_.blocks(); }
-
 private:
     template <class X>
     void take_rigid_part(std::span<X> impulse) const;
