@@ -79,13 +79,10 @@ struct ElementBlockTable {
     Column<Index> material;               // row of MaterialTable
     Column<ElementPart> part;
     Column<std::uint8_t> opens_patch;  // 1: the block is the first of a patch
-    // 1: in all lanes nodes 0, 1 and 2 are nodes 0, 1 and 3 of the block before, which is of the same patch; both have
-    // four
-    Column<std::uint8_t> continues_fan;
     // viscosity over modulus of the implicit elements of the block [s]; 0 if it has none
     Column<Real> viscous_time;
 
-    /// The only list of columns: resize, erase, hash and save walk it. Derived: continues_fan by build_patches.
+    /// The only list of columns: resize, erase, hash and save walk it.
     void for_each_column(auto&& visit) {
         visit("first", first, ColumnRole::link);
         visit("count", count, ColumnRole::state);
@@ -100,7 +97,6 @@ struct ElementBlockTable {
         visit("material", material, ColumnRole::link);
         visit("part", part, ColumnRole::state);
         visit("opens_patch", opens_patch, ColumnRole::state);
-        visit("continues_fan", continues_fan, ColumnRole::derived);
         visit("viscous_time", viscous_time, ColumnRole::state);
         visit("viscous_strain", viscous_strain, ColumnRole::state);
         visit("relaxation_rate", relaxation_rate, ColumnRole::state);

@@ -35,7 +35,7 @@ struct ImplicitElements {
                                         rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
         shape.assign(rest.begin(), rest.end());
         for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
-        const AppendedElements appended = append_elements(list, rest, BlockOrder::compact, 0, 0, table, nodes);
+        const AppendedElements appended = append_elements(list, rest, 0, 0, table, nodes);
         blocks = appended.blocks;
         covered = covered_tetrahedra(list, appended.element);
     }

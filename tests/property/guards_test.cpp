@@ -81,8 +81,7 @@ struct GuardedBody : test::ElasticBody {
         elements = {};
         element_nodes = {};
         patches = {};
-        const AppendedElements appended =
-            append_elements(list, mesh.nodes, BlockOrder::fans, 0, 0, elements, element_nodes);
+        const AppendedElements appended = append_elements(list, mesh.nodes, 0, 0, elements, element_nodes);
         blocks = appended.blocks;
         element_at = appended.element;
         start_mass_shares(inputs(), blocks, elements.mass_share);

@@ -57,8 +57,7 @@ struct ElasticBody {
         }
         append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra);
         list = elements_of({mesh.tetrahedra, mesh.nodes}, zones);
-        const AppendedElements appended =
-            append_elements(list, mesh.nodes, BlockOrder::fans, 0, 0, elements, element_nodes);
+        const AppendedElements appended = append_elements(list, mesh.nodes, 0, 0, elements, element_nodes);
         blocks = appended.blocks;
         turn_elements(rotation, blocks, elements, element_nodes);
         element_at = appended.element;
@@ -77,7 +76,6 @@ struct ElasticBody {
                 .mass_share = elements.mass_share,
                 .material = elements.material,
                 .part = elements.part,
-                .continues_fan = elements.continues_fan,
                 .constants = constants,
                 .relaxation_rate = elements.relaxation_rate,
                 .own_frequency = elements.own_frequency,

@@ -7,7 +7,6 @@
 
 #include "components/any_table.h"
 #include "components/check.h"
-#include "systems/dynamics/elements/element_fans.h"
 
 namespace skerry {
 
@@ -52,7 +51,7 @@ void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<s
 
 }  // namespace
 
-ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position, BlockOrder in_patch) {
+ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position) {
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
@@ -72,18 +71,10 @@ ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_po
     };
     const auto key = [&](Index e) { return std::pair(kind(e), list.nodes_of(static_cast<std::size_t>(e))); };
     ElementPlaces places;
-    places.order.assign(list.size(), {0, 1, 2, 3});
     std::size_t first = 0;
     for (const std::size_t size : patch_size) {
         const Order patch = Order(order).subspan(first, size);
         std::ranges::stable_sort(patch, {}, key);
-        for (std::size_t i = 0; in_patch == BlockOrder::fans && i < size;) {
-            std::size_t end = i + 1;
-            while (end < size && key(patch[end]) == key(patch[i])) ++end;
-            if (list.nodes_of(static_cast<std::size_t>(patch[i])) == 4)
-                sort_into_fans(list, patch.subspan(i, end - i), places.order);
-            i = end;
-        }
         const std::size_t first_block = places.opens_patch.size();
         for (std::size_t i = 0; i < size; ++i) {
             if (i > 0 && kind(patch[i]) != kind(patch[i - 1]))
@@ -135,9 +126,9 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
     return {first_block, static_cast<Index>(table.node.size())};
 }
 
-AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position, BlockOrder order,
-                                 Index first_node, Index body, ElementBlockTable& blocks, ElementNodeTable& nodes) {
-    return append_elements(list, find_places(list, rest_position, order), first_node, body, blocks, nodes);
+AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position, Index first_node,
+                                 Index body, ElementBlockTable& blocks, ElementNodeTable& nodes) {
+    return append_elements(list, find_places(list, rest_position), first_node, body, blocks, nodes);
 }
 
 AppendedElements append_elements(const ElementList& list, const ElementPlaces& places, Index first_node, Index body,
@@ -177,16 +168,11 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
             const bool used = lanes[l] != no_index;
             const std::size_t e = used ? static_cast<std::size_t>(lanes[l]) : leader;
             if (used) blocks.volume[block][l] = list.volume[e];
-            const std::size_t own = used ? list.nodes_of(e) : 0;
-            const auto at = [&](std::size_t k) {
-                return list.first_node[e] + (own == 4 ? std::size_t{places.order[e][k]} : k);
-            };
+            const std::size_t own = used ? list.nodes_of(e) : 0, first = list.first_node[e];
             for (std::size_t k = 0; k < count; ++k) {
-                nodes.node[row + k][l] = first_node + list.node[k < own ? at(k) : list.first_node[e]];
+                nodes.node[row + k][l] = first_node + list.node[k < own ? first + k : first];
                 if (k >= own) continue;
-                Vec3 gradient = list.gradient[at(k)];
-                if (k == 0 && own == 4)  // to the last bit, as the kernel has it
-                    gradient = -(list.gradient[at(1)] + list.gradient[at(2)] + list.gradient[at(3)]);
+                const Vec3& gradient = list.gradient[first + k];
                 for (std::size_t i = 0; i < 3; ++i)
                     nodes.gradient[row + k][i][l] = gradient[static_cast<Eigen::Index>(i)];
             }
@@ -249,13 +235,6 @@ void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragg
     items.offset[first_row] = static_cast<Index>(first_item);
 }
 
-/// Whether nodes 0, 1 and 2 of all lanes are nodes 0, 1 and 3 of the block before.
-bool continues_fan(const NodeLane* before, const NodeLane* node) {
-    for (std::size_t l = 0; l < element_lanes; ++l)
-        if (node[0][l] != before[0][l] || node[1][l] != before[1][l] || node[2][l] != before[3][l]) return false;
-    return true;
-}
-
 }  // namespace
 
 void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes,
@@ -274,12 +253,7 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
         const auto first_slot = static_cast<Index>(patches.node.size());
         const auto first_row = static_cast<std::size_t>(blocks.first[begin]);
         const auto end_row = static_cast<std::size_t>(blocks.first[end - 1] + blocks.count[end - 1]);
-        for (std::size_t b = begin; b < end; ++b) {
-            SKERRY_CHECK(blocks.body[b] == blocks.body[begin]);
-            const NodeLane* const node = nodes.node.data() + blocks.first[b];
-            blocks.continues_fan[b] = b > begin && blocks.count[b] == 4 && blocks.count[b - 1] == 4 &&
-                                      continues_fan(nodes.node.data() + blocks.first[b - 1], node);
-        }
+        for (std::size_t b = begin; b < end; ++b) SKERRY_CHECK(blocks.body[b] == blocks.body[begin]);
         // In the order of the nodes: the kernel fetches their positions from memory.
         for (std::size_t row = first_row; row < end_row; ++row)
             for (const Index n : nodes.node[row].lane)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <type_traits>
 
 #include "components/ask_for_lines.h"
 #include "components/check.h"
@@ -50,15 +49,13 @@ struct Run {
         return {patches.slot.data() + row, elements.gradient.data() + row, elements.count[block]};
     }
 
-    /// Asks for the rows of a block that is to come, of the next patch, too: what is fetched beside them, and in which
-    /// order, keeps processors from seeing that they lie one after the other. `known_rows`: of a block, without loops
-    /// then; 0: blocks tell.
-    template <int known_rows>
+    /// Prefetches the rows of a later block, which may belong to the next patch. The other loads in between keep
+    /// processors from seeing that these rows lie one after the other.
     [[gnu::always_inline]] void ask_for_one_ahead_of(std::size_t current) const {
         const std::size_t block = current + blocks_ahead;
         if (block >= elements.blocks()) return;
         const auto row = static_cast<std::size_t>(elements.first[block]);
-        const auto rows = static_cast<std::size_t>(known_rows > 0 ? known_rows : elements.count[block]);
+        const auto rows = static_cast<std::size_t>(elements.count[block]);
         ask_for_lines(elements.gradient.data() + row + 1, rows - 1);
         ask_for_lines(patches.slot.data() + row, rows);
         ask_for_lines(elements.volume.data() + block, 1);
@@ -308,108 +305,44 @@ struct Run {
     /// Dissipated energy from the sum over the elements [J]. The dashpots took that of two steps and twice the strain.
     static Real dissipated_of(const Parts<KernelReal>& sum) { return -0.25 * sum_of_parts(sum); }
 
-    [[gnu::always_inline]] void add(const LaneVec3<KernelReal>& f, const NodeLane& node, std::size_t part) const {
-        add_lanes(f, node.lane + lanes_of<KernelReal> * part, force);
-    }
-};
-
-/// How elements of any number of nodes fetch positions and add forces.
-struct AnyElements {
-    static constexpr int rows = 0;  // of a block; 0: each has its own number
-    const Run& run;
-
+    /// Deformation gradients of a block.
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
-        const BlockNodes nodes = run.nodes_of(block);
+        const BlockNodes nodes = nodes_of(block);
         Parts<LaneMat3<KernelReal>> F;
-        for (std::size_t part = 0; part < kernel_parts; ++part)
-            F[part] = deformation_gradient(nodes, part, run.position);
+        for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
         return F;
     }
 
+    /// Adds the forces of a block to its nodes. `Q`: its stress times its scale.
     [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
-        const BlockNodes nodes = run.nodes_of(block);
+        const BlockNodes nodes = nodes_of(block);
         for_each_force(Q, nodes, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
-            run.add(f, nodes.node[k], part);
+            add_lanes(f, nodes.node[k].lane + lanes_of<KernelReal> * part, force);
         });
-    }
-};
-
-/// How those of four nodes do, in fans (element_fans.h): a node is fetched and has a force added once in a fan.
-struct Fans {
-    static constexpr int rows = 4;  // of a block
-    const Run& run;
-    // what a block leaves to the one that goes on with its fan
-    Parts<Corner> corner0 = {};
-    Parts<LaneVec3<KernelReal>> edge1 = {}, edge3 = {};  // from corner 0
-    Parts<LaneVec3<KernelReal>> force0 = {}, force1 = {}, force3 = {};
-
-    bool opens(std::size_t block) const { return block == run.begin || !run.elements.continues_fan[block]; }
-    bool closes(std::size_t block) const { return block + 1 == run.end || !run.elements.continues_fan[block + 1]; }
-
-    [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) {
-        const BlockNodes nodes = run.nodes_of(block);
-        const bool first = opens(block);
-        Parts<LaneMat3<KernelReal>> F;
-        for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const auto corner = [&](std::size_t k) { return load_corner(nodes.node[k], part, run.position); };
-            LaneVec3<KernelReal> edge2 = edge3[part];
-            if (first) {
-                corner0[part] = corner(0);
-                edge1[part] = edge(corner(1), corner0[part]);
-                edge2 = edge(corner(2), corner0[part]);
-            }
-            edge3[part] = edge(corner(3), corner0[part]);
-            F[part] = gradient_of_edges(nodes, part, {edge1[part], edge2, edge3[part]});
-        }
-        return F;
-    }
-
-    [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) {
-        const BlockNodes nodes = run.nodes_of(block);
-        const bool first = opens(block);
-        Parts<LaneVec3<KernelReal>> force2;
-        for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const LaneVec3<KernelReal> f1 = force_on_node(Q[part], nodes, 1, part);
-            const LaneVec3<KernelReal> f2 = force_on_node(Q[part], nodes, 2, part);
-            const LaneVec3<KernelReal> f3 = force_on_node(Q[part], nodes, 3, part);
-            const LaneVec3<KernelReal> sum = f1 + f2 + f3;
-            if (first) force0[part] = force1[part] = force3[part] = LaneVec3<KernelReal>{};
-            force2[part] = force3[part] + f2;
-            force1[part] = force1[part] + f1;
-            force3[part] = {f3.x, f3.y, f3.z};
-            force0[part] = force0[part] - sum;
-        }
-        // all parts of a node before the next node, so that sums have one order, whatever the width of a part
-        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force2[part], nodes.node[2], part);
-        if (!closes(block)) return;
-        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force1[part], nodes.node[1], part);
-        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force3[part], nodes.node[3], part);
-        for (std::size_t part = 0; part < kernel_parts; ++part) run.add(force0[part], nodes.node[0], part);
     }
 };
 
 /// With wide registers a block is begun before the forces of the block before are added: neither waits for the other,
 /// and the stress between them is a long chain of operations that do. Narrow ones are too few to hold
-/// both. Returns what relaxes in the elements, J.
-template <class Elements>
-[[gnu::always_inline]] inline Real compute_run(const Run& run, Elements&& elements) {
+/// both. Returns the energy that the dashpots of the elements dissipate [J].
+[[gnu::always_inline]] inline Real compute_run(const Run& run) {
     constexpr bool ahead = kernel_parts == 1;
     Parts<KernelReal> relaxed{};
     with_law(run.material.model, [&](auto law) {
-        Parts<LaneMat3<KernelReal>> F = elements.fetch(run.begin);
+        Parts<LaneMat3<KernelReal>> F = run.fetch(run.begin);
         auto kept = run.kept_of(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
-            run.ask_for_one_ahead_of<std::remove_cvref_t<Elements>::rows>(block);
+            run.ask_for_one_ahead_of(block);
             const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, kept, relaxed);
             const bool goes_on = block + 1 < run.end;
             if (ahead && goes_on) {
-                F = elements.fetch(block + 1);
+                F = run.fetch(block + 1);
                 kept = run.kept_of(block + 1);  // here: a division takes long
             }
-            elements.add(block, Q);
+            run.add(block, Q);
             if (!ahead && goes_on) {
                 kept = run.kept_of(block + 1);
-                F = elements.fetch(block + 1);
+                F = run.fetch(block + 1);
             }
         }
     });
@@ -430,8 +363,7 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
 /// The first block after `begin` that is not of the same material, part and kind.
 std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     std::size_t b = begin + 1;
-    while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin] &&
-           (elements.count[b] == 4) == (elements.count[begin] == 4))
+    while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin])
         ++b;
     return b;
 }
@@ -464,8 +396,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
                 const Run run{b,        after,          elements,  elements.material_of(b),
                               kick,     kick_over_last, {x->lane}, {force->lane},
                               velocity, rotation,       next,      patches};
-                const Real relaxed =
-                    elements.count[b] == 4 ? compute_run(run, Fans{run}) : compute_run(run, AnyElements{run});
+                const Real relaxed = compute_run(run);
                 if (!patches.relaxed.empty()) patches.relaxed[p] += relaxed;
                 b = after;
             }

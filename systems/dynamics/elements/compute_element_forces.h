@@ -19,7 +19,6 @@ struct ElementInputs {
     std::span<const ElementLane> mass_share;
     std::span<const Index> material;
     std::span<const ElementPart> part;
-    std::span<const std::uint8_t> continues_fan;
     std::span<const MaterialConstants> constants;
     std::span<const Index> body = {};         // row of BodyTable, by block; may be empty if no body is left out
     std::span<const Real> viscous_time = {};  // s; empty: nothing is viscous
@@ -75,7 +74,6 @@ struct ElementInputs {
                 .mass_share = binder.read(element.mass_share),
                 .material = binder.read(element.material),
                 .part = binder.read(element.part),
-                .continues_fan = binder.read(element.continues_fan),
                 .constants = binder.read(material.constants),
                 .body = binder.read(element.body),
                 .viscous_time = binder.read(element.viscous_time),

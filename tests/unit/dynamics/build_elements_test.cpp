@@ -46,8 +46,8 @@ TEST_CASE("lanes that are left over have no volume, no gradient and a node of th
     ElementNodeTable nodes;
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 0, tetrahedra) == Range{0, 1});
     CHECK(append_tetrahedra(mesh.tetrahedra, mesh.nodes, 8, tetrahedra) == Range{1, 2});
-    CHECK(append_elements(list, mesh.nodes, BlockOrder::fans, 0, 0, elements, nodes).blocks == Range{0, 1});
-    const AppendedElements second = append_elements(list, mesh.nodes, BlockOrder::fans, 8, 1, elements, nodes);
+    CHECK(append_elements(list, mesh.nodes, 0, 0, elements, nodes).blocks == Range{0, 1});
+    const AppendedElements second = append_elements(list, mesh.nodes, 8, 1, elements, nodes);
     CHECK(second.blocks == Range{1, 2});
     CHECK(second.nodes == Range{4, 8});
     CHECK(elements.body[1] == 1);
@@ -94,7 +94,7 @@ TEST_CASE("no tetrahedra make no blocks", "[unit]") {
     ElementBlockTable elements;
     ElementNodeTable nodes;
     CHECK(append_tetrahedra({}, {}, 0, tetrahedra) == Range{0, 0});
-    CHECK(append_elements({}, {}, BlockOrder::fans, 0, 0, elements, nodes).blocks == Range{0, 0});
+    CHECK(append_elements({}, std::vector<Vec3>{}, 0, 0, elements, nodes).blocks == Range{0, 0});
     ElementPatches patches;
     build_patches(elements, 3, nodes, patches);
     CHECK(patches.blocks.empty());
@@ -166,8 +166,7 @@ TEST_CASE("patches of bodies that come one after the other, and go again, are th
     for (Index body = 0; body < 4; ++body) {
         const test::TetMesh mesh = jittered_box({3 + body, 4, 3}, 0.1, 0.1, 1);
         const ElementKind kind = body % 2 == 0 ? ElementKind::linear : ElementKind::edge_node_smoothed;
-        append_elements(elements_of({mesh.tetrahedra, mesh.nodes}, kind), mesh.nodes, BlockOrder::fans, node_count,
-                        body, blocks, nodes);
+        append_elements(elements_of({mesh.tetrahedra, mesh.nodes}, kind), mesh.nodes, node_count, body, blocks, nodes);
         node_count += static_cast<Index>(mesh.nodes.size());
         if (body == 1) ++node_count;  // a node without elements
         build_patches(blocks, static_cast<std::size_t>(node_count), nodes, grown);
