@@ -32,7 +32,6 @@ struct RegionTable {
     Column<Real> error;        // e_nat, docs/methods/errors.md 2
     Column<RegionStatus> status;
     Column<RegionShortcut> shortcut;
-    Column<Index> frozen;     // contact steps left out since nothing changed there
     Column<Real> dissipated;  // J, taken out by its contacts in this step
     Column<Real> push_work;   // J, put in by moving positions alone
     // in which they are started: large ones by predicted cost, small ones by size, single contacts last
@@ -55,7 +54,6 @@ struct RegionTable {
         visit("error", error, ColumnRole::scratch);
         visit("status", status, ColumnRole::scratch);
         visit("shortcut", shortcut, ColumnRole::scratch);
-        visit("frozen", frozen, ColumnRole::scratch);
         visit("dissipated", dissipated, ColumnRole::scratch);
         visit("push_work", push_work, ColumnRole::scratch);
         visit("order", order, ColumnRole::scratch);

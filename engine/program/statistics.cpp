@@ -127,7 +127,6 @@ Json statistics_of(const RunResult& result) {
           {"separating", r.separating},
           {"frictionless", r.frictionless},
           {"in_lanes", r.in_lanes},
-          {"frozen", r.frozen},
           {"contact_steps", r.contact_steps},
           {"swept", r.swept}}},
         {"search",

@@ -251,10 +251,9 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("skip_separating", &S::skip_separating, {.meaning = "no impulse where no contact of a region closes"})
             .key("frictionless_rows", &S::frictionless_rows,
                  {.meaning = "one row a contact instead of three where a region has no friction"})
-            .key("freeze_contacts", &S::freeze_contacts,
-                 {.meaning = "no work on contacts that have come to rest within a solve"})
             .key("small_regions_in_lanes", &S::small_regions_in_lanes,
-                 {.meaning = "regions of 2 to 12 contacts are solved eight at a time"});
+                 {.meaning = "regions of 2 to 12 contacts are solved eight at a time"})
+            .withdrawn("freeze_contacts", "delete the key: every sweep evaluates all contacts");
     return rule;
 }
 

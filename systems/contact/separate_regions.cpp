@@ -161,7 +161,6 @@ void resize_results(Index region_count, RegionTable& regions) {
     regions.error.assign(count, 0);
     regions.status.assign(count, RegionStatus::converged);
     regions.shortcut.assign(count, shortcut_none);
-    regions.frozen.assign(count, 0);
     regions.dissipated.assign(count, 0);
     regions.push_work.assign(count, 0);
     regions.order.assign(count, 0);

@@ -55,7 +55,6 @@ void make_rows(RegionTable& regions) {
     regions.error.resize(count);
     regions.status.resize(count);
     regions.shortcut.resize(count);
-    regions.frozen.resize(count);
     regions.dissipated.resize(count);
     regions.push_work.resize(count);
     regions.order.resize(count);

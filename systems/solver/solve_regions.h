@@ -1,4 +1,4 @@
-// Solves all regions of the step, concurrently (docs/methods/region_solver.md 9, docs/methods/regions.md 4).
+// Solves all regions of the step, concurrently (docs/methods/region_solver.md 8, docs/methods/regions.md 4).
 #pragma once
 
 #include <memory>

@@ -97,7 +97,7 @@ private:
         if (random_.chance(0.1)) s["relaxation"] = random_.within(0.1, 1.9);
         if (random_.chance(0.2)) s["max_strain_step"] = random_.by_decade(0.01, 1);
         for (const char* key : {"contact_budgets", "continuous_collision", "certify_warm_start", "skip_separating",
-                                "frictionless_rows", "freeze_contacts", "small_regions_in_lanes"})
+                                "frictionless_rows", "small_regions_in_lanes"})
             if (random_.chance(0.3)) s[key] = random_.chance(0.5);
         if (!s.contains("integrator") && of_long_steps_.chance(0.3))
             s["implicit_step"] = duration_ * of_long_steps_.by_decade(1e-3, 1);

@@ -216,7 +216,6 @@ struct RunCounters {
     std::uint64_t separating = 0;                         // regions whose contacts all came apart
     std::uint64_t frictionless = 0;                       // regions without friction, solved in one row a contact
     std::uint64_t in_lanes = 0;                           // regions solved side by side with others
-    std::uint64_t frozen = 0;                             // contact steps left out since nothing changed there
     std::uint64_t contact_steps = 0;                      // contacts times sweeps, of regions that were swept
     std::uint64_t swept = 0;                              // regions that needed sweeps
     std::uint64_t large_strain_steps = 0;                 // implicit bodies times steps in which their strain was large

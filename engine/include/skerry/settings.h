@@ -183,8 +183,6 @@ struct Settings {
     bool certify_warm_start = true;  // no sweep where last step's impulses still solve a region
     bool skip_separating = true;     // no impulse where no contact closes
     bool frictionless_rows = true;   // one row a contact instead of three where there is no friction
-    // no work on contacts that have come to rest within a solve; pays in no scene measured so far
-    bool freeze_contacts = false;
     // regions of 2 to 12 contacts are solved eight at a time (method ags, friction cone)
     bool small_regions_in_lanes = true;
 };

@@ -74,7 +74,6 @@ struct MembersOf<RunCounters> {
                           Member{"separating", &S::separating},
                           Member{"frictionless", &S::frictionless},
                           Member{"in_lanes", &S::in_lanes},
-                          Member{"frozen", &S::frozen},
                           Member{"contact_steps", &S::contact_steps},
                           Member{"swept", &S::swept},
                           Member{"large_strain_steps", &S::large_strain_steps},
@@ -91,7 +90,7 @@ struct MembersOf<RunCounters> {
                           Member{"start_penetration", &S::start_penetration},
                           Member{"start_gap_violation", &S::start_gap_violation}};
     }
-    static_assert(sizeof(RunCounters) == 32 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "a member is not saved");
 };
 /// All but step_size, which may be none.
 template <>
@@ -126,7 +125,6 @@ struct MembersOf<Settings> {
                           Member{"certify_warm_start", &S::certify_warm_start},
                           Member{"skip_separating", &S::skip_separating},
                           Member{"frictionless_rows", &S::frictionless_rows},
-                          Member{"freeze_contacts", &S::freeze_contacts},
                           Member{"small_regions_in_lanes", &S::small_regions_in_lanes}};
     }
     static_assert(sizeof(Settings) == 184, "a setting is not saved");

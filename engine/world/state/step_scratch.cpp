@@ -16,7 +16,6 @@ SolverSettings solver_settings(const Settings& settings) {
     solver.certify_warm_start = settings.certify_warm_start;
     solver.skip_separating = settings.skip_separating;
     solver.frictionless_rows = settings.frictionless_rows;
-    solver.freeze_contacts = settings.freeze_contacts;
     solver.small_regions_in_lanes = settings.small_regions_in_lanes;
     return solver;
 }

@@ -10,7 +10,7 @@ namespace {
 /// Without branches: which regions take a shortcut nobody can foretell, and all cores wait.
 void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
     std::uint64_t closed_form = 0, certified = 0, separating = 0, frictionless = 0, in_lanes = 0, swept = 0;
-    std::uint64_t frozen = 0, iterations = 0, unconverged = 0, contact_steps = 0;
+    std::uint64_t iterations = 0, unconverged = 0, contact_steps = 0;
     Index largest = counters.largest_region;
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const unsigned shortcut = regions.shortcut[r];
@@ -24,7 +24,6 @@ void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
         in_lanes += (shortcut & shortcut_in_lanes) != 0;
         swept += was_swept;
         contact_steps += static_cast<std::uint64_t>(was_swept) * static_cast<std::uint64_t>(size) * sweeps;
-        frozen += static_cast<std::uint64_t>(regions.frozen[r]);
         iterations += sweeps;
         unconverged += regions.status[r] == RegionStatus::iteration_limit;
         largest = std::max(largest, size);
@@ -36,7 +35,6 @@ void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
     counters.in_lanes += in_lanes;
     counters.swept += swept;
     counters.contact_steps += contact_steps;
-    counters.frozen += frozen;
     counters.iteration_sum += iterations;
     counters.unconverged += unconverged;
     counters.largest_region = largest;

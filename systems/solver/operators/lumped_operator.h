@@ -2,10 +2,8 @@
 // carries the velocities of the region's moving nodes, so that one contact step is a gather and a scatter.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -15,9 +13,6 @@
 #include "systems/solver/operators/in_order.h"
 
 namespace skerry {
-
-/// A contact that has not been looked at since the last measure of the error: its last velocity says nothing.
-inline constexpr std::uint8_t velocity_unknown = 255;
 
 /// One region; by contact: in the order of the walk. The memory belongs to the caller.
 struct LumpedMemory {
@@ -29,10 +24,6 @@ struct LumpedMemory {
     // by node of the region: previous velocities, or those of a product
     std::span<Vec4> scratch;
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
-    // by contact: sweeps without a change, at first velocity_unknown. None: no contact is frozen
-    std::span<std::uint8_t> quiet_sweeps{};
-    std::span<Vec4> last_velocity{};  // m/s, by contact, while one may rest
-    Real still = 0;                   // J, a smaller change is none
 };
 
 /// The bits of the impulses do not depend on the walk, given the order of the contacts; those of sums do.
@@ -66,13 +57,8 @@ public:
     void extrapolate(Real factor);
     Real sweep(Real relaxation);
     SweepChange accelerated_sweep(Real relaxation);
-    /// e_nat of docs/methods/errors.md 2, of all contacts: frozen ones are looked at, and go on.
+    /// e_nat of docs/methods/errors.md 2, of all contacts.
     Real error();
-    /// Contact steps left out so far.
-    Index frozen() const { return frozen_; }
-    /// Puts every impulse into its cone: the acceleration carries those of frozen contacts on without one. Returns
-    /// whether any was outside.
-    bool make_feasible() requires Walk::one_thread;
     /// A sweep's change is about the natural map of its start: worth a look once it is as small.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return memory_.contact[i].diagonal * a.dot(b); }
@@ -99,11 +85,6 @@ private:
             walk.apply(contact, impulse, velocity);
         };
     }
-    /// Counts the sweep. The first ones are not worth the bookkeeping: most solves end with them.
-    bool may_freeze() {
-        constexpr Index first_sweeps = 8;  // docs/solvers.md, "Constants"
-        return Walk::one_thread && !memory_.quiet_sweeps.empty() && ++sweeps_ > first_sweeps;
-    }
     /// The step of contact i, with copies of all it needs: a store of vectors may change whatever is in memory.
     auto step(Real relaxation) const {
         return [contact = memory_.contact.data(), velocity = memory_.velocity.data(), friction = friction_, relaxation,
@@ -111,21 +92,12 @@ private:
             return solve_contact(contact[i], friction, relaxation, velocity, impulse, apply_by(walk));
         };
     }
-    Real step_unless_frozen(std::size_t i, Real relaxation, Vec4& impulse);
-    auto step_unless_frozen(Real relaxation) {
-        return [this, relaxation](std::size_t i, Vec4& impulse) { return step_unless_frozen(i, relaxation, impulse); };
-    }
-    template <class Step>
-    Real sweep_with(const Step& step);
-    template <class Step>
-    SweepChange accelerated_sweep_with(const Step& step);
     void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     LumpedMemory memory_;
     Friction friction_;
     Real scale_;
     Walk walk_;
-    Index sweeps_ = 0, frozen_ = 0;
     // The impulses of an extrapolation wait for the next sweep, which passes over them anyway; its velocities are done.
     bool waiting_ = false;
     Real factor_ = 0;
@@ -165,93 +137,41 @@ void LumpedOperatorBy<Walk>::extrapolate(Real factor) {
 }
 
 template <RegionWalk Walk>
-template <class Step>
-Real LumpedOperatorBy<Walk>::sweep_with(const Step& step) {
-    return walk_.template sum<Real>(memory_.contact.size(), [this, step](std::size_t begin, std::size_t end) {
-        const std::span<Vec4> impulse = memory_.impulse;
-        Real change = 0;
-        for (std::size_t i = begin; i < end; ++i) change += step(i, impulse[i]);
-        return change;
-    });
-}
-
-template <RegionWalk Walk>
 Real LumpedOperatorBy<Walk>::sweep(Real relaxation) {
     settle();
-    return may_freeze() ? sweep_with(step_unless_frozen(relaxation)) : sweep_with(step(relaxation));
-}
-
-template <RegionWalk Walk>
-template <class Step>
-SweepChange LumpedOperatorBy<Walk>::accelerated_sweep_with(const Step& step) {
-    const bool waiting = std::exchange(waiting_, false);
-    return walk_.template sum<SweepChange>(memory_.contact.size(), [=, this](std::size_t begin, std::size_t end) {
-        const std::span<const LumpedContact> contact = memory_.contact;
-        const std::span<Vec4> impulse = memory_.impulse, previous = memory_.workspace[1];
-        const Real factor = factor_;
-        SweepChange sum;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (waiting) extrapolate_one(factor, impulse[i], previous[i]);
-            const Vec4 before = impulse[i];
-            const Real size = step(i, impulse[i]);
-            if (size == 0) continue;
-            sum.size += size;
-            sum.against -= contact[i].diagonal * (impulse[i] - before).dot(impulse[i] - previous[i]);
-        }
-        return sum;
-    });
+    return walk_.template sum<Real>(memory_.contact.size(),
+                                    [this, step = step(relaxation)](std::size_t begin, std::size_t end) {
+                                        const std::span<Vec4> impulse = memory_.impulse;
+                                        Real change = 0;
+                                        for (std::size_t i = begin; i < end; ++i) change += step(i, impulse[i]);
+                                        return change;
+                                    });
 }
 
 template <RegionWalk Walk>
 SweepChange LumpedOperatorBy<Walk>::accelerated_sweep(Real relaxation) {
-    return may_freeze() ? accelerated_sweep_with(step_unless_frozen(relaxation))
-                        : accelerated_sweep_with(step(relaxation));
-}
-
-template <RegionWalk Walk>
-Real LumpedOperatorBy<Walk>::step_unless_frozen(std::size_t i, Real relaxation, Vec4& impulse) {
-    constexpr std::uint8_t sweeps_to_freeze = 2, sweeps_frozen = 8;  // docs/solvers.md, "Constants"
-    std::uint8_t& quiet_sweeps = memory_.quiet_sweeps[i];
-    if (quiet_sweeps >= sweeps_to_freeze && quiet_sweeps != velocity_unknown) {
-        if (quiet_sweeps < sweeps_to_freeze + sweeps_frozen) {
-            ++quiet_sweeps;
-            ++frozen_;
-            return 0;
-        }
-        quiet_sweeps = sweeps_to_freeze - 1;  // looked at once, then frozen again
-    }
-    const LumpedContact& contact = memory_.contact[i];
-    const Vec4 u = contact_velocity(contact, memory_.velocity.data());
-    const Vec4 moved = u - memory_.last_velocity[i];
-    memory_.last_velocity[i] = u;
-    const Real size = solve_contact(contact, friction_, relaxation, memory_.velocity.data(), impulse, apply_by(walk_));
-    const bool known = quiet_sweeps != velocity_unknown;
-    const bool at_rest =
-        known && size <= memory_.still && contact.inverse_diagonal * moved.squaredNorm() <= memory_.still;
-    quiet_sweeps = at_rest ? static_cast<std::uint8_t>(quiet_sweeps + 1) : std::uint8_t{0};
-    return size;
-}
-
-template <RegionWalk Walk>
-bool LumpedOperatorBy<Walk>::make_feasible() requires Walk::one_thread {
-    settle();
-    bool changed = false;
-    for (std::size_t i = 0; i < memory_.contact.size(); ++i) {
-        const LumpedContact& contact = memory_.contact[i];
-        const Vec4 inside = project_friction(memory_.impulse[i], contact.normal, contact.friction, friction_);
-        const Vec4 change = inside - memory_.impulse[i];
-        if (change.squaredNorm() == 0) continue;
-        walk_.apply(contact, change, memory_.velocity.data());
-        memory_.impulse[i] = inside;
-        changed = true;
-    }
-    return changed;
+    const bool waiting = std::exchange(waiting_, false);
+    return walk_.template sum<SweepChange>(
+        memory_.contact.size(), [this, waiting, step = step(relaxation)](std::size_t begin, std::size_t end) {
+            const std::span<const LumpedContact> contact = memory_.contact;
+            const std::span<Vec4> impulse = memory_.impulse, previous = memory_.workspace[1];
+            const Real factor = factor_;
+            SweepChange sum;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (waiting) extrapolate_one(factor, impulse[i], previous[i]);
+                const Vec4 before = impulse[i];
+                const Real size = step(i, impulse[i]);
+                if (size == 0) continue;
+                sum.size += size;
+                sum.against -= contact[i].diagonal * (impulse[i] - before).dot(impulse[i] - previous[i]);
+            }
+            return sum;
+        });
 }
 
 template <RegionWalk Walk>
 Real LumpedOperatorBy<Walk>::error() {
     settle();
-    std::fill(memory_.quiet_sweeps.begin(), memory_.quiet_sweeps.end(), velocity_unknown);
     const Real sum = walk_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
         Real part = 0;
         for (std::size_t i = begin; i < end; ++i) {

@@ -8,8 +8,6 @@ void RegionMemory::make_room_for(std::size_t contacts, std::size_t region_nodes,
     make_room(impulse, contacts);
     make_room(push_impulse, contacts);
     make_room(push_bias, contacts);
-    make_room(quiet_sweeps, contacts);
-    make_room(last_velocity, contacts);
     make_room(node, region_nodes);
     make_room(velocity, region_nodes);
     make_room(scratch, region_nodes);
@@ -29,7 +27,6 @@ void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regi
     regions.error[number] = outcome.error;
     regions.status[number] = outcome.status;
     regions.shortcut[number] = outcome.shortcut;
-    regions.frozen[number] = outcome.frozen;
     regions.dissipated[number] = outcome.dissipated;
     regions.push_work[number] = outcome.push_work;
 }

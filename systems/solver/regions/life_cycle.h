@@ -31,7 +31,6 @@ struct RegionOutcome {
     Real error = 0;
     RegionStatus status = RegionStatus::converged;
     RegionShortcut shortcut = shortcut_none;
-    Index frozen = 0;
     Real dissipated = 0;  // J
     Real push_work = 0;   // J
 };

@@ -70,8 +70,6 @@ struct RegionMemory {
     std::array<Column<Vec4>, workspace_limit> workspace;
     Column<Real> push_impulse;  // N s, of the split impulse; before that the normal impulses of frictionless regions
     Column<Real> push_bias;     // m/s; likewise the previous ones
-    Column<std::uint8_t> quiet_sweeps;  // sweeps without a change
-    Column<Vec4> last_velocity;         // m/s
     // four places by contact: a region never has more nodes, but for those of clusters
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // m/s

@@ -16,32 +16,6 @@ SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& re
     return result;
 }
 
-/// Lets contacts rest whose change is worth no more than a tenth of their share of the tolerance
-/// (docs/methods/region_solver.md 8).
-void allow_freezing(const RegionStage& stage, RegionInOrder& region) {
-    const SolverSettings& settings = stage.settings;
-    if (!settings.freeze_contacts || settings.fixed_iterations) return;
-    const std::size_t first = static_cast<std::size_t>(region.base), count = region.row.size();
-    constexpr Real worth = 0.1;
-    const Real share = worth * region.tolerance * region.scale;
-    region.memory.still = share * share / static_cast<Real>(count);
-    region.memory.quiet_sweeps = stage.memory.quiet_sweeps.span().subspan(first, count);
-    region.memory.last_velocity = stage.memory.last_velocity.span().subspan(first, count);
-    std::fill(region.memory.quiet_sweeps.begin(), region.memory.quiet_sweeps.end(), velocity_unknown);
-}
-
-/// What is left to do after impulses were put back into their cones: nothing, as a rule.
-SolveResult without_freezing(const RegionStage& stage, RegionInOrder& region, SolveLimits limits, LumpedOperator& op,
-                             SolveResult result) {
-    result.error = op.error();
-    if (!result.converged || result.error <= limits.tolerance) return result;
-    region.memory.quiet_sweeps = {};
-    LumpedOperator awake = operator_of(stage, region);
-    limits.max_iterations = std::max(Index{1}, limits.max_iterations - result.iterations);
-    const SolveResult rest = run_method(stage.settings.method, awake, limits);
-    return {result.iterations + rest.iterations, rest.error, rest.converged};
-}
-
 }  // namespace
 
 RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, Index base) {
@@ -60,13 +34,8 @@ RegionOutcome sweep_region(const RegionStage& stage, RegionInOrder& region) {
         outcome.shortcut = shortcut_frictionless;
         return outcome;
     }
-    allow_freezing(stage, region);
     LumpedOperator op = operator_of(stage, region);
-    SolveResult result = run_method(settings.method, op, limits);
-    if (op.frozen() > 0 && op.make_feasible()) result = without_freezing(stage, region, limits, op, result);
-    RegionOutcome outcome = outcome_of(result, settings);
-    outcome.frozen = op.frozen();
-    return outcome;
+    return outcome_of(run_method(settings.method, op, limits), settings);
 }
 
 RegionOutcome solve_single(const RegionStage& stage, Index row) {

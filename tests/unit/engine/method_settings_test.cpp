@@ -95,7 +95,6 @@ TEST_CASE("the settings of a world reach its contact solver, and have the same d
     settings.certify_warm_start = expected.certify_warm_start = false;
     settings.skip_separating = expected.skip_separating = false;
     settings.frictionless_rows = expected.frictionless_rows = false;
-    settings.freeze_contacts = expected.freeze_contacts = true;
     settings.small_regions_in_lanes = expected.small_regions_in_lanes = false;
     CHECK(solver_settings(settings) == expected);
 }

@@ -113,15 +113,11 @@ TEST_CASE("withdrawn keys and values are refused with what to use instead", "[un
     });
 }
 
-TEST_CASE("withdrawn keys and values are refused with what to use instead", "[unit]") {
+TEST_CASE("a setting that froze contacts is refused with what to do instead", "[unit]") {
     check_messages({
-        {"a key",
-         scene_with(R"("settings": {"multirate": true})"),
-         {"settings.multirate: found a withdrawn key", "clusters", "\"implicit\" or \"automatic\""}},
-        {"a key that is off", scene_with(R"("settings": {"multirate": false})"), {"delete the key"}},
-        {"a value",
-         scene_with(R"("settings": {"integrator": "forward_euler"})"),
-         {"settings.integrator: found the withdrawn value \"forward_euler\"", "\"symplectic_euler\"", "\"leapfrog\""}},
+        {"settings",
+         scene_with(R"("settings": {"freeze_contacts": false})"),
+         {"settings.freeze_contacts: found a withdrawn key, expected no such key", "delete the key"}},
     });
 }
 

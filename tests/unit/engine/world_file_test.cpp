@@ -98,7 +98,7 @@ TEST_CASE("a file of another kind, or of another version, is refused by what it 
     std::vector<char> other = saved.bytes;
     const std::string name = "version 21";
     *(std::search(other.begin(), other.end(), name.begin(), name.end()) + 8) = '1';
-    CHECK_THAT(saved.refusal(other), Contains("found version 10, expected version 21"));
+    CHECK_THAT(saved.refusal(other), Contains("found version 11, expected version 21"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("something that is no file"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
     // HDF5, with the right head, but not what is expected there

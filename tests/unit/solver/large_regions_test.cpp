@@ -30,7 +30,7 @@ SolverSettings large_from(Index contacts) {
     SolverSettings settings;
     settings.parallel_region_contacts = contacts;
     // not what is compared here
-    settings.small_regions_in_lanes = settings.freeze_contacts = false;
+    settings.small_regions_in_lanes = false;
     return settings;
 }
 

@@ -70,7 +70,7 @@ TEST_CASE("one row a contact does the sweeps of three where there is no friction
         // a warm start with a part across the normal, as after a change of the friction
         if (warm) scene.impulse.assign(scene.stencil.size(), Vec3(0.05, 0.02, 0.1));
         SolverSettings off = tight();
-        off.frictionless_rows = off.freeze_contacts = false;
+        off.frictionless_rows = false;
         const SolvedScene rows = scene.solve(tight()), vectors = scene.solve(off);
         CHECK(count(rows, shortcut_frictionless) == 1);
         CHECK(count(vectors, shortcut_frictionless) == 0);
@@ -104,51 +104,11 @@ TEST_CASE("one row a contact keeps the best iterate when it does not converge, a
     CHECK(scene.solve(settings).regions.status[0] == RegionStatus::not_finite);
 }
 
-TEST_CASE("contacts freeze in a long solve, and the result stands without it", "[unit][solver]") {
-    ContactScene scene;
-    add_sheets(scene, 14, 0.5, 6);
-    SolverSettings off = tight();
-    off.freeze_contacts = false;
-    SolverSettings on = tight();
-    on.freeze_contacts = true;
-    const SolvedScene frozen = scene.solve(on), thawed = scene.solve(off);
-    CHECK(frozen.regions.frozen[0] > 0);
-    CHECK(thawed.regions.frozen[0] == 0);
-    CHECK(frozen.regions.status[0] == RegionStatus::converged);
-    CHECK(frozen.regions.error[0] <= on.tolerance);
-    CHECK(largest_difference(frozen, thawed) < allowed);
-}
-
-TEST_CASE("contacts that froze do not pull, and stay within their cones", "[unit][solver]") {
-    int frozen = 0;
-    for (unsigned seed = 1; seed <= 12; ++seed)
-        for (const Real tolerance : {1e-2, 1e-3, 1e-5}) {
-            CAPTURE(seed, tolerance);
-            ContactScene scene;
-            add_sheets(scene, 14, 0.5, seed);
-            SolverSettings settings = tight();
-            settings.freeze_contacts = true;
-            settings.tolerance = tolerance;
-            const SolvedScene solved = scene.solve(settings);
-            frozen += solved.regions.frozen[0];
-            CHECK(solved.regions.error[0] <= tolerance);
-            Real largest = 0;
-            for (const Vec3& r : solved.impulse) largest = std::max(largest, r.norm());
-            for (std::size_t k = 0; k < solved.impulse.size(); ++k) {
-                const Real normal = solved.impulse[k].dot(scene.normal[k]);
-                CHECK(normal >= -1e-14 * largest);
-                CHECK((solved.impulse[k] - normal * scene.normal[k]).norm() <= 0.5 * normal + 1e-14 * largest);
-            }
-        }
-    CHECK(frozen > 100);
-}
-
 TEST_CASE("all shortcuts off change nothing beyond the tolerance", "[unit][solver]") {
     ContactScene scene;
     for (int k = 0; k < 12; ++k) add_sheets(scene, 3 + k % 5, k % 3 == 0 ? 0 : 0.5, static_cast<unsigned>(k));
     SolverSettings off = tight();
-    off.certify_warm_start = off.skip_separating = off.frictionless_rows = off.freeze_contacts =
-        off.small_regions_in_lanes = false;
+    off.certify_warm_start = off.skip_separating = off.frictionless_rows = off.small_regions_in_lanes = false;
     CHECK(largest_difference(scene.solve(tight()), scene.solve(off)) < allowed);
 }
 
