@@ -247,7 +247,7 @@ template <class Take>
         sum[part] = on_node(1, part);
         take(Index{1}, part, sum[part]);
     }
-    const auto add = [&](Index k) {
+    const auto add = [&](Index k) __attribute__((always_inline)) {
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneVec3<KernelReal> f = on_node(k, part);
             take(k, part, f);
