@@ -17,13 +17,10 @@ enum class MaterialModel { linear, corotational, stable_neo_hookean, guard };
 /// edge_node_smoothed: the same for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a
 /// Poisson ratio of 0.25, edge_node_smoothed above (docs/methods/elasticity.md 7).
 enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
-/// cone_convex is the associated law: every contact minimises a convex energy over the cone, and what slides also lifts
-/// off at mu times its speed. A solution is found whatever mu is, but it is another model: its Coulomb error is 1e-5 to
-/// 6e-2 on most problems, 2e-1 at the worst (docs/solvers.md). For comparison, and as the last resort where Coulomb's
-/// law has no solution.
-enum class Friction { cone, pyramid, cone_convex };
-enum class ContactRegions { separate, global, paper_algorithm_1 };
-enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr, nncg, apgd, mprgp };
+/// cone: Coulomb's law. pyramid: the paper's four-sided approximation of it (docs/methods/friction.md 1.3).
+enum class Friction { cone, pyramid };
+enum class ContactRegions { separate, global };
+enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
 enum class WarmStart { off, on };
 /// What is done about bodies that overlap each other or colliders before the first step after one of them was added.
@@ -61,23 +58,21 @@ struct EnumNames<ElementKind> {
 };
 template <>
 struct EnumNames<Friction> {
-    static constexpr std::array<std::pair<Friction, std::string_view>, 3> table{{
+    static constexpr std::array<std::pair<Friction, std::string_view>, 2> table{{
         {Friction::cone, "cone"},
         {Friction::pyramid, "pyramid"},
-        {Friction::cone_convex, "cone_convex"},
     }};
 };
 template <>
 struct EnumNames<ContactRegions> {
-    static constexpr std::array<std::pair<ContactRegions, std::string_view>, 3> table{{
+    static constexpr std::array<std::pair<ContactRegions, std::string_view>, 2> table{{
         {ContactRegions::separate, "separate"},
         {ContactRegions::global, "global"},
-        {ContactRegions::paper_algorithm_1, "paper_algorithm_1"},
     }};
 };
 template <>
 struct EnumNames<SolverMethod> {
-    static constexpr std::array<std::pair<SolverMethod, std::string_view>, 10> table{{
+    static constexpr std::array<std::pair<SolverMethod, std::string_view>, 7> table{{
         {SolverMethod::automatic, "automatic"},
         {SolverMethod::ags, "ags"},
         {SolverMethod::pgs, "pgs"},
@@ -85,9 +80,6 @@ struct EnumNames<SolverMethod> {
         {SolverMethod::newton, "newton"},
         {SolverMethod::pcg_fr, "pcg_fr"},
         {SolverMethod::pcg_pr, "pcg_pr"},
-        {SolverMethod::nncg, "nncg"},
-        {SolverMethod::apgd, "apgd"},
-        {SolverMethod::mprgp, "mprgp"},
     }};
 };
 template <>
@@ -134,10 +126,37 @@ struct EnumNames<Integrator> {
     }};
 };
 
-/// Whether a method knows no friction: it is refused where there is some.
-constexpr bool needs_frictionless(SolverMethod method) {
-    return method == SolverMethod::mprgp;
-}
+/// Names that a choice had in earlier versions, each with the hint that a reader gives whoever still uses it.
+template <class Enum>
+struct RemovedNames {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 0> table{};
+};
+template <>
+struct RemovedNames<Friction> {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 1> table{{
+        {"cone_convex", "use \"cone\"; cone_convex is for comparison, in profile_solvers"},
+    }};
+};
+template <>
+struct RemovedNames<ContactRegions> {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 1> table{{
+        {"paper_algorithm_1", "use \"separate\"; the paper's Algorithm 1 is for comparison, in profile_separation"},
+    }};
+};
+template <>
+struct RemovedNames<Integrator> {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 1> table{{
+        {"forward_euler", "use \"symplectic_euler\", the default, or \"leapfrog\": forward Euler is never stable"},
+    }};
+};
+template <>
+struct RemovedNames<SolverMethod> {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 3> table{{
+        {"nncg", "use \"automatic\" or \"ags\"; nncg is for comparison, in profile_solvers"},
+        {"apgd", "use \"automatic\" or \"ags\"; apgd is for comparison, in profile_solvers"},
+        {"mprgp", "use \"automatic\" or \"ags\"; mprgp is for comparison, in profile_solvers"},
+    }};
+};
 
 /// The name of a choice, as scenes and reports write it.
 template <class Enum>
@@ -153,6 +172,14 @@ constexpr std::optional<Enum> from_name(std::string_view name) {
     for (const auto& [value, candidate] : EnumNames<Enum>::table)
         if (candidate == name) return value;
     return std::nullopt;
+}
+
+/// What to use in place of a name that was removed; empty for any other name.
+template <class Enum>
+constexpr std::string_view hint_for_removed(std::string_view name) {
+    for (const auto& [removed, hint] : RemovedNames<Enum>::table)
+        if (removed == name) return hint;
+    return {};
 }
 
 }  // namespace skerry

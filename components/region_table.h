@@ -36,8 +36,6 @@ struct RegionTable {
     Column<Real> push_work;   // J, put in by moving positions alone
     // in which they are started: large ones by predicted cost, small ones by size, single contacts last
     Column<Index> order;
-    // no two regions share a moving node; false only from paper_algorithm_1: then solved one by one
-    bool independent = true;
     bool pushed = false;  // some region wrote NodeTable::push_out
 
     std::size_t size() const { return contacts.size(); }

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace skerry::profiling {
+namespace {
+
+constexpr Real step_size = 1e-3;  // s; with gaps of zero it says nothing
+
+}  // namespace
 
 LumpedSolver::LumpedSolver(const LumpedContacts& contacts) : contacts_(contacts) {
     const std::size_t count = contacts.node.size();
@@ -24,19 +29,24 @@ void LumpedSolver::reset() {
     impulse_.assign(stencil_.size(), Vec3::Zero());
 }
 
+RegionInputs LumpedSolver::inputs() const {
+    return {.stencil = stencil_,
+            .normal = contacts_.normal,
+            .gap = none_,
+            .surface_velocity = surface_velocity_,
+            .static_friction = contacts_.friction,
+            .dynamic_friction = contacts_.friction,
+            .restitution = none_,
+            .inverse_mass = contacts_.inverse_mass,
+            .velocity = contacts_.velocity};
+}
+
 void LumpedSolver::solve(const SolverSettings& settings) {
-    constexpr Real step_size = 1e-3;  // s; with gaps of zero it says nothing
-    const RegionInputs inputs{.stencil = stencil_,
-                              .normal = contacts_.normal,
-                              .gap = none_,
-                              .surface_velocity = surface_velocity_,
-                              .static_friction = contacts_.friction,
-                              .dynamic_friction = contacts_.friction,
-                              .restitution = none_,
-                              .inverse_mass = contacts_.inverse_mass,
-                              .velocity = contacts_.velocity};
-    solve_regions(*executor_, inputs, settings, step_size, memory_, regions_,
-                  {.impulse = impulse_, .velocity_next = velocity_, .push_out = push_out_});
+    solve_regions(*executor_, inputs(), settings, step_size, memory_, regions_, outputs());
+}
+
+void LumpedSolver::solve(const SolverSettings& settings, lab::Method method) {
+    lab_.solve(*executor_, inputs(), settings, method, step_size, regions_, outputs());
 }
 
 Index LumpedSolver::most_iterations() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "profiling/lab/region_solver.h"
 #include "skerry/problem.h"
 #include "systems/contact/separate_regions.h"
 #include "systems/solver/solve_regions.h"
@@ -20,12 +21,17 @@ public:
     /// The state before a solve.
     void reset();
     void solve(const SolverSettings& settings);
+    /// The same by a method of the lab.
+    void solve(const SolverSettings& settings, lab::Method method);
 
     const std::vector<Vec3>& impulse() const { return impulse_; }  // N s, world axes
     const RegionTable& regions() const { return regions_; }
     Index most_iterations() const;
 
 private:
+    RegionInputs inputs() const;
+    RegionOutputs outputs() { return {.impulse = impulse_, .velocity_next = velocity_, .push_out = push_out_}; }
+
     LumpedContacts contacts_;
     std::vector<Stencil> stencil_;
     std::vector<Vec3> surface_velocity_, impulse_, velocity_, push_out_;
@@ -34,6 +40,7 @@ private:
     std::unique_ptr<Executor> executor_ = make_executor(Backend::serial, 1);
     SeparationMemory separation_memory_;
     SolverMemory memory_;
+    lab::RegionSolver lab_;
     RegionTable regions_;
 };
 

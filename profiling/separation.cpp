@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
         if (wanted("methods")) {
             profile_cone(options, steps);
             profile_poor_cases(options, steps);
+            profile_algorithm_1(options, steps);
         }
         std::fprintf(stderr, "\r\033[K");
         std::printf("%s\n", options.out.c_str());

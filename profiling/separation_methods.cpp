@@ -1,7 +1,11 @@
 #include <cstdio>
 #include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "profiling/generate_problem.h"
+#include "profiling/lab/solve_problem.h"
 #include "profiling/separation.h"
 
 namespace skerry::profiling {
@@ -59,14 +63,19 @@ void profile_poor_cases(const SeparationOptions& options, const std::vector<Step
     const std::vector<Case> cases = gather_cases(steps, options.quick ? 5 : 50);
     std::fprintf(stderr, "\r\033[Kpoor cases, %zu problems", cases.size());
     for (const Case& one : cases)
-        for (const Index limit : {50, 200})
-            for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
-                if (needs_frictionless(method)) continue;
-                const ProblemSolution solution =
-                    solve_problem(one.problem, {.method = method, .tolerance = 1e-6, .max_iterations = limit});
+        for (const Index limit : {50, 200}) {
+            ProblemSettings settings{.tolerance = 1e-6, .max_iterations = limit};
+            const auto write = [&](std::string_view name, const ProblemSolution& solution) {
                 csv << one.kind << ',' << one.problem.name << ',' << one.problem.contacts() << ',' << name << ','
                     << limit << ',' << solution.error << '\n';
+            };
+            for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
+                settings.method = method;
+                write(name, solve_problem(one.problem, settings));
             }
+            for (const auto& [method, name] : EnumNames<lab::Method>::table)
+                if (!lab::needs_frictionless(method)) write(name, lab::solve_problem(one.problem, method, settings));
+        }
 }
 
 }  // namespace skerry::profiling

@@ -2,10 +2,10 @@
 // iterations and errors for several tolerances (CSV). profiling/plot_solvers.py reads it.
 //
 // Contacts of lumped masses are solved twice by ours: as general blocks, as Siconos gets them, and as a step solves
-// them ("METHOD, lumped"). Ours and theirs run in the same process and in turns, on one thread, each from r = 0 until
-// its own test says that the tolerance is reached. The error in the table is measured apart, by problem_error, for
-// both. Where Siconos ends short of the tolerance by that measure, it is asked for less, so that a laxer test of its
-// own does not count against it.
+// them ("METHOD, lumped"). The methods of the lab (profiling/lab) are run in the same two ways. Ours and theirs run in
+// the same process and in turns, on one thread, each from r = 0 until its own test says that the tolerance is reached.
+// The error in the table is measured apart, by problem_error, for both. Where Siconos ends short of the tolerance by
+// that measure, it is asked for less, so that a laxer test of its own does not count against it.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,8 +17,11 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "profiling/associated.h"
+#include "profiling/lab/solve_problem.h"
 #include "profiling/lumped_solver.h"
 #include "profiling/measure.h"
 #include "profiling/siconos.h"
@@ -33,7 +36,7 @@ namespace {
 struct Options {
     std::vector<std::string> inputs;
     std::vector<std::string> scenes{"scenes/skittles.json:393,524", "scenes/bucket.json:172,688"};
-    std::string csv = "out/profiling/solvers/solvers.csv";
+    std::string csv = "out/profiling/solvers/solvers.csv", associated;
     std::vector<Real> tolerances{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
     std::vector<std::string> methods;
     Real cap = 2;  // s
@@ -48,7 +51,7 @@ enum class Owner { skerry, skerry_lumped, siconos };
 struct Contestant {
     std::string name;
     Owner owner = Owner::skerry;
-    SolverMethod method{};
+    std::variant<SolverMethod, lab::Method> method{};
     std::size_t variant = 0;
     Index most_contacts = 1 << 30;
     Index first_iterations = 20;
@@ -66,15 +69,17 @@ std::vector<Contestant> make_contestants(const Options& options) {
     const auto wanted = [&](const std::string& name) {
         return options.methods.empty() || std::ranges::find(options.methods, name) != options.methods.end();
     };
-    for (const auto& [method, name] : EnumNames<SolverMethod>::table)
-        for (const Owner owner : {Owner::skerry, Owner::skerry_lumped}) {
-            const std::string full = std::string(name) + (owner == Owner::skerry_lumped ? ", lumped" : "");
-            // Newton steps need a matrix; the lumped operator makes one only to be checked against
-            const bool sensible =
-                !needs_frictionless(method) && !(owner == Owner::skerry_lumped && method == SolverMethod::newton);
-            if (sensible && (wanted(full) || wanted(std::string(name))))
-                all.push_back({.name = full, .owner = owner, .method = method});
-        }
+    const auto add = [&](auto method, std::string_view name, Owner owner) {
+        const std::string full = std::string(name) + (owner == Owner::skerry_lumped ? ", lumped" : "");
+        if (wanted(full) || wanted(std::string(name))) all.push_back({.name = full, .owner = owner, .method = method});
+    };
+    for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
+        add(method, name, Owner::skerry);
+        // Newton steps need a matrix; the lumped operator makes one only to be checked against
+        if (method != SolverMethod::newton) add(method, name, Owner::skerry_lumped);
+    }
+    for (const auto& [method, name] : EnumNames<lab::Method>::table)
+        for (const Owner owner : {Owner::skerry, Owner::skerry_lumped}) add(method, name, owner);
     if (options.no_siconos) return all;
     const std::vector<SiconosVariant>& variants = siconos_variants();
     for (std::size_t v = 0; v < variants.size(); ++v)
@@ -100,13 +105,17 @@ struct Forms {
     std::optional<LumpedSolver> lumped;
 };
 
-Result solve_lumped(Forms& forms, SolverMethod method, Real tolerance, Index max_iterations) {
-    const SolverSettings settings{
-        .method = method, .warm_start = WarmStart::off, .tolerance = tolerance, .max_iterations = max_iterations};
+Result solve_lumped(Forms& forms, const Contestant& who, Real tolerance, Index max_iterations) {
+    SolverSettings settings{.warm_start = WarmStart::off, .tolerance = tolerance, .max_iterations = max_iterations};
+    const lab::Method* const of_lab = std::get_if<lab::Method>(&who.method);
+    if (of_lab == nullptr) settings.method = std::get<SolverMethod>(who.method);
     const double seconds = timed([&] { forms.lumped->reset(); },
                                  [&] {
                                      forms.lumped->separate();
-                                     forms.lumped->solve(settings);
+                                     if (of_lab != nullptr)
+                                         forms.lumped->solve(settings, *of_lab);
+                                     else
+                                         forms.lumped->solve(settings);
                                  });
     const RegionTable& regions = forms.lumped->regions();
     const bool finished =
@@ -121,17 +130,24 @@ Result solve(Forms& forms, const Contestant& who, Real tolerance, Index max_iter
         return {solution.seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative,
                 solution.finished};
     }
-    if (who.owner == Owner::skerry_lumped) return solve_lumped(forms, who.method, tolerance, max_iterations);
+    if (who.owner == Owner::skerry_lumped) return solve_lumped(forms, who, tolerance, max_iterations);
     ProblemSettings settings;
-    settings.method = who.method;
     settings.tolerance = tolerance;
     settings.max_iterations = max_iterations;
     const double start = cpu_seconds();
-    const ProblemSolution solution = solve_problem(forms.blocks, settings);
+    const lab::Method* const of_lab = std::get_if<lab::Method>(&who.method);
+    if (of_lab == nullptr) settings.method = std::get<SolverMethod>(who.method);
+    const ProblemSolution solution =
+        of_lab != nullptr ? lab::solve_problem(forms.blocks, *of_lab, settings) : solve_problem(forms.blocks, settings);
     const double cpu = cpu_seconds() - start;
     // A long solve is done once: then the CPU time of the call is its own, and more than it.
     const double seconds = solution.seconds < long_run ? solution.seconds : std::min(solution.seconds, cpu);
     return {seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative, solution.converged};
+}
+
+bool leaves_friction_out(const Contestant& who) {
+    const lab::Method* const of_lab = std::get_if<lab::Method>(&who.method);
+    return of_lab != nullptr && lab::needs_frictionless(*of_lab);
 }
 
 /// What stays the same for one contestant on one problem while the tolerance gets smaller.
@@ -162,10 +178,12 @@ void profile(const SolverProblem& given, const std::vector<Contestant>& contesta
              volatile std::size_t& running, std::ostream& rows) {
     const ContactProblem& problem = given.problem;
     Forms forms(given);
+    const bool frictionless = std::ranges::all_of(problem.mu, [](Real mu) { return mu == 0; });
     std::vector<Standing> standing(contestants.size());
     for (std::size_t c = 0; c < contestants.size(); ++c) {
         running = c;
-        const bool possible = contestants[c].owner != Owner::skerry_lumped || forms.lumped;
+        const bool possible = (contestants[c].owner != Owner::skerry_lumped || forms.lumped) &&
+                              (frictionless || !leaves_friction_out(contestants[c]));
         standing[c].out = !possible || problem.contacts() > contestants[c].most_contacts;
         if (!standing[c].out) standing[c].max_iterations = iterations_within(forms, contestants[c], options.cap);
     }
@@ -187,7 +205,8 @@ void profile(const SolverProblem& given, const std::vector<Contestant>& contesta
             if (seconds[c].empty()) continue;
             const bool solved = last[c].error <= tolerance;
             const bool is_default =
-                contestants[c].owner == Owner::skerry && contestants[c].method == ProblemSettings{}.method;
+                contestants[c].owner == Owner::skerry &&
+                contestants[c].method == std::variant<SolverMethod, lab::Method>(ProblemSettings{}.method);
             rows << problem.name << ',' << given.origin << ',' << problem.contacts() << ','
                  << names[static_cast<int>(contestants[c].owner)] << ",\"" << contestants[c].name << '"' << ','
                  << is_default << ',' << tolerance << ',' << median(seconds[c]) << ',' << last[c].iterations << ','
@@ -229,11 +248,14 @@ void run(const Options& options) {
     const std::filesystem::path csv_file(options.csv);
     if (csv_file.has_parent_path()) std::filesystem::create_directories(csv_file.parent_path());
     std::ofstream csv(csv_file);
+    std::optional<AssociatedTable> associated;
+    if (!options.associated.empty()) associated.emplace(options.associated, options.tolerances, options.cap);
     csv << "problem,origin,contacts,owner,method,is_default,tolerance,seconds,iterations,error,converged,finished\n";
     const TakeProblem one = [&](const SolverProblem& problem) {
         if (problem.problem.contacts() > options.most_contacts) return;
         std::fprintf(stderr, "\r\033[K%s, %d contacts", problem.problem.name.c_str(), problem.problem.contacts());
         profile_apart(problem, contestants, options, csv);
+        if (associated) associated->add(problem.problem);
     };
     read_problems(options.inputs, one);
     if (!options.no_scenes)
@@ -256,6 +278,9 @@ int main(int argc, char** argv) {
         ->check(CLI::ExistingPath);
     app.add_option("--scenes", options.scenes, "Steps of scenes, each SCENE.json:STEP,STEP...")->capture_default_str();
     app.add_option("--csv", options.csv, "Where to write")->capture_default_str();
+    app.add_option("--associated", options.associated,
+                   "Also write a table (CSV) of solutions under the associated law (cone_convex), and how far they are "
+                   "from Coulomb's");
     app.add_option("--tolerances", options.tolerances,
                    "From large to small; a method that misses one is not asked for the next")
         ->delimiter(',')

@@ -10,10 +10,8 @@
 namespace skerry {
 namespace {
 
-/// J, what the contact's reaction and velocity miss of complementarity and of friction against the slip. The associated
-/// law wants r . u = 0.
+/// J, what the contact's reaction and velocity miss of complementarity and of friction against the slip.
 Real coulomb_gap(const Vec3& r, const Vec3& u, Real mu, Friction friction) {
-    if (friction == Friction::cone_convex) return r.dot(u);
     const Real slip = friction == Friction::cone ? std::hypot(u[1], u[2]) : std::abs(u[1]) + std::abs(u[2]);
     return r[0] * u[0] + mu * r[0] * slip + r[1] * u[1] + r[2] * u[2];
 }

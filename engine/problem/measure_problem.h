@@ -7,8 +7,7 @@
 
 namespace skerry {
 
-/// With Friction::pyramid the measures are those of the pyramid: tangential components are bounded one by one; with
-/// Friction::cone_convex those of the associated law.
+/// With Friction::pyramid the measures are those of the pyramid: tangential components are bounded one by one.
 ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction);
 
 }  // namespace skerry

@@ -7,10 +7,10 @@
 #include "components/union_find.h"
 #include "engine/problem/check_arrays.h"
 #include "engine/problem/measure_problem.h"
+#include "engine/problem/solve_by_region.h"
 #include "skerry/error.h"
 #include "skerry/problem.h"
 #include "systems/solver/methods/run_method.h"
-#include "systems/solver/operators/block_operator.h"
 
 namespace skerry {
 namespace {
@@ -61,10 +61,10 @@ struct Work {
 /// Solves all regions. The error is one of all regions together, so none is asked for more than its share of it; since
 /// the sizes that it is measured against are known at the end only, the regions may have to go on from where they are,
 /// asked for half.
-void solve_once(const ContactProblem& problem, const ProblemSettings& settings, Work& work) {
+void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);
-    work.memory.prepare(view(problem), regions.contact, settings.friction);
+    work.memory.prepare(view(problem), regions.contact);
     work.used.assign(static_cast<std::size_t>(regions.size()), 0);
     SolveLimits limits;
     limits.tolerance = settings.tolerance;
@@ -80,7 +80,7 @@ void solve_once(const ContactProblem& problem, const ProblemSettings& settings, 
             BlockOperator op(work.memory, begin, end, settings.friction, share);
             limits.max_iterations = settings.max_iterations - work.used[region];
             if (limits.max_iterations <= 0 || (round > 0 && op.error() <= limits.tolerance)) continue;
-            work.used[region] += run_method(settings.method, op, limits).iterations;
+            work.used[region] += method(op, limits).iterations;
         }
         if (whole.error() <= settings.tolerance) return;
         limits.tolerance /= 2;
@@ -95,9 +95,10 @@ std::vector<Vec3> reactions(const Work& work) {
     return reaction;
 }
 
-double seconds_of(const ContactProblem& problem, const ProblemSettings& settings, Work& work) {
+double seconds_of(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method,
+                  Work& work) {
     const auto start = std::chrono::steady_clock::now();
-    solve_once(problem, settings, work);
+    solve_once(problem, settings, method, work);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -115,25 +116,22 @@ void check(const ContactProblem& problem, const ProblemSettings& settings) {
     if (settings.max_iterations < 1) refuse("max_iterations", std::to_string(settings.max_iterations), ">= 1");
     if (!(settings.relaxation > 0 && settings.relaxation < 2))
         refuse("relaxation", std::to_string(settings.relaxation), "> 0 and < 2");
-    const auto rough = std::ranges::find_if(problem.mu, [](Real mu) { return mu != 0; });
-    if (needs_frictionless(settings.method) && rough != problem.mu.end())
-        refuse("method", std::string(name_of(settings.method)) + " and mu = " + std::to_string(*rough),
-               "mu = 0, or a method with friction");
 }
 
 }  // namespace
 
-ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings) {
+ProblemSolution solve_by_region(const ContactProblem& problem, const ProblemSettings& settings,
+                                const BlockMethod& method) {
     check_arrays(problem);
     check(problem, settings);
     Work work;
-    const double first = seconds_of(problem, settings, work);
+    const double first = seconds_of(problem, settings, method, work);
     // a short solve is repeated: the first pays for memory and cold caches, and the clock is coarse
     constexpr double long_enough = 5e-3, budget = 20e-3;
     std::vector<double> seconds{first};
     while (first < long_enough && seconds.size() < 1001 &&
            std::accumulate(seconds.begin(), seconds.end(), 0.0) < budget)
-        seconds.push_back(seconds_of(problem, settings, work));
+        seconds.push_back(seconds_of(problem, settings, method, work));
     std::nth_element(seconds.begin(), seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2), seconds.end());
 
     ProblemSolution solution;
@@ -152,6 +150,12 @@ ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettin
         solution.unconverged += !solution.converged && work.used[region] >= settings.max_iterations;
     }
     return solution;
+}
+
+ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings) {
+    return solve_by_region(problem, settings, [&settings](BlockOperator& op, const SolveLimits& limits) {
+        return run_method(settings.method, op, limits);
+    });
 }
 
 }  // namespace skerry

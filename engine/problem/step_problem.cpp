@@ -20,8 +20,6 @@ std::string description_of(const StepContacts& step, const SolverSettings& setti
             "this problem";
     if (settings.friction == Friction::pyramid)
         text += "; the solution is that of the friction pyramid, not of the cone";
-    if (settings.friction == Friction::cone_convex)
-        text += "; the solution is that of the associated law, not of Coulomb's";
     return text;
 }
 

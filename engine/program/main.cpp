@@ -116,11 +116,17 @@ std::vector<std::string> names_of_all() {
     return names;
 }
 
-/// An option whose values are the names of an enum.
+/// An option whose values are the names of an enum. A removed name is refused with the hint of RemovedNames.
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& flag, Target& target, const std::string& meaning) {
     app.add_option_function<std::string>(
            flag, [&target](const std::string& name) { target = *from_name<Enum>(name); }, meaning)
+        ->check(CLI::Validator(
+            [](std::string& name) {
+                const std::string_view hint = hint_for_removed<Enum>(name);
+                return hint.empty() ? std::string() : "found " + name + ", which was removed: " + std::string(hint);
+            },
+            ""))
         ->check(CLI::IsMember(names_of_all<Enum>()));
 }
 

@@ -77,14 +77,9 @@ std::vector<std::string> RuleTable::known_names() const {
     return names;
 }
 
-void RuleTable::refuse_withdrawn(const std::string& key, const Json& value, const Place& place) const {
-    for (const Withdrawn& old : withdrawn_) {
-        if (old.key != key) continue;
-        if (old.value.empty()) place.key(key).refuse("a withdrawn key", "no such key", std::string(old.instead));
-        if (value.is_string() && value.get_ref<const std::string&>() == old.value)
-            place.key(key).refuse("the withdrawn value " + in_quotes(old.value), "another value",
-                                  std::string(old.instead));
-    }
+void RuleTable::refuse_withdrawn(const std::string& key, const Place& place) const {
+    for (const Withdrawn& old : withdrawn_)
+        if (old.key == key) place.key(key).refuse("a withdrawn key", "no such key", std::string(old.instead));
 }
 
 Place RuleTable::place_of(const Json& json, const Place& outer) const {
@@ -97,7 +92,7 @@ Place RuleTable::place_of(const Json& json, const Place& outer) const {
 void RuleTable::read_keys(const Json& json, const Place& place, void* object) const {
     std::vector<std::string> seen;
     for (const auto& [name, value] : json.items()) {
-        refuse_withdrawn(name, value, place);
+        refuse_withdrawn(name, place);
         const Key* key = find(name);
         if (key == nullptr) {
             const std::vector<std::string> names = known_names();

@@ -46,10 +46,9 @@ using SchemaBook = Json;
 template <class T>
 struct Value;
 
-/// A key, or one value of a key, that earlier versions knew.
+/// A key that earlier versions had, and a hint that says what to do instead.
 struct Withdrawn {
-    std::string_view key, value;  // value empty: the key itself
-    std::string_view instead;     // what to do about it
+    std::string_view key, instead;
 };
 
 /// What keys of an object have to do with each other.
@@ -92,7 +91,7 @@ protected:
 private:
     const Key* find(const std::string& name) const;
     std::vector<std::string> known_names() const;
-    void refuse_withdrawn(const std::string& key, const Json& value, const Place& place) const;
+    void refuse_withdrawn(const std::string& key, const Place& place) const;
 
     std::string name_, meaning_;
     std::vector<Key> keys_;
@@ -122,12 +121,7 @@ public:
     Rule& together(std::vector<std::string> keys) { return group(KeyGroup::Kind::together, std::move(keys)); }
     /// A key that is refused with a message that says what to use instead.
     Rule& withdrawn(std::string_view key, std::string_view instead) {
-        add_withdrawn({key, {}, instead});
-        return *this;
-    }
-    /// The same for one value of a key that is still there.
-    Rule& withdrawn_value(std::string_view key, std::string_view value, std::string_view instead) {
-        add_withdrawn({key, value, instead});
+        add_withdrawn({key, instead});
         return *this;
     }
     /// A condition between values; it refuses by itself.

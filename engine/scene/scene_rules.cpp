@@ -184,9 +184,6 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "fraction of the stable step that is used",
                   .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
             .key("integrator", &S::integrator, {.meaning = "how velocities and positions are integrated in time"})
-            .withdrawn_value(
-                "integrator", "forward_euler",
-                "use \"symplectic_euler\", the default, or \"leapfrog\"; forward Euler is unstable at any step")
             .key("clusters", &S::clusters,
                  {.meaning = "the few elements that would make all steps several times shorter move as clusters"})
             .withdrawn(

@@ -116,11 +116,15 @@ void Value<std::uint32_t>::read(const Json& json, const Place& place, const KeyD
     out = static_cast<std::uint32_t>(read_whole(json, place, doc, 0, largest));
 }
 
-std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names) {
+std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
+                      std::string_view (*hint_for_removed)(std::string_view)) {
     if (!json.is_string()) place.refuse(described(json), "one of " + listed(names));
     const auto& text = json.get_ref<const std::string&>();
     const auto found = std::ranges::find(names, text);
-    if (found == names.end()) place.refuse(in_quotes(text), "one of " + listed(names), nearest_hint(text, names));
+    if (found == names.end()) {
+        const std::string hint(hint_for_removed(text));
+        place.refuse(in_quotes(text), "one of " + listed(names), hint.empty() ? nearest_hint(text, names) : hint);
+    }
     return static_cast<std::size_t>(found - names.begin());
 }
 

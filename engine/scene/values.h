@@ -119,7 +119,8 @@ struct Value<Vec3> {
 };
 
 /// Which of the names a text is.
-std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names);
+std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
+                      std::string_view (*hint_for_removed)(std::string_view));
 
 /// An enum by one of its names.
 template <class Enum>
@@ -131,7 +132,7 @@ struct Value<Enum> {
         return list;
     }
     static void read(const Json& json, const Place& place, const KeyDoc&, Enum& out) {
-        out = EnumNames<Enum>::table[read_name(json, place, names())].first;
+        out = EnumNames<Enum>::table[read_name(json, place, names(), hint_for_removed<Enum>)].first;
     }
     static Json schema(SchemaBook&, const KeyDoc&) { return enum_schema(names()); }
 };

@@ -153,7 +153,7 @@ void validate(const Settings& settings) {
             "implicit_step", settings.implicit_step, "0 with this integrator; others go with symplectic_euler only");
 }
 
-void validate(const MaterialSettings& material, const Settings& settings) {
+void validate(const MaterialSettings& material) {
     const std::string object = "material";
     if (material.model == MaterialModel::guard) refuse(object, "model", "guard", "a law that a material can have");
     require(material.young_modulus > 0, object, "young_modulus", material.young_modulus, "a modulus > 0 (Pa)");
@@ -173,9 +173,6 @@ void validate(const MaterialSettings& material, const Settings& settings) {
     const Real still = material.static_friction.value_or(std::max(material.friction, dynamic));
     require(dynamic >= 0, object, "dynamic_friction", dynamic, "a number >= 0");
     require(still >= dynamic, object, "static_friction", still, "a number not below dynamic_friction");
-    // what a collider adds counts by the geometric mean: none where the body has none
-    require(still == 0 || !needs_frictionless(settings.method), object, "friction", still,
-            "0: the method of the settings knows no friction");
     require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution,
             "a number from 0 to 1");
     require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
@@ -321,12 +318,8 @@ void validate(const Shape& shape, const ColliderSettings& collider) {
     require(collider.contact_distance >= 0, object, "contact_distance", collider.contact_distance, "a length >= 0 (m)");
 }
 
-void validate(const SurfaceSettings& surface, const std::string& object, const Settings& settings) {
+void validate(const SurfaceSettings& surface, const std::string& object) {
     require_surface(surface.friction, surface.static_friction, surface.dynamic_friction, surface.restitution, object);
-    const Real most = std::max(
-        {surface.friction.value_or(0), surface.static_friction.value_or(0), surface.dynamic_friction.value_or(0)});
-    require(most == 0 || !needs_frictionless(settings.method), object, "friction", most,
-            "0: the method of the settings knows no friction");
 }
 
 void validate(const Pose& pose, const std::string& object) {

@@ -11,7 +11,7 @@
 namespace skerry {
 
 void validate(const Settings& settings);
-void validate(const MaterialSettings& material, const Settings& settings);
+void validate(const MaterialSettings& material);
 /// `mesh_is_known`: it was found to be one that a body may have.
 void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known);
 void validate(const Sphere& sphere, const BodySettings& body);
@@ -22,7 +22,7 @@ void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
-void validate(const SurfaceSettings& surface, const std::string& object, const Settings& settings);
+void validate(const SurfaceSettings& surface, const std::string& object);
 /// Of `object`, three numbers each.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
 /// Of `object`: numbers of a body's nodes, of which there are `count`.

@@ -155,7 +155,7 @@ World World::clone() const {
 
 MaterialHandle World::add_material(const MaterialSettings& material) {
     state_->require_between_steps("add_material");
-    validate(material, state_->model.settings);
+    validate(material);
     MaterialTable& table = state_->model.materials;
     const std::size_t row = table.slot.size();
     AnyTable(table).resize(row + 1);

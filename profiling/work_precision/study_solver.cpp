@@ -30,7 +30,7 @@ void study_scene(Study& study, const std::string& name) {
     study.show(name + ": reference of the solver");
     const Record reference =
         run_skerry(scene, variant_of(SolverMethod::automatic, reference_tolerance, WarmStart::on), step);
-    const Record other = run_skerry(scene, variant_of(SolverMethod::nncg, reference_tolerance, WarmStart::on), step);
+    const Record other = run_skerry(scene, variant_of(SolverMethod::pgs, reference_tolerance, WarmStart::on), step);
     const Real reference_error = mean_distance(scene, reference, other, samples);
 
     const auto write = [&](SolverMethod method, WarmStart warm_start) {
@@ -52,8 +52,7 @@ void study_scene(Study& study, const std::string& name) {
                         run);
         }
     };
-    for (const SolverMethod method :
-         {SolverMethod::automatic, SolverMethod::pgs, SolverMethod::nncg, SolverMethod::apgd, SolverMethod::pcg_pgs})
+    for (const SolverMethod method : {SolverMethod::automatic, SolverMethod::pgs, SolverMethod::pcg_pgs})
         write(method, WarmStart::on);
     write(SolverMethod::automatic, WarmStart::off);
 }

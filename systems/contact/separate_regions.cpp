@@ -1,15 +1,18 @@
 #include "systems/contact/separate_regions.h"
 
 #include <algorithm>
-#include <set>
-#include <utility>
-#include <vector>
 
 #include "components/check.h"
-#include "systems/contact/algorithm_1.h"
 
 namespace skerry {
 namespace {
+
+/// Whether an impulse of this contact can move anything.
+bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass) {
+    for (std::size_t a = 0; a < 4; ++a)
+        if (stencil.weight[a] != 0 && inverse_mass[stencil.node[a]] > 0) return true;
+    return false;
+}
 
 /// Joins the moving nodes of a contact, each with its group: `leader(node)` stands for that. Returns their root, or
 /// no_index.
@@ -144,17 +147,6 @@ Index take_all_as_one(std::span<const Stencil> stencil, std::span<const Real> in
     return with_joints;
 }
 
-Index separate_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
-                              const NodeGroups& groups, RegionTable& regions, std::span<Index> contact_region) {
-    SKERRY_CHECK(groups.joints.empty());
-    regions.joints.clear();
-    const Index count = label_by_algorithm_1(stencil, inverse_mass, contact_region);
-    collect_contacts(contact_region, count, regions);
-    // it looks at nodes alone: regions may share groups of them
-    regions.independent = groups.empty() && count_shared_nodes(stencil, inverse_mass, regions) == 0;
-    return count;
-}
-
 void resize_results(Index region_count, RegionTable& regions) {
     const std::size_t count = static_cast<std::size_t>(region_count);
     regions.iterations.assign(count, 0);
@@ -172,7 +164,6 @@ bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std:
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region) {
     SKERRY_CHECK(contact_region.size() == stencil.size());
-    regions.independent = true;
     if (stencil.empty() && groups.joints.empty()) {
         regions.contacts.clear();
         regions.joints.clear();
@@ -192,29 +183,9 @@ bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std:
         case ContactRegions::global:
             region_count = take_all_as_one(stencil, inverse_mass, groups, regions, contact_region);
             break;
-        case ContactRegions::paper_algorithm_1:
-            region_count = separate_by_algorithm_1(stencil, inverse_mass, groups, regions, contact_region);
-            break;
     }
     resize_results(region_count, regions);
     return true;
-}
-
-Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
-                         const RegionTable& regions) {
-    std::vector<std::pair<Index, Index>> node_region;
-    for (std::size_t r = 0; r < regions.size(); ++r)
-        for (const Index contact : regions.contacts[r])
-            for (std::size_t a = 0; a < 4; ++a)
-                if (stencil[contact].weight[a] != 0 && inverse_mass[stencil[contact].node[a]] > 0)
-                    node_region.emplace_back(stencil[contact].node[a], static_cast<Index>(r));
-    std::sort(node_region.begin(), node_region.end());
-    node_region.erase(std::unique(node_region.begin(), node_region.end()), node_region.end());
-    std::set<std::pair<Index, Index>> pairs;
-    for (std::size_t i = 0; i < node_region.size(); ++i)
-        for (std::size_t j = i + 1; j < node_region.size() && node_region[j].first == node_region[i].first; ++j)
-            pairs.emplace(node_region[i].second, node_region[j].second);
-    return static_cast<Index>(pairs.size());
 }
 
 }  // namespace skerry

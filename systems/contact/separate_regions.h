@@ -26,15 +26,10 @@ inline constexpr int least_workers_for_blocks = 4;
 /// (inverse mass > 0) joins them; nodes of one of the `groups` count as shared. Bodies that a joint of the groups
 /// joins do, too. Regions are numbered by their first contact, those of joints alone by their first joint behind them,
 /// and hold contacts and joints in order; contacts without a moving node belong to none. `mode` global puts all into
-/// one region; paper_algorithm_1 follows the paper to the letter, with its error (docs/methods/regions.md 2: areas that
-/// share a node stay apart) and without groups or joints. Returns false when there are no contacts and no joints
-/// (skipped). What comes out does not depend on the number of workers, though the way there does.
+/// one region. Returns false when there are no contacts and no joints (skipped). The result does not depend on the
+/// number of workers, though the way there does.
 bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region);
-
-/// How many pairs of different regions share a moving node: 0 for a correct separation.
-Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
-                         const RegionTable& regions);
 
 }  // namespace skerry

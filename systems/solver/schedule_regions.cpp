@@ -105,16 +105,14 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
 
 void schedule_regions(Executor& executor, const SolverSettings& settings, RegionMemory& memory, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
-    const bool lanes = lanes_allowed(settings) && regions.independent;
+    const bool lanes = lanes_allowed(settings);
     make_room(memory.cost, regions.size());
     const Real total = reduce(
         executor, regions.size(), regions_per_block, memory.cost_parts, Real(0),
         [&](std::size_t begin, std::size_t end) {
             Real sum = 0;
             for (std::size_t r = begin; r < end; ++r) {
-                // regions that share a node see each other's result: their order must not depend on what is remembered
-                const Real average = regions.independent ? memory.present.sweeps[r] : no_history;
-                memory.cost[r] = predicted_cost(memory.present.contacts[r], average, lanes, settings);
+                memory.cost[r] = predicted_cost(memory.present.contacts[r], memory.present.sweeps[r], lanes, settings);
                 sum += memory.cost[r];
             }
             return sum;

@@ -63,11 +63,9 @@ void make_rows(RegionTable& regions) {
 void solve_tasks(Executor& executor, const RegionStage& stage, RegionTable& regions) {
     solve_large_regions(executor, stage, regions);
     const Column<RegionTask>& tasks = stage.memory.task;
-    const bool lanes = lanes_allowed(stage.settings) && regions.independent;
-    // regions that share a node (the paper's algorithm makes some) see each other's result: one after the other, in
-    // order
-    if (!regions.independent || tasks.size() == 1) {
-        for (const RegionTask& task : tasks) solve_task(stage, task, lanes, regions);
+    const bool lanes = lanes_allowed(stage.settings);
+    if (tasks.size() == 1) {
+        solve_task(stage, tasks[0], lanes, regions);
         return;
     }
     executor.run_blocks(static_cast<Index>(tasks.size()),

@@ -15,7 +15,7 @@ PROGRAM, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
 RUNS = [
     ("scenes/skittles.json", "0.3", []),
     ("scenes/skittles.json", "0.2", ["materials.ball.model=corotational", "materials.skittle.model=linear"]),
-    ("scenes/skittles.json", "0.2", ["settings.integrator=leapfrog", "settings.method=apgd"]),
+    ("scenes/skittles.json", "0.2", ["settings.integrator=leapfrog", "settings.method=pcg_pgs"]),
     ("scenes/skittles.json", "0.2", ["settings.small_regions_in_lanes=false", "settings.contact_regions=global"]),
     ("scenes/drop/drop_8.json", "0.2", ["settings.sleep_speed=0.01"]),
     ("scenes/drop/drop_8.json", "0.15", ["settings.method=newton"]),

@@ -322,9 +322,6 @@ TEST_CASE("what joints cannot join is refused by name", "[scene][joints]") {
     refused({.kind = JointKind::ball, .first = first, .upper = 1.0}, "ball");
     refused({.kind = JointKind::fixed, .first = first, .motor = JointMotor{.speed = 1}}, "fixed");
     CHECK(Joints(world).all().empty());
-    World letter({.contact_regions = ContactRegions::paper_algorithm_1});
-    const auto body = letter.add_body(bar, {.material = letter.add_material({}), .dynamics = BodyDynamics::rigid});
-    CHECK_THROWS_WITH(Joints(letter).add({.first = body}), Catch::Matchers::Contains("paper_algorithm_1"));
 }
 
 }  // namespace skerry::test::joints_test

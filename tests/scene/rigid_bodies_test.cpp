@@ -117,55 +117,6 @@ TEST_CASE("a rigid block stands below the friction angle without creep, and slid
     }
 }
 
-TEST_CASE("regions of the paper's Algorithm 1 see what those before them gave the body that they share",
-          "[scene][rigid]") {
-    // A tile falls flat on 25 nodes, each a region of its own: one after the other is one sweep over all of them. Each
-    // as if it were alone would throw the tile up with 60 times its energy.
-    const BodyDynamics dynamics = GENERATE(BodyDynamics::rigid, BodyDynamics::implicit_elastic);
-    const Real restitution = GENERATE(0.0, 0.5);
-    CAPTURE(dynamics, restitution);
-    struct Fallen {
-        std::vector<Vec3> position, velocity;
-        Index regions;
-        Real gained;  // J
-    };
-    const auto fall = [&](ContactRegions regions) {
-        Settings settings;
-        settings.step_size = 1.0 / 120;
-        settings.contact_regions = regions;
-        settings.method = SolverMethod::pgs;
-        settings.fixed_iterations = true;
-        settings.max_iterations = 1;
-        World world(settings);
-        world.add_collider(Plane{});
-        const auto body = world.add_body(
-            mesh::box({0.1, 0.1, 0.02}, {4, 4, 1}),
-            {.material = world.add_material({.young_modulus = 3e4, .friction = 0.5, .restitution = restitution}),
-             .position = {0, 0, 0.015},
-             .velocity = {0.3, 0, -1},
-             .contact_distance = 0,
-             .dynamics = dynamics});
-        const auto mechanical = [&world] {
-            const Energy energy = world.energy();
-            return energy.kinetic + energy.elastic + energy.potential;
-        };
-        const Real start = mechanical();
-        const StepReport report = world.advance(1.0 / 120);
-        REQUIRE(report.ok());
-        const auto x = world.positions(body), v = world.velocities(body);
-        return Fallen{{x.begin(), x.end()}, {v.begin(), v.end()}, report.regions, mechanical() - start};
-    };
-    const Fallen sweep = fall(ContactRegions::separate), paper = fall(ContactRegions::paper_algorithm_1);
-    REQUIRE(sweep.regions == 1);
-    REQUIRE(paper.regions == 25);
-    if (restitution == 0) CHECK(paper.gained < 0);  // else a contact asks for more than is left of its approach
-    constexpr Real rounding = 1e-12;                // m, m/s
-    for (std::size_t n = 0; n < sweep.position.size(); ++n) {
-        CHECK((paper.position[n] - sweep.position[n]).norm() < rounding);
-        CHECK((paper.velocity[n] - sweep.velocity[n]).norm() < rounding);
-    }
-}
-
 TEST_CASE("a heavy rigid body on a light one rests on the floor with the weight of both", "[scene][rigid]") {
     Settings settings = accurate();
     settings.step_size = 1.0 / 120;

@@ -56,8 +56,7 @@ class Joints {
 public:
     explicit Joints(World& world) : world_(&world) {}
 
-    /// Joins two rigid bodies, or one and the world, where they are now. Goes with either of its bodies. Refused with
-    /// contact_regions "paper_algorithm_1".
+    /// Joins two rigid bodies, or one and the world, where they are now. Goes with either of its bodies.
     JointHandle add(const JointSettings& joint);
     void remove(JointHandle joint);
     bool alive(JointHandle joint) const;

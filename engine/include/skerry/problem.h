@@ -66,9 +66,7 @@ ContactProblem part_of(const ContactProblem& problem, std::span<const Index> con
 
 /// Separates the problem into regions and solves them from r = 0. With Friction::pyramid the errors of the solution are
 /// those of the pyramid (the tangential components of the natural map clamped one by one), which is what `converged`
-/// asks for. Throws SceneError when the arrays of the problem disagree, or when the method knows no friction and the
-/// problem has some. With Friction::cone_convex the errors are those of the associated law in the same way;
-/// problem_error says how far that is from Coulomb's.
+/// asks for. Throws SceneError when the arrays of the problem disagree or a setting is out of its range.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
 /// |e| of docs/methods/errors.md 3 (FCLIB and Siconos, rho = 1) for given reactions, and the Coulomb gap.

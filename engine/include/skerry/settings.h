@@ -148,7 +148,7 @@ struct Settings {
     Real implicit_step = 0;
     Integrator integrator = Integrator::symplectic_euler;
     // The few elements that would make all steps several times shorter couple the nodes around them instead
-    // (docs/methods/clusters.md). Not with paper_algorithm_1.
+    // (docs/methods/clusters.md).
     bool clusters = true;
     Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
     int threads = 0;                       // 0: those of the caller's task arena

@@ -49,12 +49,10 @@ void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
         refuse_joint("lower", std::to_string(*lower), "at most upper, " + std::to_string(*upper));
 }
 
-void validate_joint(const JointSettings& joint, const Settings& settings) {
+void validate_joint(const JointSettings& joint) {
     require_finite("joint", "point", joint.point);
     require_finite("joint", "axis", joint.axis);
     if (!(joint.axis.norm() > 0)) refuse_joint("axis", "no length", "a direction");
-    if (settings.contact_regions == ContactRegions::paper_algorithm_1)
-        refuse_joint("first", "a world with contact_regions \"paper_algorithm_1\"", "another, which knows joints");
     if (has_axis(joint.kind)) {
         if (joint.motor) validate_motor(*joint.motor);
         validate_limits(joint.lower, joint.upper);
@@ -112,7 +110,7 @@ JointHandle Joints::add(const JointSettings& joint) {
     WorldState& state = WorldAccess::state_of(*world_);
     state.require_between_steps("add_joint");
     Model& model = state.model;
-    validate_joint(joint, model.settings);
+    validate_joint(joint);
     const Index first = rigid_body_of(model, joint.first, "first");
     const Index second = joint.second ? rigid_body_of(model, *joint.second, "second") : no_index;
     if (first == second) refuse_joint("second", "the first body again", "another body, or none: the world");

@@ -127,7 +127,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     state_->require_between_steps("set_material");
     Model& model = state_->model;
     const Index row = model.row(material, "set_material");
-    validate(settings, model.settings);
+    validate(settings);
     const MaterialRow now = MaterialRow::of(model.materials, static_cast<std::size_t>(row)),
                       next = MaterialRow::of(settings);
     require_changeable(now, next);
@@ -164,7 +164,7 @@ void World::set_surface_properties(BodyHandle body, const SurfaceSettings& surfa
     state_->require_between_steps("set_surface_properties");
     Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(body, "set_surface_properties"));
-    validate(surface, "body '" + model.body_records[row].name + "'", model.settings);
+    validate(surface, "body '" + model.body_records[row].name + "'");
     const SurfaceProperties next = surface_properties(surface);
     if (model.bodies.surface[row] == next) return;
     model.bodies.surface[row] = next;
@@ -175,7 +175,7 @@ void World::set_surface_properties(ColliderHandle collider, const SurfaceSetting
     state_->require_between_steps("set_surface_properties");
     Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(collider, "set_surface_properties"));
-    validate(surface, "collider '" + model.collider_records[row].name + "'", model.settings);
+    validate(surface, "collider '" + model.collider_records[row].name + "'");
     const SurfaceProperties next = surface_properties(surface);
     if (model.colliders.surface[row] == next) return;
     model.colliders.surface[row] = next;

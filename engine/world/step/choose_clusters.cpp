@@ -306,7 +306,7 @@ Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
 }  // namespace
 
 bool clusters_allowed(const Settings& settings) {
-    return settings.clusters && settings.contact_regions != ContactRegions::paper_algorithm_1;
+    return settings.clusters;
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {

@@ -61,8 +61,8 @@ inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     return result;
 }
 
-/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of docs/methods/friction.md 2.5, for the error measures and
-/// the associated law.
+/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of docs/methods/friction.md 2.5, for the error
+/// measures.
 template <class V>
 inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
@@ -78,8 +78,6 @@ inline V project_onto_cone(const V& z, const V& normal, Real mu) {
 
 template <class V>
 inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Friction friction) {
-    // one coefficient is all that the law knows
-    if (friction == Friction::cone_convex) return project_onto_cone(z, normal, mu.slide);
     return friction == Friction::cone ? project_coulomb(z, normal, mu) : project_pyramid(z, normal, mu);
 }
 
@@ -91,7 +89,6 @@ inline V feasible_direction(const V& residual, const V& impulse, const V& normal
                             Friction friction) {
     const Real along = normal.dot(impulse);
     const Real growth = normal.dot(residual);
-    if (friction == Friction::cone_convex && along <= 0) return project_onto_cone(residual, normal, mu.slide);
     if (along <= 0) return std::max(Real(0), growth) * normal;
     if (mu.stick == 0) return growth * normal;
     constexpr Real rounding = 1e-9;  // relative: what a projection leaves beside the surface counts as on it
@@ -100,9 +97,7 @@ inline V feasible_direction(const V& residual, const V& impulse, const V& normal
         const V tangential = impulse - along * normal;
         const Real length = tangential.norm();
         if (length < limit || length == 0) return residual;
-        V outward = tangential / length;
-        if (friction == Friction::cone_convex)
-            outward = (outward - mu.slide * normal) / std::sqrt(1 + mu.slide * mu.slide);
+        const V outward = tangential / length;
         return residual - std::max(Real(0), outward.dot(residual)) * outward;
     }
     V result = residual;

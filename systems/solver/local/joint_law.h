@@ -2,7 +2,6 @@
 // (docs/methods/joints.md 2, 3).
 #pragma once
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
 
@@ -34,18 +33,7 @@ struct JointLaw {
     Mat3 inverse;        // of the locked part of it
     Real axis_mobility;  // of the axis with the locked rows in force
 
-    void prepare(const Mat3& of, bool with_axis) {
-        axis_free = with_axis;
-        block = of;
-        if (!axis_free) {
-            inverse = block.inverse();
-            axis_mobility = 0;
-            return;
-        }
-        inverse.setZero();
-        inverse.topLeftCorner<2, 2>() = block.topLeftCorner<2, 2>().inverse();
-        axis_mobility = block(2, 2) - block.block<1, 2>(2, 0) * inverse.topLeftCorner<2, 2>() * block.block<2, 1>(0, 2);
-    }
+    void prepare(const Mat3& of, bool with_axis);
 
     /// r with u = W r + b, u zero in the locked rows.
     Vec3 answer(const AxisBounds& bounds, const Vec3& b) const {

@@ -21,7 +21,7 @@ struct LoadSums {
         if (contact.inverse_diagonal == 0) return;
         inverse_diagonals += contact.inverse_diagonal;
         moving += contact.inverse_diagonal * u.squaredNorm();
-        if (separates(contact, friction, u)) return;
+        if (separates(contact, u)) return;
         separating = false;
         asked += contact.diagonal * natural_map(contact, friction, Vec4::Zero(), u).squaredNorm();
     }

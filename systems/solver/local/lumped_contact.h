@@ -84,12 +84,9 @@ inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const V
     return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
 }
 
-/// Whether a contact with this velocity needs no impulse. The associated law presses on what slides unless it lifts off
-/// fast enough.
-inline bool separates(const LumpedContact& contact, Friction friction, const Vec4& u) {
-    const Real along = contact.normal.dot(u);
-    if (friction != Friction::cone_convex) return along >= 0;
-    return along >= contact.friction.slide * (u - along * contact.normal).norm();
+/// Whether a contact with this velocity needs no impulse.
+inline bool separates(const LumpedContact& contact, const Vec4& u) {
+    return contact.normal.dot(u) >= 0;
 }
 
 }  // namespace skerry

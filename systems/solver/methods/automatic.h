@@ -20,8 +20,9 @@ inline Real newton_step_cost(Index contacts) {
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators that keep room for Newton steps and know what they cost. Others get sweeps alone: in a step of the engine
-/// the warm start and the next step do what is left, at less cost than a factorisation.
+/// Operators that keep room for Newton steps and know what they cost. Others get accelerated sweeps alone
+/// (run_method.h): in a step of the engine the warm start and the next step do what is left, at less cost than a
+/// factorisation.
 template <class Op>
 concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
@@ -39,11 +40,6 @@ concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
 template <class Op>
 concept TakesNewtonSteps = KeepsNewtonMemory<Op> || HasNewtonSteps<Op>;
 
-template <ContactOperator Op>
-SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
-    return solve_ags(op, limits);
-}
-
 /// Sweeps that cost as much as two Newton steps (docs/decisions/0004).
 template <TakesNewtonSteps Op>
 Real newton_trial(Op& op) {
@@ -56,10 +52,12 @@ Real newton_trial(Op& op) {
 
 template <TakesNewtonSteps Op>
 SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
-    if constexpr (HasNewtonSteps<Op>)
+    if constexpr (HasNewtonSteps<Op>) {
         return op.take_newton_steps(error, tolerance, limit);
-    else
-        return NewtonSteps<Op>(op, op.newton_memory()).run(error, tolerance, limit);
+    } else {
+        OperatorView<Op> view(op);
+        return take_newton_steps(view, op.newton_memory(), error, tolerance, limit);
+    }
 }
 
 /// A few sweeps at a time, and rounds of bodies that move as wholes after them, as long as these gain. `steps`: those
@@ -90,8 +88,8 @@ SolveResult move_wholes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& swee
 /// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again,
 /// or within what sweeps are left, by the pace of the last stretch, the steps are tried from the present impulse; if
 /// they do not finish, sweeps go on, for three times as long as before.
-template <ContactOperator Op>
-requires TakesNewtonSteps<Op> SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
+template <TakesNewtonSteps Op>
+SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // the steps are those of the exact cone
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);

@@ -3,183 +3,20 @@
 // sweeps go on for longer than a factorisation takes.
 #pragma once
 
-#include <limits>
-
-#include "systems/solver/methods/pgs.h"
+#include "systems/solver/methods/any_operator.h"
+#include "systems/solver/methods/error_test.h"
 #include "systems/solver/operators/newton_memory.h"
 
 namespace skerry {
 
-/// P(z), the impulse that a contact answers with to the impulse z that would stop it, and its derivative.
-struct CoulombAnswer {
-    Vec3 impulse;
-    Mat3 derivative;
-};
-
-inline CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, Real mu) {
-    const Real along = normal.dot(z);
-    if (!(along > 0)) return {Vec3::Zero(), Mat3::Zero()};
-    const Vec3 tangential = z - along * normal;
-    const Real length = tangential.norm();
-    if (length <= mu * along) return {z, Mat3::Identity()};
-    const Vec3 h = tangential / length;
-    const Mat3 pressing = normal * normal.transpose();
-    const Mat3 turning = (mu * along / length) * (Mat3::Identity() - pressing - h * h.transpose());
-    return {along * normal + mu * along * h, pressing + turning + mu * h * normal.transpose()};
-}
-
-/// Newton steps on F_i(r) = r_i - P(r_i - u_i / D_i). Uses all of the operator's workspace but the best iterate.
-template <ContactOperator Op>
-class NewtonSteps {
-public:
-    NewtonSteps(Op& op, NewtonMemory& memory) : op_(op), memory_(memory) {
-        op_.assemble(memory_.operator_matrix);
-        memory_.change.resize(3 * op_.size());
-    }
-
-    /// Steps until nothing has been gained for a few of them: before the right set of sticking and sliding contacts is
-    /// found the error may rise. The best impulse stays. `error` is that of the present impulse.
-    SolveResult run(Real error, Real tolerance, Index limit) {
-        constexpr Index patience = 4;  // steps (docs/decisions/0004)
-        const std::span<Vec4> kept = op_.workspace(2);
-        SolveResult result{0, error, error <= tolerance};
-        std::ranges::copy(op_.impulse(), kept.begin());
-        Index best_at = 0;
-        while (!result.converged && result.iterations < limit && result.iterations - best_at < patience) {
-            ++result.iterations;
-            if (!find_change()) break;
-            search_along_change();
-            const Real next = op_.error();
-            if (!(next < result.error)) continue;
-            std::ranges::copy(op_.impulse(), kept.begin());
-            best_at = result.iterations;
-            result.error = next;
-            result.converged = next <= tolerance;
-        }
-        if (best_at < result.iterations) {
-            std::ranges::copy(kept, op_.impulse().begin());
-            op_.refresh();
-        }
-        return result;
-    }
-
-private:
-    CoulombAnswer answer(Index i) {
-        const Vec4 z = op_.impulse()[i] + op_.workspace(3)[i] / op_.mobility(i);
-        return answer_coulomb(z.head<3>(), op_.normal(i).template head<3>(), op_.limits(i).slide);
-    }
-
-    /// Contacts that open go to zero outright; J d = -F for the others. False when the factorisation broke down.
-    bool find_change() {
-        op_.residual(op_.workspace(3));
-        memory_.active.clear();
-        memory_.change.setZero();
-        for (Index i = 0; i < op_.size(); ++i) {
-            const Vec4 z = op_.mobility(i) > 0 ? Vec4(op_.impulse()[i] + op_.workspace(3)[i] / op_.mobility(i))
-                                               : Vec4(Vec4::Zero());
-            if (op_.normal(i).dot(z) > 0) {
-                memory_.active.push_back(i);
-            } else {
-                memory_.change.template segment<3>(3 * i) = -op_.impulse()[i].template head<3>();
-            }
-        }
-        const Eigen::Index count = static_cast<Eigen::Index>(memory_.active.size());
-        if (count == 0) return memory_.change.allFinite();
-        memory_.jacobian.resize(3 * count, 3 * count);
-        memory_.rest.resize(3 * count);
-        fill_equations();
-        memory_.solve_equations();
-        for (Eigen::Index a = 0; a < count; ++a)
-            memory_.change.template segment<3>(3 * memory_.active[static_cast<std::size_t>(a)]) =
-                memory_.rest.template segment<3>(3 * a);
-        return memory_.change.allFinite();
-    }
-
-    /// Rows of J = I - P' (I - D^-1 W), and -F with what the opening contacts take away.
-    void fill_equations() {
-        // Sticking contacts that support each other leave the sum of their impulses open: a little of the identity
-        // chooses. It changes the steps, not what they come to.
-        constexpr Real redundancy = 1e-8;
-        const std::vector<Index>& active = memory_.active;
-        for (std::size_t a = 0; a < active.size(); ++a) {
-            const Index i = active[a];
-            const auto row = memory_.operator_matrix.template middleRows<3>(3 * i);
-            const CoulombAnswer coulomb = answer(i);
-            const Mat3 answering = coulomb.derivative / op_.mobility(i);
-            const Eigen::Index place = static_cast<Eigen::Index>(3 * a);
-            memory_.rest.template segment<3>(place) =
-                coulomb.impulse - op_.impulse()[i].template head<3>() - answering * (row * memory_.change);
-            for (std::size_t b = 0; b < active.size(); ++b)
-                memory_.jacobian.template block<3, 3>(place, static_cast<Eigen::Index>(3 * b)) =
-                    answering * row.template middleCols<3>(3 * active[b]);
-            memory_.jacobian.template block<3, 3>(place, place) +=
-                (1 + redundancy) * Mat3::Identity() - coulomb.derivative;
-        }
-    }
-
-    /// sum of D |F|^2, J; leaves -u in the workspace.
-    Real merit() {
-        op_.residual(op_.workspace(3));
-        Real sum = 0;
-        for (Index i = 0; i < op_.size(); ++i)
-            if (op_.mobility(i) > 0)
-                sum += op_.mobility(i) * (answer(i).impulse - op_.impulse()[i].template head<3>()).squaredNorm();
-        return sum;
-    }
-
-    void go(Real length) {
-        const std::span<Vec4> impulse = op_.impulse(), start = op_.workspace(1);
-        for (Index i = 0; i < op_.size(); ++i)
-            impulse[i] = op_.project(i, start[i] + length * padded(memory_.change.template segment<3>(3 * i)));
-        op_.refresh();
-    }
-
-    /// The first of ever shorter steps that lowers the merit; when none does, the one that raises it least.
-    void search_along_change() {
-        constexpr int halvings = 6;   // docs/decisions/0004
-        constexpr Real enough = 0.9;  // of the merit at the start
-        std::ranges::copy(op_.impulse(), op_.workspace(1).begin());
-        const Real start = merit();
-        Real least = std::numeric_limits<Real>::infinity(), best_length = 1;
-        for (int k = 0; k < halvings; ++k) {
-            const Real length = std::ldexp(Real(1), -k);
-            go(length);
-            const Real now = merit();
-            if (now < least) {
-                least = now;
-                best_length = length;
-            }
-            if (now < enough * start) return;
-        }
-        go(best_length);
-    }
-
-    Op& op_;
-    NewtonMemory& memory_;
-};
+/// Newton steps on F_i(r) = r_i - P(r_i - u_i / D_i), P(z) the impulse that a contact answers with to the impulse z
+/// that would stop it. They end when nothing has been gained for a few of them: before the right set of sticking and
+/// sliding contacts is found the error may rise. The best impulse stays. `error` is that of the present impulse. Uses
+/// all of the operator's workspace but the best iterate.
+SolveResult take_newton_steps(AnyOperator& op, NewtonMemory& memory, Real error, Real tolerance, Index limit);
 
 /// Sweeps and steps in turn; twice as many sweeps each time the steps have not finished it. The steps are those of the
 /// exact cone: under another law, and where the count is fixed, there are only sweeps.
-template <ContactOperator Op>
-SolveResult solve_newton(Op& op, const SolveLimits& limits) {
-    if (limits.fixed_iterations || op.law() != Friction::cone) return solve_pgs(op, limits);
-    NewtonMemory memory;
-    NewtonSteps<Op> steps(op, memory);
-    BestIterate<Op> best(op);
-    constexpr Index first_sweeps = 10, most_steps = 30;  // chosen by hand
-    Index done = 0;
-    for (Index sweeps = first_sweeps; done < limits.max_iterations; sweeps *= 2) {
-        const Index pause = std::min(sweeps, limits.max_iterations - done);
-        for (Index k = 0; k < pause; ++k) op.sweep(limits.relaxation);
-        done += pause;
-        const SolveResult result =
-            steps.run(op.error(), limits.tolerance, std::min(most_steps, limits.max_iterations - done));
-        done += result.iterations;
-        if (result.converged || !std::isfinite(result.error)) return {done, result.error, result.converged};
-        best.offer(result.error);
-    }
-    const Real error = best.restore();
-    return {done, error, error <= limits.tolerance};
-}
+SolveResult solve_newton(AnyOperator& op, const SolveLimits& limits);
 
 }  // namespace skerry

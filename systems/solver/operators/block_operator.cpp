@@ -51,7 +51,7 @@ Vec4 clamp_to_pyramid(const Vec4& impulse, Real mu) {
 
 }  // namespace
 
-void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> order, Friction friction) {
+void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> order) {
     const std::size_t count = order.size();
     std::vector<Index> place(count);
     for (std::size_t i = 0; i < count; ++i) place[order[i]] = static_cast<Index>(i);
@@ -59,7 +59,6 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
     offset.assign(count + 1, 0);
     neighbor.clear();
     block.clear();
-    convex.clear();
     neighbor.reserve(system.column.size());
     block.reserve(system.column.size());
     for (std::size_t i = 0; i < count; ++i) {
@@ -76,7 +75,6 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
         offset[i + 1] = static_cast<Index>(neighbor.size());
         contact[i] = {padded(system.q[row]), columns_of(diagonal), columns_of(0.5 * (diagonal - diagonal.transpose())),
                       prepare_block(diagonal), system.mu[row]};
-        if (friction == Friction::cone_convex) convex.push_back(prepare_convex_block(diagonal, system.mu[row]));
     }
     impulse.assign(count, Vec4::Zero());
     for (std::vector<Vec4>& slot : workspace) slot.resize(count);
@@ -89,9 +87,8 @@ Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction)
         return {impulse[0] - pressing(impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
                 impulse[2] - std::clamp(impulse[2] - u[2], -limit, limit)};
     }
-    // P_K of r - u - mu |u_T| n, with the tangents' direction left out until it is needed. The associated law has no
-    // such shift
-    const Real shift = friction == Friction::cone ? mu * std::sqrt(u[1] * u[1] + u[2] * u[2]) : 0;
+    // P_K of r - u - mu |u_T| n, with the tangents' direction left out until it is needed
+    const Real shift = mu * std::sqrt(u[1] * u[1] + u[2] * u[2]);
     const Real along = impulse[0] - u[0] - shift;
     const Real t1 = impulse[1] - u[1], t2 = impulse[2] - u[2];
     const Real length = std::sqrt(t1 * t1 + t2 * t2);
@@ -126,9 +123,7 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     } else {
         // files round W: what a block has beside its symmetric part acts as of the last impulse
         const Vec4 fixed = b + times(contact.skew, before);
-        next = padded(friction_ == Friction::cone_convex
-                          ? solve_convex_block(memory_.convex[place], fixed.head<3>(), contact.mu)
-                          : solve_block(contact.local, fixed.head<3>(), contact.mu));
+        next = padded(solve_block(contact.local, fixed.head<3>(), contact.mu));
         if (relaxation != 1) next = project(i, before + relaxation * (next - before));
     }
     const Vec4 change = next - before;

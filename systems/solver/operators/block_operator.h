@@ -11,7 +11,6 @@
 #include "components/types.h"
 #include "systems/solver/local/columns3.h"
 #include "systems/solver/local/solve_block.h"
-#include "systems/solver/local/solve_convex_block.h"
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/newton_memory.h"
 
@@ -39,22 +38,19 @@ struct BlockMemory {
     using Columns = Columns3;
 
     std::vector<Contact> contact;
-    std::vector<Index> offset;        // contacts + 1
-    std::vector<Index> neighbor;      // place of the other contact
-    std::vector<Columns> block;       // W_ij, i != j
-    std::vector<Vec4> impulse;        // N s
-    std::vector<ConvexBlock> convex;  // by contact, with Friction::cone_convex only
+    std::vector<Index> offset;    // contacts + 1
+    std::vector<Index> neighbor;  // place of the other contact
+    std::vector<Columns> block;   // W_ij, i != j
+    std::vector<Vec4> impulse;    // N s
     std::array<std::vector<Vec4>, workspace_limit> workspace;
     NewtonMemory newton;
 
     /// `order`: contacts of the system in the order of the sweep, those of a region one after the other. Impulses start
-    /// at zero. `friction`: the law that an operator on this memory will be asked for; only cone_convex needs more than
-    /// the others.
-    void prepare(const BlockSystem& system, std::span<const Index> order, Friction friction = Friction::cone);
+    /// at zero.
+    void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
-/// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB, the paper's pyramid or the
-/// associated law.
+/// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB or the paper's pyramid.
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// One region: the contacts at the places [begin, end) of the memory, to which no other region's blocks refer.

@@ -13,7 +13,7 @@
 namespace skerry {
 
 /// Vectors by contact that a method may ask for.
-inline constexpr std::size_t workspace_limit = 6;
+inline constexpr std::size_t workspace_limit = 4;
 
 /// What a method came to.
 struct SolveResult {
@@ -39,7 +39,7 @@ using SweepChange = SweepChangeOf<Real>;
 /// Impulses that accelerated sweeps improve. Number: what an error is, Real or Real8. W_ii is the diagonal block of
 /// contact i.
 template <class Op>
-concept SweptOperator = requires(Op op, Real relaxation, typename Op::Number number) {
+concept SweptOperator = requires(Op& op, Real relaxation, typename Op::Number number) {
     // each contact exactly in its turn, relaxed
     { op.accelerated_sweep(relaxation) } -> std::same_as<SweepChangeOf<typename Op::Number>>;
     { op.error() } -> std::same_as<typename Op::Number>;  // of the present impulse
@@ -53,20 +53,19 @@ concept SweptOperator = requires(Op op, Real relaxation, typename Op::Number num
 /// u = W r + q with a friction law, and a present impulse r. Errors are relative and mean the same for every method.
 template <class Op>
 concept ContactOperator = SweptOperator<Op> &&
-    requires(Op op, const Op constant, Index i, Real number, std::span<Vec4> out, std::span<const Vec4> in,
+    requires(Op& op, const Op& constant, Index i, Real number, std::span<Vec4> out, std::span<const Vec4> in,
              const Vec4& vector, Eigen::MatrixXd matrix) {
     { constant.size() } -> std::convertible_to<Index>;
     { op.impulse() } -> std::convertible_to<std::span<Vec4>>;  // writing to it asks for refresh()
     op.refresh();                                              // carried state again from the impulse
     // slot 0: best iterate; 1: previous, of accelerated sweeps; the rest: the method's
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
-    { op.sweep(number) } -> std::convertible_to<Real>;  // as accelerated_sweep, looking at the size alone
-    { constant.inner(i, vector, vector) } -> std::convertible_to<Real>;  // a . W_ii b
-    op.residual(out);                                                    // -u, the paper's b - A lambda
-    op.multiply(in, out);                                                // W d
-    { constant.project(i, vector) } -> std::convertible_to<Vec4>;        // friction law
-    { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;       // W(lambda) of (19)
-    { constant.normal(i) } -> std::convertible_to<Vec4>;                 // unit
+    { op.sweep(number) } -> std::convertible_to<Real>;              // as accelerated_sweep, looking at the size alone
+    op.residual(out);                                               // -u, the paper's b - A lambda
+    op.multiply(in, out);                                           // W d
+    { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // friction law
+    { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) of (19)
+    { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
     // s/kg, a number for W_ii: a third of its trace; 0: moves nothing
     { constant.mobility(i) } -> std::convertible_to<Real>;

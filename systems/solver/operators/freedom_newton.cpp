@@ -1,5 +1,5 @@
 // Newton steps of regions that touch rigid bodies: what moves with a contact, and the inertia K of it.
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

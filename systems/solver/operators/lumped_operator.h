@@ -61,7 +61,6 @@ public:
     Real error();
     /// A sweep's change is about the natural map of its start: worth a look once it is as small.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
-    Real inner(Index i, const Vec4& a, const Vec4& b) const { return memory_.contact[i].diagonal * a.dot(b); }
     void residual(std::span<Vec4> out);
     void multiply(std::span<const Vec4> in, std::span<Vec4> out);
     Vec4 project(Index i, const Vec4& impulse) const {

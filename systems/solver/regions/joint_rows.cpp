@@ -1,6 +1,6 @@
 #include "systems/solver/regions/joint_rows.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

@@ -17,7 +17,7 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
     std::size_t room = 4 * contacts;
     for (const Index body : memory.region_rigid[r]) {
         room += 2;
-        // all touched nodes, also those that only contacts of other regions name (paper_algorithm_1)
+        // all touched nodes of the body: each impulse moves them all
         if (inputs.implicit.any()) room += inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)].size();
     }
     for (const Index c : memory.region_clusters[r]) room += inputs.clusters->nodes[static_cast<std::size_t>(c)].size();

@@ -49,10 +49,6 @@ inline std::size_t workspace_slots(SolverMethod method) {
         case SolverMethod::ags:
         case SolverMethod::automatic:
             return 2;
-        case SolverMethod::nncg:
-            return 3;
-        case SolverMethod::apgd:
-            return 6;
         default:
             return 4;
     }

@@ -66,40 +66,14 @@ private:
             node_[count_] = node_[count_ + 1] = no_index;
             velocities()[count_] = padded(rigid.velocity(r));
             velocities()[count_ + 1] = padded(rigid.spins.kicked(r));
-            add_given(r);
             count_ += 2;
         }
         if (stage_.inputs.implicit.any())
-            for (const Index body : region_.rigid) {
-                const std::size_t first = count_;
+            for (const Index body : region_.rigid)
                 for (const Index n : stage_.inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)])
                     place_of(n);
-                add_deforming_given(static_cast<std::size_t>(body), first);
-            }
         for (const Index c : data_.region_clusters[static_cast<std::size_t>(number_)])
             for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) place_of(n);
-    }
-
-    /// What regions before this one gave a body that they share: nothing but with paper_algorithm_1.
-    void add_given(std::size_t r) const {
-        const Vec3 &impulse = stage_.out.contact_impulse[r], &moment = stage_.out.contact_moment[r];
-        if (impulse.isZero(0) && moment.isZero(0)) return;
-        velocities()[count_] += padded(stage_.inputs.rigid.inverse_mass(r) * impulse);
-        velocities()[count_ + 1] += padded(stage_.inputs.rigid.spins.inverse_inertia[r] * moment);
-    }
-
-    /// The same of what it deforms by. `first`: row of the first of its touched nodes.
-    void add_deforming_given(std::size_t r, std::size_t first) const {
-        const ImplicitCoupling& coupling = *stage_.inputs.implicit.coupling;
-        const std::span<const Index> nodes = coupling.nodes[r];
-        for (std::size_t from = 0; from < nodes.size(); ++from) {
-            const Index row = stage_.inputs.implicit.row(nodes[from], stage_.inputs.rigid.nodes);
-            const Vec3& impulse = stage_.out.deforming_impulse[static_cast<std::size_t>(row)];
-            if (impulse.isZero(0)) continue;
-            for (std::size_t to = 0; to < nodes.size(); ++to)
-                velocities()[first + to] +=
-                    padded(coupling.block(r, static_cast<Index>(to), static_cast<Index>(from)) * impulse);
-        }
     }
 
     /// The region's own row of a node.

@@ -28,9 +28,21 @@ TEMPLATE_TEST_CASE("every choice has a name of its own that leads back to it", "
     require_names_to_be_unique<TestType>();
 }
 
+TEST_CASE("a name that was removed is no choice, and has a hint that names one", "[unit]") {
+    for (const auto& [name, hint] : RemovedNames<SolverMethod>::table) {
+        CHECK_FALSE(from_name<SolverMethod>(name).has_value());
+        CHECK(hint_for_removed<SolverMethod>(name) == hint);
+        CHECK(hint.find(name_of(SolverMethod::automatic)) != std::string_view::npos);
+    }
+    CHECK(hint_for_removed<Friction>("cone_convex").find("\"cone\"") != std::string_view::npos);
+    CHECK(hint_for_removed<ContactRegions>("paper_algorithm_1").find("\"separate\"") != std::string_view::npos);
+    CHECK(hint_for_removed<SolverMethod>("pgs").empty());
+    CHECK(hint_for_removed<Backend>("nncg").empty());
+}
+
 TEST_CASE("names are those that scenes are written with", "[unit]") {
     REQUIRE(name_of(MaterialModel::stable_neo_hookean) == "stable_neo_hookean");
-    REQUIRE(name_of(ContactRegions::paper_algorithm_1) == "paper_algorithm_1");
+    REQUIRE(name_of(SolverMethod::pcg_pgs) == "pcg_pgs");
     REQUIRE(from_name<Friction>("Cone") == std::nullopt);  // case counts
 }
 

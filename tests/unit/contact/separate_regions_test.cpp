@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "profiling/lab/algorithm_1.h"
 #include "tests/unit/jobs/executors.h"
 
 namespace skerry::test::separate_regions_test {
@@ -43,6 +44,13 @@ Separated separate(const std::vector<Stencil>& stencil, const std::vector<Real>&
     result.ran =
         separate_regions(in_order(), stencil, inverse_mass, NodeGroups{}, mode, memory, result.regions, result.region);
     return result;
+}
+
+/// By Algorithm 1 of the paper.
+std::vector<Index> areas_of_the_paper(const std::vector<Stencil>& stencil, const std::vector<Real>& inverse_mass) {
+    std::vector<Index> area(stencil.size());
+    lab::label_by_algorithm_1(stencil, inverse_mass, area);
+    return area;
 }
 
 /// Flood fill over pairs of contacts, numbered by the first contact: the definition, O(K^2).
@@ -100,8 +108,7 @@ TEST_CASE("union-find finds the regions of a flood fill on random sets", "[unit]
         for (Real& m : inverse_mass) m = random() % 4 == 0 ? 0 : 1;
         const Separated result = separate(stencil, inverse_mass, ContactRegions::separate);
         REQUIRE(result.region == flood_fill(stencil, inverse_mass));
-        REQUIRE(count_shared_nodes(stencil, inverse_mass, result.regions) == 0);
-        REQUIRE(result.regions.independent);
+        REQUIRE(lab::count_shared_nodes(stencil, inverse_mass, result.region) == 0);
         for (std::size_t r = 0; r < result.regions.size(); ++r) {
             const auto rows = result.regions.contacts[r];
             REQUIRE(std::is_sorted(rows.begin(), rows.end()));
@@ -249,8 +256,8 @@ TEST_CASE("a node of weight zero does not join contacts", "[unit][contact]") {
 TEST_CASE("a contact without a moving node belongs to no region", "[unit][contact]") {
     const std::vector<Real> inverse_mass{0, 0, 1, 1};
     const std::vector<Stencil> stencil{touching({0, 1}), touching({2, 3}), touching({1})};
-    for (const ContactRegions mode :
-         {ContactRegions::separate, ContactRegions::global, ContactRegions::paper_algorithm_1}) {
+    CHECK(areas_of_the_paper(stencil, inverse_mass) == std::vector<Index>{no_index, 0, no_index});
+    for (const ContactRegions mode : {ContactRegions::separate, ContactRegions::global}) {
         const Separated result = separate(stencil, inverse_mass, mode);
         CHECK(result.region == std::vector<Index>{no_index, 0, no_index});
         CHECK(result.regions.contacts.item.size() == 1);
@@ -284,22 +291,19 @@ TEST_CASE("global puts all contacts into one region in contact order", "[unit][c
 TEST_CASE("the paper's Algorithm 1 leaves areas {1,2,5} and {5,6} apart, which share point 5", "[unit][contact]") {
     const std::vector<Stencil> stencil{touching({1, 2}), touching({5, 6}), touching({2, 5})};
     const std::vector<Real> inverse_mass(7, 1);
-    const Separated paper = separate(stencil, inverse_mass, ContactRegions::paper_algorithm_1);
-    CHECK(paper.region == std::vector<Index>{0, 1, 0});
-    CHECK(count_shared_nodes(stencil, inverse_mass, paper.regions) == 1);
-    CHECK_FALSE(paper.regions.independent);
-    const Separated right = separate(stencil, inverse_mass, ContactRegions::separate);
-    CHECK(right.region == std::vector<Index>{0, 0, 0});
-    CHECK(right.regions.independent);
+    const std::vector<Index> area = areas_of_the_paper(stencil, inverse_mass);
+    CHECK(area == std::vector<Index>{0, 1, 0});
+    CHECK(lab::count_shared_nodes(stencil, inverse_mass, area) == 1);
+    CHECK(separate(stencil, inverse_mass, ContactRegions::separate).region == std::vector<Index>{0, 0, 0});
 }
 
 TEST_CASE("the paper's Algorithm 1 is right on chains in order", "[unit][contact]") {
     const std::vector<Stencil> stencil{touching({1, 2}), touching({2, 3}), touching({3, 4}), touching({7, 8}),
                                        touching({8, 9})};
     const std::vector<Real> inverse_mass(10, 1);
-    const Separated paper = separate(stencil, inverse_mass, ContactRegions::paper_algorithm_1);
-    CHECK(paper.region == separate(stencil, inverse_mass, ContactRegions::separate).region);
-    CHECK(paper.regions.independent);
+    const std::vector<Index> area = areas_of_the_paper(stencil, inverse_mass);
+    CHECK(area == separate(stencil, inverse_mass, ContactRegions::separate).region);
+    CHECK(lab::count_shared_nodes(stencil, inverse_mass, area) == 0);
 }
 
 TEST_CASE("the paper's Algorithm 1 goes wrong more often the more contacts there are", "[unit][contact]") {
@@ -308,9 +312,9 @@ TEST_CASE("the paper's Algorithm 1 goes wrong more often the more contacts there
         int wrong = 0;
         for (int trial = 0; trial < 100; ++trial) {
             const std::vector<Stencil> stencil = random_stencils(random, contacts, 3 * contacts);
-            wrong += !separate(stencil, std::vector<Real>(3 * static_cast<std::size_t>(contacts), 1),
-                               ContactRegions::paper_algorithm_1)
-                          .regions.independent;
+            const std::vector<Real> inverse_mass(3 * static_cast<std::size_t>(contacts), 1);
+            const std::vector<Index> area = areas_of_the_paper(stencil, inverse_mass);
+            wrong += lab::count_shared_nodes(stencil, inverse_mass, area) > 0;
         }
         return wrong;
     };

@@ -38,20 +38,6 @@ std::string complaint_of(const Call& call) {
 
 }  // namespace
 
-TEST_CASE("a method that knows no friction is refused where there is some", "[unit][problem]") {
-    const std::string said = complaint_of([] { solve_problem(pair_problem(0.3), {.method = SolverMethod::mprgp}); });
-    CHECK(said.find("mprgp") != std::string::npos);
-    CHECK(said.find("mu = 0") != std::string::npos);
-    CHECK(solve_problem(pair_problem(0), {.method = SolverMethod::mprgp, .tolerance = 1e-12}).converged);
-
-    World world({.method = SolverMethod::mprgp});
-    const std::string material = complaint_of([&] { world.add_material({.friction = 0.2}); });
-    CHECK(material.find("friction") != std::string::npos);
-    CHECK(material.find("0.2") != std::string::npos);
-    CHECK(complaint_of([&] { world.add_material({.friction = 0, .static_friction = 0.1}); }) != "");
-    CHECK(complaint_of([&] { world.add_material({.friction = 0}); }) == "");
-}
-
 TEST_CASE("over-relaxation outside of its range is refused, inside it changes the path and not the solution",
           "[unit][problem]") {
     for (const Real wrong : {0.0, 2.0, -1.0, std::nan("")}) {
@@ -68,14 +54,6 @@ TEST_CASE("over-relaxation outside of its range is refused, inside it changes th
     CHECK(other.converged);
     CHECK(one.iterations != other.iterations);
     for (std::size_t i = 0; i < 2; ++i) CHECK((one.reaction[i] - other.reaction[i]).norm() < 1e-10);
-}
-
-TEST_CASE("with the associated law a problem's errors are those of that law", "[unit][problem]") {
-    const ContactProblem problem = pair_problem(0.3);
-    const ProblemSolution solution = solve_problem(problem, {.friction = Friction::cone_convex, .tolerance = 1e-10});
-    CHECK(solution.converged);
-    CHECK(std::abs(solution.energy_gap) < 1e-9);                       // r . u
-    CHECK(problem_error(problem, solution.reaction).relative > 1e-3);  // both contacts slide: Coulomb's law is not met
 }
 
 TEST_CASE("the settings of a world reach its contact solver, and have the same defaults", "[unit][solver]") {

@@ -109,7 +109,7 @@ TEST_CASE("withdrawn keys and values are refused with what to use instead", "[un
         {"a key that is off", scene_with(R"("settings": {"multirate": false})"), {"delete the key"}},
         {"a value",
          scene_with(R"("settings": {"integrator": "forward_euler"})"),
-         {"settings.integrator: found the withdrawn value \"forward_euler\"", "\"symplectic_euler\"", "\"leapfrog\""}},
+         {"settings.integrator: found \"forward_euler\"", "use \"symplectic_euler\"", "\"leapfrog\""}},
     });
 }
 
@@ -150,6 +150,9 @@ TEST_CASE("values of the wrong kind or out of range are refused with unit and ra
         {"unknown choice",
          scene_with(R"("settings": {"method": "pcg_psg"})"),
          {"settings.method: found \"pcg_psg\"", "\"pgs\", \"pcg_pgs\"", "nearest known one is \"pcg_pgs\""}},
+        {"choice that was removed",
+         scene_with(R"("settings": {"method": "nncg"})"),
+         {"settings.method: found \"nncg\"", "use \"automatic\" or \"ags\"", "profile_solvers"}},
         {"negative modulus",
          material_with(R"("young_modulus": -1)"),
          {"materials.rubber.young_modulus: found -1", "a number above 0 [Pa]"}},

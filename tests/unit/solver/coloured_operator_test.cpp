@@ -35,7 +35,7 @@ struct LoadedScene {
           inputs(scene.inputs()),
           out{impulse_out, velocity_next, push_out},
           stage{inputs, settings, scene.h, out, data} {
-        settings.method = SolverMethod::apgd;  // which asks for the most vectors
+        settings.method = SolverMethod::pcg_pgs;  // which asks for the most vectors
         for (std::size_t k = 0; k < scene.stencil.size(); ++k) row.push_back(static_cast<Index>(k));
         data.make_room_for(row.size(), 4 * row.size(), scene.velocity.size(), settings);
         Team alone;

@@ -38,7 +38,7 @@ TEST_CASE("no projection leaves a pull, along the normal and without friction to
     const Vec3 normal = Vec3::UnitX(), pull = -2 * normal;
     const FrictionLimits mu{0, 0};
     CHECK(project_onto_cone(pull, normal, 0) == Vec3::Zero());
-    for (const Friction friction : {Friction::cone, Friction::pyramid, Friction::cone_convex})
+    for (const Friction friction : {Friction::cone, Friction::pyramid})
         CHECK(project_friction(pull, normal, mu, friction) == Vec3::Zero());
 }
 

@@ -144,17 +144,4 @@ TEST_CASE("regions are ordered by cost, largest first, ties by number", "[unit][
     CHECK(std::find(seen.begin(), seen.end(), false) == seen.end());
 }
 
-TEST_CASE("regions of the paper's Algorithm 1 that share a node are solved one after the other", "[unit][solver]") {
-    ContactScene scene;
-    for (int n = 0; n < 7; ++n) scene.add_node(1, Vec3(0, 0, n % 2 == 0 ? -1 : 1));
-    scene.touch_node(1, 2, Vec3(0, 0, -1), 0.5);
-    scene.touch_node(5, 6, Vec3(0, 0, -1), 0.5);
-    scene.touch_node(5, 2, Vec3(0, 0, -1), 0.5);
-    const SolvedScene one = scene.solve({}, ContactRegions::paper_algorithm_1);
-    REQUIRE(one.regions.size() == 2);
-    REQUIRE_FALSE(one.regions.independent);
-    check_same(one, scene.solve({}, ContactRegions::paper_algorithm_1, Backend::threads, 4));
-    for (const Vec3& v : one.velocity) CHECK(v.allFinite());
-}
-
 }  // namespace skerry::test::region_modes_test

@@ -3,16 +3,21 @@
 // the contacts.
 #pragma once
 
-#include "systems/solver/methods/error_test.h"
-#include "systems/solver/operators/power_iteration.h"
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
 
-namespace skerry {
+#include "profiling/lab/power_iteration.h"
+#include "systems/solver/methods/error_test.h"
+
+namespace skerry::lab {
 
 /// The projection is that of the operator's friction law: with `cone` the fixed point is the exact Coulomb solution for
 /// any step length (measured against De Saxce's shifted velocity and the projection onto the cone, which it beats;
-/// docs/solvers.md), but without a theorem of convergence; with `cone_convex` the method is the convex one of the
-/// literature and converges. An iteration is one product with W, be its step taken or not. Leaves the last impulse when
-/// it converged or the count is fixed, else the best one.
+/// docs/solvers.md), but without a theorem of convergence; with the associated law (associated_operator.h)
+/// the method is the convex one of the literature and converges. An iteration is one product with W, be its step taken
+/// or not. Leaves the last impulse when it converged or the count is fixed, else the best one.
 template <ContactOperator Op>
 class AcceleratedGradients {
 public:
@@ -95,8 +100,11 @@ private:
     Real steepness_ = 1;  // L: largest eigenvalue of D^-1 W that has shown
     Real momentum_ = 1, against_ = 0;
     std::span<Vec4> previous_ = op_.workspace(1), start_ = op_.workspace(3);
+    // two vectors more than operators keep
+    std::vector<Vec4> own_ = std::vector<Vec4>(2 * op_.impulse().size());
     // -u of the impulse extrapolated to, of the last one and of the present one
-    std::span<Vec4> pull_ = op_.workspace(4), pull_previous_ = op_.workspace(2), pull_next_ = op_.workspace(5);
+    std::span<Vec4> pull_ = std::span(own_).first(op_.impulse().size()), pull_previous_ = op_.workspace(2),
+                    pull_next_ = std::span(own_).subspan(op_.impulse().size());
 };
 
 template <ContactOperator Op>
@@ -104,4 +112,4 @@ SolveResult solve_apgd(Op& op, const SolveLimits& limits) {
     return AcceleratedGradients<Op>(op, limits).run();
 }
 
-}  // namespace skerry
+}  // namespace skerry::lab

@@ -1,4 +1,4 @@
-#include "systems/solver/local/solve_convex_block.h"
+#include "profiling/lab/solve_convex_block.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace skerry {
+namespace skerry::lab {
 namespace {
 
 /// The first coordinate y of the solution on the surface of the cone, r = T (y, y_1, y_2). With the multiplier s of
@@ -70,4 +70,4 @@ Vec3 solve_convex_block(const ConvexBlock& block, const Vec3& b, Real mu) {
     return r;
 }
 
-}  // namespace skerry
+}  // namespace skerry::lab

@@ -1,4 +1,4 @@
-#include "systems/solver/local/solve_convex_block.h"
+#include "profiling/lab/solve_convex_block.h"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
@@ -9,6 +9,8 @@
 #include "tests/unit/solver/random_block.h"
 
 namespace skerry::test::solve_convex_block_test {
+
+using namespace skerry::lab;
 
 namespace {
 
@@ -28,7 +30,7 @@ Real lack(const Mat3& w, const Vec3& b, Real mu, const Vec3& r) {
 
 }  // namespace
 
-TEST_CASE("the convex local solution of 100000 random blocks meets its optimality conditions", "[property][solver]") {
+TEST_CASE("the convex local solution of 100000 random blocks meets its optimality conditions", "[property][lab]") {
     Draw draw(29);
     Real worst = 0;
     int apart = 0, sticking = 0, sliding = 0;
@@ -48,7 +50,7 @@ TEST_CASE("the convex local solution of 100000 random blocks meets its optimalit
     CHECK(std::min({apart, sticking, sliding}) > 5000);
 }
 
-TEST_CASE("the convex local solution holds for ill-conditioned blocks and any friction", "[property][solver]") {
+TEST_CASE("the convex local solution holds for ill-conditioned blocks and any friction", "[property][lab]") {
     Draw draw(29);
     for (int trial = 0; trial < 20000; ++trial) {
         const Mat3 w = draw.block(3);
@@ -61,7 +63,7 @@ TEST_CASE("the convex local solution holds for ill-conditioned blocks and any fr
     }
 }
 
-TEST_CASE("an isotropic block gives the projection onto the cone", "[unit][solver]") {
+TEST_CASE("an isotropic block gives the projection onto the cone", "[unit][lab]") {
     // the block is raised by 1e-14 of its trace
     const ConvexBlock block = prepare_convex_block(2 * Mat3::Identity(), 0.5);
     CHECK(solve_convex_block(block, Vec3(3, 3.6, 4.8), 0.5) == Vec3::Zero());  // u_n = mu |u_t|: on the dual cone
@@ -73,7 +75,7 @@ TEST_CASE("an isotropic block gives the projection onto the cone", "[unit][solve
     CHECK((solve_convex_block(block, Vec3(1, 6, 8), 0.5) - Vec3(1.6, -0.48, -0.64)).norm() < 1e-13);
 }
 
-TEST_CASE("degenerate blocks and zero friction have their convex solutions", "[unit][solver]") {
+TEST_CASE("degenerate blocks and zero friction have their convex solutions", "[unit][lab]") {
     CHECK(solve_once(Mat3::Zero(), Vec3(-1, 1, 0), 0.5) == Vec3::Zero());
     Draw draw(29);
     const Mat3 w = draw.block(0.3);
@@ -87,7 +89,7 @@ TEST_CASE("degenerate blocks and zero friction have their convex solutions", "[u
     CHECK_FALSE(solve_once(w, Vec3(std::numeric_limits<Real>::quiet_NaN(), 1, 1), 0.5).allFinite());
 }
 
-TEST_CASE("the convex local solution does not depend on the unit of the block", "[unit][solver]") {
+TEST_CASE("the convex local solution does not depend on the unit of the block", "[unit][lab]") {
     Draw draw(29);
     const Mat3 w = draw.block(0.3);
     const Vec3 b(-1, 3, 2);

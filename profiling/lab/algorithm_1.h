@@ -1,14 +1,11 @@
-// Algorithm 1 of the paper to the letter, kept for comparison: it is incorrect (docs/methods/regions.md 2).
+// Algorithm 1 of the paper to the letter, for comparison: it is incorrect (docs/methods/regions.md 2).
 #pragma once
 
 #include <span>
 
 #include "components/contact_table.h"
 
-namespace skerry {
-
-/// Whether the impulse of this contact can move anything.
-bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass);
+namespace skerry::lab {
 
 /// The paper's scan: for i = 1..n, a contact without an area opens a new one; then every later contact without an area
 /// joins the area of i if it shares a mass point with any contact of that area so far. Areas that both have numbers
@@ -18,4 +15,9 @@ bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass)
 Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                            std::span<Index> contact_region);
 
-}  // namespace skerry
+/// How many pairs of different regions share a moving node: 0 for a correct separation. `contact_region`: the region of
+/// each contact.
+Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                         std::span<const Index> contact_region);
+
+}  // namespace skerry::lab

@@ -3,9 +3,11 @@
 // Gauss-Seidel together, the other way about.
 #pragma once
 
+#include <algorithm>
+
 #include "systems/solver/methods/error_test.h"
 
-namespace skerry {
+namespace skerry::lab {
 
 /// Sweeps from the operator's present impulse. Leaves the last impulse when it converged or the count is fixed, else
 /// the best one.
@@ -36,4 +38,4 @@ SolveResult solve_nncg(Op& op, const SolveLimits& limits) {
     return test.give_up(limits.max_iterations);
 }
 
-}  // namespace skerry
+}  // namespace skerry::lab

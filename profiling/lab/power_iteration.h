@@ -1,9 +1,13 @@
 // The largest eigenvalue of D^-1 W, D_i the mobility of contact i: the step length of the gradient methods.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
 #include "systems/solver/operators/contact_operator.h"
 
-namespace skerry {
+namespace skerry::lab {
 
 /// From below, to a few percent: `steps` products, from a start without pattern so that no eigenvector is missed. At
 /// least 1 unless the operator is not finite. Uses workspace 1 and 2; `restrict_to(i, vector)` is the part of a vector
@@ -37,4 +41,4 @@ Real largest_eigenvalue(Op& op, Index steps, const Restrict& restrict_to) {
     return eigenvalue;
 }
 
-}  // namespace skerry
+}  // namespace skerry::lab

@@ -1,11 +1,11 @@
-// One contact with a general symmetric positive block under the associated law (Friction::cone_convex): the impulse r
-// in the cone K that minimises r . W r / 2 + b . r, so that u = W r + b lies in the dual cone and u . r = 0. Frame:
-// normal, tangent 1, tangent 2.
+// One contact with a general symmetric positive block under the associated law: the impulse r in the cone K that
+// minimises r . W r / 2 + b . r, so that u = W r + b lies in the dual cone and u . r = 0. Frame: normal, tangent 1,
+// tangent 2.
 #pragma once
 
 #include "components/types.h"
 
-namespace skerry {
+namespace skerry::lab {
 
 /// A block prepared for many right-hand sides. K is half of {S <= 0}, S = r_t^2 - mu^2 r_n^2; the axes diagonalise W
 /// and S together.
@@ -21,4 +21,4 @@ ConvexBlock prepare_convex_block(const Mat3& matrix, Real mu);
 /// r. A block without mobility along the normal gives zero.
 Vec3 solve_convex_block(const ConvexBlock& block, const Vec3& b, Real mu);
 
-}  // namespace skerry
+}  // namespace skerry::lab

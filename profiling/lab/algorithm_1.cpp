@@ -1,9 +1,11 @@
-#include "systems/contact/algorithm_1.h"
+#include "profiling/lab/algorithm_1.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 #include <vector>
 
-namespace skerry {
+namespace skerry::lab {
 namespace {
 
 template <class Visit>
@@ -13,13 +15,13 @@ void for_each_moving_node(const Stencil& stencil, std::span<const Real> inverse_
             visit(static_cast<std::size_t>(stencil.node[a]));
 }
 
-}  // namespace
-
 bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass) {
     bool moves = false;
     for_each_moving_node(stencil, inverse_mass, [&](std::size_t) { moves = true; });
     return moves;
 }
+
+}  // namespace
 
 Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                            std::span<Index> contact_region) {
@@ -46,4 +48,20 @@ Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Rea
     return area_count;
 }
 
-}  // namespace skerry
+Index count_shared_nodes(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
+                         std::span<const Index> contact_region) {
+    std::vector<std::pair<std::size_t, Index>> node_region;
+    for (std::size_t i = 0; i < stencil.size(); ++i)
+        if (contact_region[i] != no_index)
+            for_each_moving_node(stencil[i], inverse_mass,
+                                 [&](std::size_t node) { node_region.emplace_back(node, contact_region[i]); });
+    std::sort(node_region.begin(), node_region.end());
+    node_region.erase(std::unique(node_region.begin(), node_region.end()), node_region.end());
+    std::set<std::pair<Index, Index>> pairs;
+    for (std::size_t i = 0; i < node_region.size(); ++i)
+        for (std::size_t j = i + 1; j < node_region.size() && node_region[j].first == node_region[i].first; ++j)
+            pairs.emplace(node_region[i].second, node_region[j].second);
+    return static_cast<Index>(pairs.size());
+}
+
+}  // namespace skerry::lab

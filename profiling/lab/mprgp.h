@@ -3,12 +3,13 @@
 // friction. In the norm of the diagonal: bounds keep their form when rows are scaled.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
+#include "profiling/lab/power_iteration.h"
 #include "systems/solver/methods/error_test.h"
-#include "systems/solver/operators/power_iteration.h"
 
-namespace skerry {
+namespace skerry::lab {
 
 /// Minimises x . W x / 2 + q . x over normal impulses x >= 0. Workspace 1 keeps the gradient in place 0, 2 the
 /// direction (along the normals), 3 its product.
@@ -70,7 +71,13 @@ private:
     };
 
     Real pressed(Index i) { return op_.normal(i).dot(op_.impulse()[i]); }
-    Real diagonal(Index i) const { return op_.mobility(i) > 0 ? op_.inner(i, op_.normal(i), op_.normal(i)) : 0; }
+    /// n . W_ii n. The mobility is that where blocks are numbers times the identity.
+    Real diagonal(Index i) const {
+        if constexpr (requires { op_.inner(i, op_.normal(i), op_.normal(i)); })
+            return op_.mobility(i) > 0 ? op_.inner(i, op_.normal(i), op_.normal(i)) : 0;
+        else
+            return op_.mobility(i);
+    }
 
     Line multiply() {
         op_.multiply(direction_, product_);
@@ -141,9 +148,8 @@ private:
     Real expansion_ = 1;  // length of the projected gradient step, in units of 1/D
 };
 
-/// From the operator's present impulse; an iteration is one step. Friction is left out: the error then says so, and the
-/// engine refuses the method where there is friction. Leaves the last impulse when it converged or the count is fixed,
-/// else the best one.
+/// From the operator's present impulse; an iteration is one step. Friction is left out: the error then says so. Leaves
+/// the last impulse when it converged or the count is fixed, else the best one.
 template <ContactOperator Op>
 SolveResult solve_mprgp(Op& op, const SolveLimits& limits) {
     constexpr Index refresh_interval = 64;  // steps; the gradient is carried along and gathers rounding
@@ -163,4 +169,4 @@ SolveResult solve_mprgp(Op& op, const SolveLimits& limits) {
     return test.give_up(limits.max_iterations);
 }
 
-}  // namespace skerry
+}  // namespace skerry::lab

@@ -1,0 +1,20 @@
+// Solves a problem region by region with any method for general blocks: those of the library, and those that profiling
+// compares with them.
+#pragma once
+
+#include <functional>
+
+#include "skerry/problem.h"
+#include "systems/solver/methods/error_test.h"
+#include "systems/solver/operators/block_operator.h"
+
+namespace skerry {
+
+/// Solves one region from the operator's present impulse.
+using BlockMethod = std::function<SolveResult(BlockOperator&, const SolveLimits&)>;
+
+/// As solve_problem, by `method` in place of settings.method.
+ProblemSolution solve_by_region(const ContactProblem& problem, const ProblemSettings& settings,
+                                const BlockMethod& method);
+
+}  // namespace skerry
