@@ -18,6 +18,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # inlined.
     target_compile_options(skerry_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # The compiler collects garbage only above 600 MB: a sixth less CPU time, 200 MB more memory for the largest units.
+    target_compile_options(skerry_flags INTERFACE
+        "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=600000>")
+endif()
 if(SKERRY_ARCH)
     skerry_arch_options(skerry_arch_flags ${SKERRY_ARCH})
     target_compile_options(skerry_flags INTERFACE ${skerry_arch_flags})

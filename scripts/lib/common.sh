@@ -49,7 +49,7 @@ phase() {
     fi
 }
 
-# The lines of a log that matter: all that ctest says of failed tests, or from the first failure of ninja on, or the end.
+# The lines of a log that matter: those about failed tests, or from the first failure of ninja on, or the end.
 explain() {
     local found
     found=$(grep -n -m 1 '^FAILED: ' "$1" | cut -d: -f1 || true)
@@ -68,7 +68,7 @@ show_progress() {
     local start=$SECONDS count
     while true; do
         if [[ -t 1 ]]; then sleep 1; else sleep 10; fi
-        count=$(tail -n 1 "$2" 2>/dev/null | grep -oE '^\[[0-9]+/[0-9]+\]|^ *[0-9]+/[0-9]+ Test' | tr -d ' []Tes' || true)
+        count=$(tail -n 1 "$2" 2>/dev/null | grep -oE '^\[?[ 0-9]+/[0-9]+(\]| Test)' | tr -d ' []Test' || true)
         if [[ -t 1 ]]; then
             printf '\r\033[K%-22s %4d s %s' "$1" $((SECONDS - start)) "$count"
         else
@@ -77,11 +77,11 @@ show_progress() {
     done
 }
 
-# build PRESET [TARGET...]: configures and builds it.
+# build PRESET [TARGET...]: configures and builds it, with the options of `configure_options` if that is set.
 build() {
     local preset=$1
     shift
-    phase "$preset-configure" cmake --preset "$preset"
+    phase "$preset-configure" cmake --preset "$preset" ${configure_options:-}
     phase "$preset-build" cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 

@@ -5,7 +5,8 @@
     lint.py CLANG_TIDY BUILD_FOLDER --all    all files
 
 Most of the time of clang-tidy goes into the headers of the packages, read anew for each source. Sources are therefore
-read many at a time, as one unit. Sources that give the same private name to different things go into different units."""
+read many at a time, as one unit. Sources that give the same private name to different things go into different
+units."""
 import concurrent.futures
 import os
 import pathlib

@@ -41,7 +41,8 @@ def commands(build):
     """The compiler commands of a build folder, as lists of arguments without a compiler cache before them."""
     build = pathlib.Path(build)
     compiler = re.search(r"^CMAKE_CXX_COMPILER:\w+=(.*)$", (build / "CMakeCache.txt").read_text(), re.MULTILINE)[1]
-    all_arguments = [shlex.split(entry["command"]) for entry in json.loads((build / "compile_commands.json").read_text())]
+    database = json.loads((build / "compile_commands.json").read_text())
+    all_arguments = [shlex.split(entry["command"]) for entry in database]
     return [arguments[arguments.index(compiler):] for arguments in all_arguments if compiler in arguments]
 
 

@@ -133,7 +133,7 @@ AppendedElements append_elements(const ElementList& list, std::span<const Vec3> 
 
 AppendedElements append_elements(const ElementList& list, const ElementPlaces& places, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes) {
-    SKERRY_CHECK(places.order.size() == list.size());
+    SKERRY_CHECK(places.element.size() >= list.size());
     const std::size_t first_block = blocks.first.size(), first_row = nodes.node.size();
     AppendedElements appended{{}, {}, places.element};
     const auto lanes_of = [&](std::size_t place) {
