@@ -1,5 +1,5 @@
-# skerry_discover_tests(TARGET): each test case of a Catch2 program becomes a test of ctest, labelled with its tags. This
-# file is also the script that runs after the program was linked.
+# skerry_discover_tests(TARGET): each test case of a Catch2 program becomes a test of ctest, labelled with its tags.
+# This file is also the script that runs after the program was linked.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
     function(skerry_discover_tests target)
         set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_tests.cmake)
@@ -23,8 +23,8 @@ if(NOT result EQUAL 0 OR errors)
     message(FATAL_ERROR "${PROGRAM} does not list its tests: ${result} ${errors}")
 endif()
 string(REGEX REPLACE "\n$" "" cases "${cases}")
-# A bracket or a semicolon would end or join items of CMake's lists.
-string(REPLACE ";" "\\;" cases "${cases}")
+# A bracket or a semicolon would join or end items of CMake's lists.
+string(REPLACE ";" "<semicolon>" cases "${cases}")
 string(REPLACE "[" "<open>" cases "${cases}")
 string(REPLACE "]" "<close>" cases "${cases}")
 string(REPLACE "\n" ";" cases "${cases}")
@@ -35,6 +35,7 @@ foreach(case IN LISTS cases)
     list(POP_FRONT labels case)
     string(REPLACE "<open>" "[" case "${case}")
     string(REPLACE "<close>" "]" case "${case}")
+    string(REPLACE "<semicolon>" ";" case "${case}")
     string(REGEX REPLACE "([],[\\])" "\\\\\\1" pattern "${case}")
     set(name "[==[${TARGET}: ${case}]==]")
     string(APPEND script "add_test(${name} [==[${PROGRAM}]==] [==[${pattern}]==] -w NoTests)\n"

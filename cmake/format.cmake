@@ -1,7 +1,8 @@
-# Targets that check sources. `format` and `format_check` need clang-format, whose layout differs between versions: 14 is
-# the one that counts. `lint` needs clang-tidy. `check_includes` compiles each file alone, so that a missing include is
-# found; `lint_changed` and `check_includes_changed` do the same for files that changed lately. `check_profiling` compiles
-# the profiling programs for syntax only.
+# Targets that check sources:
+#     format, format_check      layout; needs clang-format, whose layout differs between versions: 14 counts
+#     lint, lint_changed        clang-tidy over all sources, or over those that changed lately
+#     check_includes, check_includes_changed    each file compiles alone, so that a missing include is found
+#     check_profiling           the profiling programs compile, for syntax only
 # This file is also the script that the targets run: it looks for the files then, so that a new one does not configure
 # the build anew.
 set(code_folders components jobs systems engine examples profiling tests)

@@ -42,12 +42,14 @@ void add_rows(Hash& hash, AnyColumn column, std::size_t first, std::size_t count
         for (std::size_t i = 0; i < count; ++i) add_members(hash, type, rows + i * type.bytes);
 }
 
-/// Rows begin .. end - 1 of every column that is plain state.
+/// Rows begin .. end - 1 of every column that is plain state. A range with a negative size reaches to the last row.
 void add_state(Hash& hash, AnyTable table, Range rows) {
-    for (const ColumnInfo& info : table.columns())
-        if (info.role == ColumnRole::state)
-            add_rows(hash, table.column(info), static_cast<std::size_t>(rows.begin),
-                     static_cast<std::size_t>(rows.size()));
+    for (const ColumnInfo& info : table.columns()) {
+        if (info.role != ColumnRole::state) continue;
+        const AnyColumn column = table.column(info);
+        const auto first = static_cast<std::size_t>(rows.begin);
+        add_rows(hash, column, first, std::min(static_cast<std::size_t>(rows.size()), column.size() - first));
+    }
 }
 
 Range single(std::size_t row) {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "engine/world/step/step.h"
+#include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "tests/support/worlds.h"
 

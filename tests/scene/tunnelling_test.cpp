@@ -19,7 +19,8 @@ void check_all_stopped(const Count& count, int touching, int stopped, std::uint6
     CHECK(count.wrong == "");
     CHECK(count.crossed <= crossed);
     CHECK(static_cast<int>(count.touching) > draws(touching));
-    CHECK(static_cast<int>(count.stopped) > draws(stopped));
+    // A tenth of the draws scatters: half of its share is asked for.
+    CHECK(static_cast<int>(count.stopped) >= (full_tests() ? stopped + 1 : stopped / 20));
 }
 
 /// A cylinder that turns by a tenth of a radian in a step and more is not always held off the rim of a bucket whose

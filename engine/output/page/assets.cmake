@@ -38,11 +38,13 @@ add_custom_command(OUTPUT ${page_assets}
     DEPENDS page/embed.cmake page/player/page.html page/player/page.css ${page_script_files} ${three_js}
     COMMENT "Embedding the page player" VERBATIM)
 
-set(pages
+set(page_streams
     page/stream/body_stream.cpp
     page/stream/contact_stream.cpp
     page/stream/deflate.cpp
     page/stream/pack.cpp
+)
+set(pages
     page/page_data.cpp
     page/page_document.cpp
     page/page_writer.cpp

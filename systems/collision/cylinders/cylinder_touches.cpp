@@ -38,7 +38,7 @@ Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
 }
 
 /// A circle about z, the edge between a side around the axis and one across it.
-struct Rim {
+struct CylinderRim {
     Real radius, z;       // m
     Real outward, along;  // 1 or -1: where the normals of its sides point
     bool faces(const Vec3& normal, const Vec3& direction) const {
@@ -49,7 +49,7 @@ struct Rim {
 /// The least distances along a circle, each between two places of a round of looks; of a stretch of one distance both
 /// ends.
 template <class Distance, class Visit>
-void for_each_minimum(const Rim& rim, Distance&& distance_at, Visit&& visit) {
+void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& visit) {
     struct Look {
         Vec3 direction;
         SurfacePoint on;
@@ -169,7 +169,7 @@ public:
     }
 
 private:
-    static Rim rim_of(const ColliderGeometry& cylinder, Index end) {
+    static CylinderRim rim_of(const ColliderGeometry& cylinder, Index end) {
         const Real up = end == 0 ? 1 : -1;
         return {cylinder.size[0], up * cylinder.size[1], 1, up};
     }
@@ -203,7 +203,7 @@ private:
     /// Where the rims of the cylinder are nearest to the other.
     void touch_rims() {
         for (Index end = 0; end < 2; ++end) {
-            const Rim rim = rim_of(own_, end);
+            const CylinderRim rim = rim_of(own_, end);
             for_each_minimum(
                 rim, [&](const Vec3& p) { return other_at(p); },
                 [&](Index k, const Vec3& direction, const SurfacePoint& on) {
@@ -213,7 +213,7 @@ private:
     }
 
     /// Where a rim of the other is nearest to the cylinder.
-    void touch_rim_of_other(Index rim_number, const Rim& rim) {
+    void touch_rim_of_other(Index rim_number, const CylinderRim& rim) {
         for_each_minimum(
             rim,
             [&](const Vec3& p) {
@@ -250,7 +250,7 @@ private:
                 over(k, p.at);
         }
         if (side.region != FlatSide::Region::disc) return;
-        const Rim rim = rim_of(own_, normal[2] < 0 ? 0 : 1);
+        const CylinderRim rim = rim_of(own_, normal[2] < 0 ? 0 : 1);
         Index k = RimPoints::most_of_rim;
         for_each_passing(
             rim, [&](const Vec3& p) { return to_other(p).head<2>().norm() - side.outer; },
@@ -276,7 +276,7 @@ private:
     }
 
     template <class Value, class Visit>
-    void for_each_passing(const Rim& rim, Value&& value_at, Visit&& visit) const {
+    void for_each_passing(const CylinderRim& rim, Value&& value_at, Visit&& visit) const {
         const auto at = [&](Real turn) { return rim_place(rim.radius, rim.z, {std::cos(turn), std::sin(turn), 0}); };
         constexpr Real between = 2 * std::numbers::pi / looks_around;
         Real before = value_at(at(0));

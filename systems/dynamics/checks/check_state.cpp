@@ -15,7 +15,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t node_blocks_per_job = 8, bodies_per_job = 128;
+constexpr std::size_t node_blocks_per_job = 8, checked_bodies_per_job = 128;
 constexpr std::size_t element_blocks_per_job = 256;
 
 Vec3 motion(const CheckInputs& state, std::size_t node) {
@@ -299,7 +299,7 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         return altitude > 0 && 2 * speed.body_frame[body] > looked_for * altitude;
     };
     std::atomic<bool> to_look_at{false};
-    parallel_for(executor, body_count, bodies_per_job, [&](std::size_t begin, std::size_t end) {
+    parallel_for(executor, body_count, checked_bodies_per_job, [&](std::size_t begin, std::size_t end) {
         bool any = false;
         for (std::size_t body = begin; body < end; ++body) {
             const Range blocks = state.body_node_blocks[body];
@@ -357,7 +357,7 @@ StepVerdict check_distance(Executor& executor, std::span<const Vec3> position, s
         return body_nodes[body].size() > 0 && body_mean_edge[body] > 0 &&
                spacing(body) > coarsest_place * body_mean_edge[body];
     };
-    if (!any_exceeds(executor, body_nodes.size(), bodies_per_job, is_too_far)) return {};
+    if (!any_exceeds(executor, body_nodes.size(), checked_bodies_per_job, is_too_far)) return {};
     std::size_t body = 0;
     while (!is_too_far(body)) ++body;
     return {StepFault::too_far, static_cast<Index>(body), no_index, spacing(body) / body_mean_edge[body]};

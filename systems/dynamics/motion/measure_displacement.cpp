@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t bodies_per_job = 16;  // some microseconds, where origins move
+constexpr std::size_t displaced_bodies_per_job = 16;  // some microseconds, where origins move
 
 // Fraction of the mean edge at which the origins move to the nodes. A list of a pair made at drifts a and b holds for
 // skin - 2 (a + b) of travel (contact_reach.h): at most 4 x 0.01 = 0.04 of the skin of 0.375 mean edges is lost, and
@@ -51,7 +51,7 @@ Real block_displacement_squared(std::span<const Vec3> position, std::span<const 
 
 void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
                           const DisplacementOutputs& out) {
-    parallel_for(executor, out.displacement.size(), bodies_per_job, [&](std::size_t begin, std::size_t end) {
+    parallel_for(executor, out.displacement.size(), displaced_bodies_per_job, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             Real squared = 0;
             for (Index k = bodies.body_node_blocks[b].begin; k < bodies.body_node_blocks[b].end; ++k)

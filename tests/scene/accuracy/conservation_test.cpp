@@ -215,7 +215,7 @@ TEST_CASE("a bar that bounces without friction never gains discrete energy", "[s
             mesh, {.material = material, .position = {0, 0, 0.55}, .velocity = {0, 0, -1}, .contact_distance = shell});
         // a twin that tells the elastic forces K (x - rest) of the position before the step
         ElasticBody twin({mesh.nodes, mesh.tetrahedra}, material_constants(MaterialModel::linear, 1e5, 0.3, density),
-                         Mat3::Identity(), resolved(ElementKind::smoothed, 0.3, false));
+                         Mat3::Identity(), resolved(ElementKind::smoothed, 0.3));
         const auto executor = make_executor(Backend::serial, 1);
         std::vector<Vec3> rest(world.positions(bar).begin(), world.positions(bar).end());
         const Real h = fraction * world.stable_step();

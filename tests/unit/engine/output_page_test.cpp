@@ -123,7 +123,7 @@ TEST_CASE("a stream comes back whole at any time, and goes on", "[unit][output]"
     CHECK(inflate_all(deflater.packed()).empty());
     for (int i = 0; i < 40; ++i) {
         std::string part;
-        for (int k = 0; k < 5000; ++k) put(part, static_cast<std::uint32_t>(k * k * i) * 2654435761u);
+        for (int k = 0; k < 5000; ++k) skerry::put(part, static_cast<std::uint32_t>(k * k * i) * 2654435761u);
         deflater.add(part);
         all += part;
         if (i % 13 == 0) CHECK(inflate_all(deflater.packed()) == all);
