@@ -130,7 +130,7 @@ TEST_CASE("a wedge is held by its walls, and stays if tan(a) <= mu", "[scene][ac
     }
 }
 
-TEST_CASE("a belt on a turning drum multiplies its tension by exp(mu phi)", "[scene][accuracy]") {
+TEST_CASE("a belt on a turning drum multiplies its tension by exp(mu phi)", "[scene][accuracy][slow]") {
     constexpr Real radius = 0.5, thick = 0.005, wide = 0.04, shell = 0.001, mu = 0.3, pull = 0.5;  // m, -, N
     constexpr int segments = 40;
     World world(accurate(Vec3::Zero()));

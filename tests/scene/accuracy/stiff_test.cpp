@@ -292,7 +292,7 @@ TEST_CASE("implicit bodies solved apart move as if solved together", "[scene][ac
                      .kind = Tolerance::absolute});
 }
 
-TEST_CASE("an implicit ball is pressed flat as Hertz says, whatever the step", "[scene][accuracy]") {
+TEST_CASE("an implicit ball is pressed flat as Hertz says, whatever the step", "[scene][accuracy][slow]") {
     const Flattened coarse = flatten(2, 1e-3, 10), fine = flatten(3, 1e-3, 10), slow = flatten(2, 5e-4, 30);
     accuracy::check({.item = 62,
                      .name = "implicit ball pressed on a plane, a / R = 0.1, 3 elements to the contact radius, force "
