@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Compiles files for syntax only, each of them alone.
+"""Compiles sources for syntax only, each of them alone.
 
-Without the precompiled headers a file that does not include what it uses fails:
-    check_syntax.py BUILD_FOLDER           files that changed within a day of the newest commit
-    check_syntax.py BUILD_FOLDER --all     all files
+Without the precompiled headers a source that does not include what it uses fails:
+    check_syntax.py BUILD_FOLDER           sources of the library that changed within a day of the newest commit
+    check_syntax.py BUILD_FOLDER --all     all sources of the library
     check_syntax.py BUILD_FOLDER FILE...   these files
 With them the check is faster, and finds calls that no longer fit the library:
     check_syntax.py BUILD_FOLDER --precompiled FOLDER   all sources of a folder
@@ -33,14 +33,11 @@ def main():
     flags = [*sources.common_flags(all_commands), "-w", "-fsyntax-only"]  # warnings are the build's business
     if chosen[:1] == ["--precompiled"]:
         command = [*precompiled(build, all_commands), *flags]
-        names = sources.files(chosen[1:], (".cpp",))
+        names = sources.in_folders(chosen[1:])
     else:
-        command = [all_commands[0][0], *flags, "-x", "c++"]
-        names = sources.files(sources.CODE)
-        changed = sources.changed_files()
-        if not chosen and changed is not None:
-            names = [name for name in names if name in changed]
-        elif chosen != ["--all"]:
+        command = [all_commands[0][0], *flags]
+        names = sources.of_library(chosen == ["--all"])
+        if chosen and chosen != ["--all"]:
             names = chosen
 
     def check(name):

@@ -19,22 +19,6 @@ import sources
 PROGRAM = re.compile(r"engine/program/.*")
 PRIVATE = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 NAME = re.compile(r"^(?:[A-Za-z_\[][^;={]*?\b(\w+)(?:\(|\{| =)|(?:struct|class|enum class|using) (\w+))", re.MULTILINE)
-INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
-
-
-def chosen_sources():
-    """Sources of the library that changed, and for each header that changed one source that includes it."""
-    names = [name for name in sources.files(sources.LIBRARY, (".cpp",)) if not PROGRAM.fullmatch(name)]
-    changed = sources.changed_files()
-    if "--all" in sys.argv or changed is None:
-        return names
-    chosen = {name for name in names if name in changed}
-    wanted = {name.removeprefix("engine/include/") for name in changed if name.endswith(".h")}
-    for name in names:
-        read = wanted & set(INCLUDE.findall((sources.ROOT / name).read_text()))
-        if read - set().union(*[INCLUDE.findall((sources.ROOT / other).read_text()) for other in chosen], ()):
-            chosen.add(name)
-    return sorted(chosen)
 
 
 def private_names(text):
@@ -58,7 +42,7 @@ def units_of(root, names):
 
 def main():
     tidy, build = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
-    names = chosen_sources()
+    names = [name for name in sources.of_library("--all" in sys.argv) if not PROGRAM.fullmatch(name)]
     flags = sources.common_flags(sources.commands(build))
     folder = build / "lint"
     folder.mkdir(exist_ok=True)

@@ -7,7 +7,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIBRARY = ("components", "jobs", "systems", "engine")
-CODE = (*LIBRARY, "tests", "profiling", "examples")
+INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
 # Sources that need packages, definitions or templates of their own, or belong to another project.
 SPECIAL = re.compile(
     r"jobs/backend_.*\.cpp|engine/absent/.*|engine/program/fill/.*|profiling/siconos\.cpp|profiling/.*/bullet_peer\.cpp"
@@ -20,10 +20,9 @@ def git(*arguments):
     return result.stdout if result.returncode == 0 else None
 
 
-def files(folders, suffixes=(".cpp", ".h")):
-    """Paths from the root of all files in the folders with one of these suffixes, sorted."""
-    found = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix in suffixes]
-    names = (path.relative_to(ROOT).as_posix() for path in found)
+def in_folders(folders):
+    """Paths from the root of all sources in the folders, sorted."""
+    names = (path.relative_to(ROOT).as_posix() for folder in folders for path in (ROOT / folder).rglob("*.cpp"))
     return sorted(name for name in names if not SPECIAL.fullmatch(name))
 
 
@@ -35,6 +34,24 @@ def changed_files():
     log = git("log", f"--since={int(newest) - LATELY}", "--name-only", "--format=")
     status = git("status", "--porcelain", "--untracked-files=all")
     return set(log.split()) | {line[3:] for line in status.splitlines()}
+
+
+def of_library(everything):
+    """Sources of the library and the program: all, or those that changed and, for each header that changed, one source
+    that includes it."""
+    names = in_folders(LIBRARY)
+    changed = changed_files()
+    if everything or changed is None:
+        return names
+    included = {name: set(INCLUDE.findall((ROOT / name).read_text())) for name in names}
+    chosen = {name for name in names if name in changed}
+    missing = {name.removeprefix("engine/include/") for name in changed if name.endswith(".h")}
+    missing -= set().union(*(included[name] for name in chosen))
+    for name in names:
+        if missing & included[name]:
+            chosen.add(name)
+            missing -= included[name]
+    return sorted(chosen)
 
 
 def commands(build):

@@ -14,6 +14,7 @@
 #include "systems/collision/build_surface.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/stability/stable_step.h"
+#include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
 
