@@ -32,7 +32,8 @@ def main():
     all_commands = sources.commands(build)
     flags = [*sources.common_flags(all_commands), "-w", "-fsyntax-only"]  # warnings are the build's business
     if chosen[:1] == ["--precompiled"]:
-        command = [*precompiled(build, all_commands), *flags]
+        # A build without profiling programs does not have this definition of theirs.
+        command = [*precompiled(build, all_commands), *flags, '-DSKERRY_PROFILING_FOLDER="profiling"']
         names = sources.in_folders(chosen[1:])
     else:
         command = [all_commands[0][0], *flags]
