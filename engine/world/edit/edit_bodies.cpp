@@ -178,8 +178,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     const KnownElements* const known = known_elements(model, body);
-    rows.places =
-        known ? known->places : find_places(list, rows_of(model.nodes.rest_position, nodes));
+    rows.places = known ? known->places : find_places(list, rows_of(model.nodes.rest_position, nodes));
     append_elements_of(model, list, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;

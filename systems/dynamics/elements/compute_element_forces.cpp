@@ -363,8 +363,7 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
 /// The first block after `begin` that is not of the same material, part and kind.
 std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     std::size_t b = begin + 1;
-    while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin])
-        ++b;
+    while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin]) ++b;
     return b;
 }
 

@@ -19,7 +19,6 @@ namespace skerry::test::output_page_test {
 
 namespace {
 
-
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN(), infinity = std::numeric_limits<Real>::infinity();
 
 std::string page_of(const PageData& data, const PageSummary& summary) {

@@ -11,7 +11,6 @@ namespace skerry::test::output_shapes_test {
 
 namespace {
 
-
 struct Sum {
     Real volume = 0;     // m^3, positive when triangles face outwards
     bool closed = true;  // every edge has its opposite, when vertices at the same place count as one
