@@ -29,7 +29,7 @@ TEST_CASE("random scenes have meshes of all qualities", "[unit]") {
     CHECK(flattest < 0.01);
 }
 
-TEST_CASE("random scenes run or are refused, with finite numbers all the way", "[scene]") {
+TEST_CASE("random scenes run or are refused, with finite numbers all the way", "[scene][long]") {
     const TemporaryFolder folder;
     std::uint64_t steps = 0;
     Index contacts = 0;
@@ -61,7 +61,7 @@ TEST_CASE("time goes on in a scene where surfaces keep crossing", "[scene]") {
     CHECK(crossed > 0);
 }
 
-TEST_CASE("a random scene has the same bits on other threads and another backend", "[scene][determinism]") {
+TEST_CASE("a random scene has the same bits on other threads and another backend", "[scene][determinism][long]") {
     const TemporaryFolder folder;
     for (std::uint64_t seed = 21; seed <= 24; ++seed) {
         INFO("seed " << seed);

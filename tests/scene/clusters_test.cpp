@@ -81,7 +81,7 @@ TEST_CASE("where some elements allow a little less than the others there are clu
 }
 
 TEST_CASE("clusters add at most a hundredth to a moment of inertia, or a quarter of what masses at the nodes do",
-          "[scene][clusters]") {
+          "[scene][clusters][long]") {
     Real most = 0, least = 1;
     for (const Mesh& mesh :
          {graded_box({8, 3, 3}, 2, 0.3), graded_box({8, 6, 6}, 2, 0.3), graded_box({8, 6, 6}, 4, 0.5),
@@ -123,7 +123,7 @@ TEST_CASE("a body with clusters that is strained in one place stands what its sh
     CHECK(world.stable_step() > 0.3 * rest);  // 0.25 by mass forms
 }
 
-TEST_CASE("bodies that are alike have the same implicit elements, as many as one alone", "[scene][clusters]") {
+TEST_CASE("bodies that are alike have the same implicit elements, as many as one alone", "[scene][clusters][long]") {
     const Mesh mesh = sliver_box(0.2, 6, 0.01, 0.005), other = sliver_box(0.2, 6, 0.01, 0.005, 2);
     const auto implicit = [&](std::initializer_list<const Mesh*> meshes, Index held) {
         World world(weightless(true));

@@ -156,7 +156,7 @@ Pressed press_block(const Press& press, int cells) {
 
 TEST_CASE(
     "corners, edges, rims and ends of colliders that are pressed between the nodes of a coarse block do not enter it",
-    "[scene]") {
+    "[scene][long]") {
     for (const Press& press : presses) {
         INFO(press.name);
         const Pressed pressed = press_block(press, 2);

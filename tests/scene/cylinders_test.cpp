@@ -103,7 +103,7 @@ TEST_CASE("a cylinder rolls down a slope at two thirds of its pull, without a bu
     }
 }
 
-TEST_CASE("a cylinder that rolls on its side keeps its speed for ten turns", "[scene]") {
+TEST_CASE("a cylinder that rolls on its side keeps its speed for ten turns", "[scene][long]") {
     constexpr Real speed = 3;
     for (const Floor floor : {plane, box, mesh_collider}) {
         CAPTURE(floor);
@@ -174,7 +174,7 @@ TEST_CASE("cylinders stand on each other, and on a box, and lie in a row", "[sce
     }
 }
 
-TEST_CASE("a cylinder lies in a groove, against a wall and in a bucket", "[scene]") {
+TEST_CASE("a cylinder lies in a groove, against a wall and in a bucket", "[scene][long]") {
     Cylinders c(steps_of(5e-3), 0.2);
     c.world.add_collider(Bucket{.radius = 0.5, .height = 0.6, .thickness = 0.02});
     std::vector<BodyHandle> bodies;
@@ -237,7 +237,8 @@ TEST_CASE("friction between cylinders keeps the angular momentum", "[scene]") {
     CHECK(c.world.report().max_penetration == 0);
 }
 
-TEST_CASE("a soft block holds a cylinder that stands and one that lies on it, and does not come into them", "[scene]") {
+TEST_CASE("a soft block holds a cylinder that stands and one that lies on it, and does not come into them",
+          "[scene][long]") {
     for (const Vec3& rotation : {Vec3(0.05, 0, 0.3), Vec3(0.2, pi / 2, 0.3)}) {
         CAPTURE(rotation.transpose());
         Cylinders c({.step_size = 1e-3});
@@ -376,7 +377,7 @@ TEST_CASE("what a cylinder cannot be is refused by name", "[scene]") {
     CHECK(c.world.state_hash() == before);
 }
 
-TEST_CASE("cylinders have the same bits on any number of threads, cloned, and from a file", "[determinism]") {
+TEST_CASE("cylinders have the same bits on any number of threads, cloned, and from a file", "[determinism][long]") {
     const auto course = [](int threads) {
         Settings settings = steps_of(5e-3);
         settings.backend = Backend::threads;

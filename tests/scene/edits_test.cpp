@@ -203,7 +203,7 @@ SurfaceMesh small_block() {
 
 }  // namespace
 
-TEST_CASE("a world that is changed at random goes on as one that searches everything in every step", "[scene]") {
+TEST_CASE("a world that is changed at random goes on as one that searches everything in every step", "[scene][long]") {
     std::uint64_t contacts = 0, asleep = 0;
     for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
         CAPTURE(seed);
@@ -345,7 +345,7 @@ TEST_CASE("many removed at once leave what the same removed one by one leave", "
     CHECK(at_once.world.report().pair_searches == one_by_one.world.report().pair_searches);
 }
 
-TEST_CASE("a change searches the pairs of what changed, as many in a large world as in a small one", "[scene]") {
+TEST_CASE("a change searches the pairs of what changed, as many in a large world as in a small one", "[scene][long]") {
     std::vector<std::vector<std::uint64_t>> found;
     for (const int side : {3, 9}) {
         Field field(side);
@@ -390,7 +390,7 @@ TEST_CASE("a change searches the pairs of what changed, as many in a large world
     CHECK(found[0] == found[1]);
 }
 
-TEST_CASE("who rests beside what comes, goes or changes wakes, and nobody else", "[scene]") {
+TEST_CASE("who rests beside what comes, goes or changes wakes, and nobody else", "[scene][long]") {
     Field field(5, 0.2);
     World& world = field.world;
     const std::size_t all = field.balls.size();

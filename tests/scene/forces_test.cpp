@@ -239,7 +239,8 @@ TEST_CASE("a step that was tried again counts once", "[scene]") {
     CHECK(on.impulse == world.forces().on(body, plane).impulse);
 }
 
-TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, damping and losses, too", "[scene]") {
+TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, damping and losses, too",
+          "[scene][long]") {
     for (const bool slivers : {false, true})
         for (const Real damping : {0.0, 30.0}) {
             INFO((slivers ? "slivers, damping " : "damping ") << damping);

@@ -271,7 +271,7 @@ TEST_CASE("an implicit body that is attached and let go keeps its places, veloci
     CHECK(world.report().energy_error_share < 1e-9);
 }
 
-TEST_CASE("what lies on a held implicit body rests on it and bends it", "[scene][implicit]") {
+TEST_CASE("what lies on a held implicit body rests on it and bends it", "[scene][implicit][long]") {
     const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
     for (const BodyDynamics falling :
          {BodyDynamics::rigid, BodyDynamics::implicit_elastic, BodyDynamics::explicit_elastic}) {

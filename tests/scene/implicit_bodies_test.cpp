@@ -230,7 +230,7 @@ TEST_CASE("stacks of implicit and rigid blocks come to rest, implicit ones by Ne
     CHECK(speed < 2e-6);
 }
 
-TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not", "[scene][implicit]") {
+TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not", "[scene][implicit][long]") {
     const auto unconverged = [](SolverMethod method) {
         Settings settings;
         settings.step_size = 0.01;
@@ -252,7 +252,7 @@ TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not
 }
 
 TEST_CASE("stiff implicit blocks that land on each other are solved as if they moved as wholes first",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     // few iterations: sweeps and Newton steps alone leave 32 regions of the stack; of the one whose lowest block is
     // held 35 are left where that moves as a whole, too
     const auto unconverged = [](int count, Index most, bool held) {
@@ -280,7 +280,7 @@ TEST_CASE("stiff implicit blocks that land on each other are solved as if they m
     CHECK(unconverged(6, 20, true) < 18);
 }
 
-TEST_CASE("contacts that Newton steps turn round are stopped", "[scene][implicit]") {
+TEST_CASE("contacts that Newton steps turn round are stopped", "[scene][implicit][long]") {
     // few iterations: where such contacts go on sliding 31 regions are left
     Settings settings;
     settings.step_size = 0.002;
@@ -301,7 +301,7 @@ TEST_CASE("contacts that Newton steps turn round are stopped", "[scene][implicit
 }
 
 TEST_CASE("a stack at rest whose contacts come and go by the last bits goes on from their impulses",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     Settings settings;
     settings.step_size = 0.01;
     settings.tolerance = 1e-6;

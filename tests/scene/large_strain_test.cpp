@@ -164,7 +164,7 @@ struct Dropped {
 
 }  // namespace
 
-TEST_CASE("a thin bar that is bent by a load at its end is an elastica", "[scene][implicit]") {
+TEST_CASE("a thin bar that is bent by a load at its end is an elastica", "[scene][implicit][long]") {
     const Mesh thin = mesh::box({1, 0.05, 0.05}, {20, 1, 1});
     const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     const auto tip_under = [&](Real load) {
@@ -366,7 +366,7 @@ TEST_CASE("a spinning bar that comes to rest in its frame leaves large strain, a
 }
 
 TEST_CASE("a soft implicit ball that lands is pressed flat as an explicit one, and rests as flat",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     const auto least_height = [](BodyDynamics dynamics) {
         Settings settings = settings_of(1.0 / 240, 0.55, {0, 0, -standard_gravity});
         if (dynamics == BodyDynamics::explicit_elastic) settings = {.gravity = settings.gravity, .sleep = false};
@@ -400,7 +400,8 @@ TEST_CASE("a soft implicit ball that lands is pressed flat as an explicit one, a
     CHECK(0.5 - height_at_rest(BodyDynamics::implicit_elastic) == Approx(0.5 - still).epsilon(0.02));
 }
 
-TEST_CASE("soft implicit bodies that fall on each other exchange momentum, and energy adds up", "[scene][implicit]") {
+TEST_CASE("soft implicit bodies that fall on each other exchange momentum, and energy adds up",
+          "[scene][implicit][long]") {
     World world(settings_of(1.0 / 240, 1, {0, 0, -standard_gravity}));
     const auto soft = world.add_material({.young_modulus = 5e4, .poisson_ratio = 0.3, .friction = 0.5});
     const auto add = [&](const Mesh& mesh, Real z) {

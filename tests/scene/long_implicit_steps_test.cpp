@@ -118,7 +118,7 @@ TEST_CASE("a long step ends as one implicit step with the sum of all impulses do
     CHECK(touched);
 }
 
-TEST_CASE("long steps keep momenta, gain no energy, and nothing overlaps", "[scene][implicit]") {
+TEST_CASE("long steps keep momenta, gain no energy, and nothing overlaps", "[scene][implicit][long]") {
     const Real density = GENERATE(3000.0, 300.0, 30.0);
     const int short_steps = GENERATE(1, 7, 40);
     const Real modulus = GENERATE(1e8, 1e6);
@@ -162,7 +162,7 @@ TEST_CASE("what lies on a light implicit body gains no energy by its long steps"
     CHECK(weight == Approx(mass * standard_gravity).epsilon(1e-3));
 }
 
-TEST_CASE("long steps are of first order", "[scene][implicit]") {
+TEST_CASE("long steps are of first order", "[scene][implicit][long]") {
     // a soft ball on a light block that is not much stiffer, whose vibrations each of these steps follows
     constexpr Real h_fine = 5e-6;
     const auto speed = [](Real implicit_step) {
@@ -203,7 +203,7 @@ TEST_CASE("energy of implicit bodies in long steps adds up to rounding", "[scene
 }
 
 TEST_CASE("worlds with long steps go on bit by bit, on any number of workers, saved within one, too",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     Settings settings = settings_of(h, 12 * h, {0, 0, -standard_gravity});
     Stack reference(settings, 100);
     settings.threads = 3;
@@ -254,7 +254,7 @@ TEST_CASE("a long step that ends early loses energy, as the whole one does", "[s
     CHECK(world.report().energy_error_share < 1e-11);
 }
 
-TEST_CASE("a step that is refused in the midst of a long one leaves what was there", "[scene][implicit]") {
+TEST_CASE("a step that is refused in the midst of a long one leaves what was there", "[scene][implicit][long]") {
     Stack scene(settings_of(h, 12 * h, {0, 0, -standard_gravity}), 100);
     for (int k = 0; k < 10; ++k) REQUIRE(scene.world.advance(24 * h).ok());
     WorldState& state = WorldAccess::state_of(scene.world);
@@ -282,7 +282,7 @@ TEST_CASE("a step that is refused in the midst of a long one leaves what was the
     CHECK(scene.energy() < before + 1e-6);
 }
 
-TEST_CASE("what is large, asleep or held takes no long steps, and comes back to them", "[scene][implicit]") {
+TEST_CASE("what is large, asleep or held takes no long steps, and comes back to them", "[scene][implicit][long]") {
     Settings settings = settings_of(h, 10 * h, {0, 0, -standard_gravity});
     SECTION("large strain") {
         World world(settings);

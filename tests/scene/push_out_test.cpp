@@ -6,7 +6,7 @@
 
 namespace skerry::test::scene_push_out_test {
 
-TEST_CASE("a block that starts on a floor, or in it, is lifted and not thrown", "[scene]") {
+TEST_CASE("a block that starts on a floor, or in it, is lifted and not thrown", "[scene][long]") {
     constexpr Real height = 0.2;
     for (Real young_modulus : {1e4, 1e5, 1e7, 1e9})
         for (Real start : {0.0, 1e-4, -1e-4, -2e-3}) {

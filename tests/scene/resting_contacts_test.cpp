@@ -236,7 +236,7 @@ TEST_CASE("worlds at rest that are cloned, saved and loaded show the same contac
 
 // Steps of which no stage is run
 
-TEST_CASE("a step that nothing moves in is left out, with the bits that its stages would leave", "[scene]") {
+TEST_CASE("a step that nothing moves in is left out, with the bits that its stages would leave", "[scene][long]") {
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
         Settings settings = Stack::sleepy();
         settings.integrator = integrator;

@@ -117,7 +117,7 @@ TEST_CASE("a rigid block stands below the friction angle without creep, and slid
     }
 }
 
-TEST_CASE("a heavy rigid body on a light one rests on the floor with the weight of both", "[scene][rigid]") {
+TEST_CASE("a heavy rigid body on a light one rests on the floor with the weight of both", "[scene][rigid][long]") {
     Settings settings = accurate();
     settings.step_size = 1.0 / 120;
     World world(settings);

@@ -71,7 +71,7 @@ Driven folded_sheet(bool self_contact) {
 
 }  // namespace
 
-TEST_CASE("a twisted and buckled bar with self-contact does not go through itself", "[scene]") {
+TEST_CASE("a twisted and buckled bar with self-contact does not go through itself", "[scene][long]") {
     const Driven with = twisted_bar(true);
     CHECK(with.crossed == 0);
     CHECK(with.most_contacts > 5);
@@ -79,7 +79,7 @@ TEST_CASE("a twisted and buckled bar with self-contact does not go through itsel
     CHECK(twisted_bar(false).crossed > 0);  // without it does: the test sees what it should
 }
 
-TEST_CASE("a sheet folded onto itself and pressed down does not go through itself", "[scene]") {
+TEST_CASE("a sheet folded onto itself and pressed down does not go through itself", "[scene][long]") {
     const Driven with = folded_sheet(true);
     CHECK(with.crossed == 0);
     CHECK(with.most_contacts > 10);

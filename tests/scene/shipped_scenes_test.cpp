@@ -140,7 +140,7 @@ TEST_CASE("the legs of the table stick and slip in turn while it creeps down the
     CHECK(world.energy().kinetic < 1);
 }
 
-TEST_CASE("steel balls sink into a soft bed and come to rest on it, without an overlap", "[scene]") {
+TEST_CASE("steel balls sink into a soft bed and come to rest on it, without an overlap", "[scene][long]") {
     Scene scene = open_scene("steel_balls");
     World& world = scene.world;
     REQUIRE(world.bodies().size() == 49);

@@ -206,7 +206,7 @@ struct Slab {
 
 }  // namespace
 
-TEST_CASE("a slab that should slide is never put to rest, one that has come to a stop is", "[scene]") {
+TEST_CASE("a slab that should slide is never put to rest, one that has come to a stop is", "[scene][long]") {
     for (const Real degrees : {16.71, 16.75, 16.8, 17.0, 18.0, 20.0, 22.0}) {  // friction holds 16.699
         Slab slab(degrees), awake(degrees, false);
         for (int i = 0; i < 40; ++i) {
@@ -266,7 +266,7 @@ struct Sinking {
 }  // namespace
 
 TEST_CASE("what sinks or swings under its own weight rests half a percent of its deflection from its place at most",
-          "[scene]") {
+          "[scene][long]") {
     const bool held = GENERATE(true, false);
     const Real damping = held ? GENERATE(6.0, 2.0) : GENERATE(8.0, 30.0);  // 1/s
     CAPTURE(held, damping);
@@ -360,7 +360,7 @@ TEST_CASE("while all look still regions are solved to 1e-5, before that to the t
     CHECK(tower.world.report().worst_error > 1e-4);
 }
 
-TEST_CASE("rest is the same on any number of threads", "[scene]") {
+TEST_CASE("rest is the same on any number of threads", "[scene][long]") {
     const Real speed = GENERATE(sleep_speed, own_limits);
     std::vector<std::uint64_t> hash;
     for (const int threads : {1, 2, 3}) {

@@ -51,7 +51,7 @@ std::uint64_t runs_of(const World& world, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a try as long as the one before it has the same forces without a pass over the elements", "[scene]") {
+TEST_CASE("a try as long as the one before it has the same forces without a pass over the elements", "[scene][long]") {
     World world = shot_at_sheet(), twin = shot_at_sheet();
     WorldState &state = WorldAccess::state_of(world), &forgetful = WorldAccess::state_of(twin);
     Tries tries, twin_tries;
@@ -95,7 +95,8 @@ TEST_CASE("a refused step leaves every column of state as it was", "[scene]") {
     }
 }
 
-TEST_CASE("between calls clusters are as stiff as their elements, so that no refused step stiffens them", "[scene]") {
+TEST_CASE("between calls clusters are as stiff as their elements, so that no refused step stiffens them",
+          "[scene][long]") {
     for (const Integrator integrator : {Integrator::leapfrog, Integrator::symplectic_euler}) {
         World world = test::thrown_slivers({.integrator = integrator});
         REQUIRE(world.advance(0).ok());

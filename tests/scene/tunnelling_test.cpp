@@ -34,73 +34,73 @@ void check_few_pressed(const Count& count, std::uint64_t pressed, int touching) 
 
 }  // namespace
 
-TEST_CASE("of many shots at up to 100 m/s all are stopped", "[scene][statistics]") {
+TEST_CASE("of many shots at up to 100 m/s all are stopped", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true), 950, 1000);
 }
 
 TEST_CASE("of many mesh colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
-          "[scene][statistics]") {
+          "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::surfaces), 900, 300);
 }
 
-TEST_CASE("of many shots at thin and sharp analytic colliders all are stopped", "[scene][statistics]") {
+TEST_CASE("of many shots at thin and sharp analytic colliders all are stopped", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::shot, Targets::shapes), 900, 300);
 }
 
 TEST_CASE("of many analytic colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
-          "[scene][statistics]") {
+          "[scene][long]") {
     // a ball of 84 kPa that meets a bead at 87 m/s, ten times as fast as its own waves
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::shapes), 800, 300, 1);
 }
 
-TEST_CASE("of many spheres at up to 100 m/s no surface comes into what they are shot at", "[scene][statistics]") {
+TEST_CASE("of many spheres at up to 100 m/s no surface comes into what they are shot at", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::shot, Targets::all, Bullets::spheres), 900, 300);
 }
 
-TEST_CASE("of many spheres at thin and sharp analytic colliders no surface comes into them", "[scene][statistics]") {
+TEST_CASE("of many spheres at thin and sharp analytic colliders no surface comes into them", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::shot, Targets::shapes, Bullets::spheres), 900, 10);
 }
 
-TEST_CASE("of many mesh colliders that fly at spheres no surface comes into them", "[scene][statistics]") {
+TEST_CASE("of many mesh colliders that fly at spheres no surface comes into them", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::surfaces, Bullets::spheres), 900, 0);
 }
 
-TEST_CASE("without the look at the motion of a step some of the shots come through", "[scene][statistics]") {
+TEST_CASE("without the look at the motion of a step some of the shots come through", "[scene][long]") {
     INFO("seed " << seed);
     const Count count = shoot(100, false);
     CHECK(count.wrong != "");
     CHECK(count.tests == 0);
 }
 
-TEST_CASE("of many capsules at up to 100 m/s no surface comes into what they are shot at", "[scene][statistics]") {
+TEST_CASE("of many capsules at up to 100 m/s no surface comes into what they are shot at", "[scene][long]") {
     check_all_stopped(shoot(draws(1500), true, Flying::shot, Targets::all, Bullets::capsules), 1400, 300);
 }
 
-TEST_CASE("of many capsules at thin and sharp analytic colliders no surface comes into them", "[scene][statistics]") {
+TEST_CASE("of many capsules at thin and sharp analytic colliders no surface comes into them", "[scene][long]") {
     check_all_stopped(shoot(draws(1500), true, Flying::shot, Targets::shapes, Bullets::capsules), 1400, 3);
 }
 
-TEST_CASE("of many mesh colliders that fly at capsules no surface comes into them", "[scene][statistics]") {
+TEST_CASE("of many mesh colliders that fly at capsules no surface comes into them", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::surfaces, Bullets::capsules), 950, 0);
 }
 
-TEST_CASE("of many thin and sharp colliders that fly at capsules no surface comes into them", "[scene][statistics]") {
+TEST_CASE("of many thin and sharp colliders that fly at capsules no surface comes into them", "[scene][long]") {
     check_all_stopped(shoot(draws(500), true, Flying::collider, Targets::shapes, Bullets::capsules), 450, 0);
 }
 
-TEST_CASE("of many cylinders at up to 100 m/s no surface comes into what they are shot at", "[scene][statistics]") {
+TEST_CASE("of many cylinders at up to 100 m/s no surface comes into what they are shot at", "[scene][long]") {
     check_all_stopped(shoot(draws(1500), true, Flying::shot, Targets::all, Bullets::cylinders), 1400, 300);
 }
 
-TEST_CASE("of many cylinders at thin and sharp analytic colliders none is seen in them", "[scene][statistics]") {
+TEST_CASE("of many cylinders at thin and sharp analytic colliders none is seen in them", "[scene][long]") {
     check_few_pressed(shoot(draws(1500), true, Flying::shot, Targets::shapes, Bullets::cylinders), 1, 1400);
 }
 
-TEST_CASE("of many mesh colliders that fly at cylinders no surface comes into them", "[scene][statistics]") {
+TEST_CASE("of many mesh colliders that fly at cylinders no surface comes into them", "[scene][long]") {
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::surfaces, Bullets::cylinders), 950, 0);
 }
 
-TEST_CASE("of many thin and sharp colliders that fly at cylinders none is seen in them", "[scene][statistics]") {
+TEST_CASE("of many thin and sharp colliders that fly at cylinders none is seen in them", "[scene][long]") {
     check_few_pressed(shoot(draws(500), true, Flying::collider, Targets::shapes, Bullets::cylinders), 1, 450);
 }
 

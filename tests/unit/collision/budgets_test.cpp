@@ -95,7 +95,7 @@ std::vector<std::uint64_t> bits(ContactTable& contacts) {
 }  // namespace
 
 TEST_CASE("budgets find exactly the contacts that a search of everything finds, over hundreds of random steps",
-          "[unit]") {
+          "[unit][long]") {
     const bool frames = GENERATE(false, true);
     CAPTURE(frames);
     Room thrifty, thorough;

@@ -211,7 +211,7 @@ TEST_CASE("two edges that would go through each other become a contact although 
     CHECK(std::find(w.contacts.key.begin(), w.contacts.key.end(), crossing->key) != w.contacts.key.end());
 }
 
-TEST_CASE("what find_contacts has looked at is all that a test of every feature finds to cross", "[unit]") {
+TEST_CASE("what find_contacts has looked at is all that a test of every feature finds to cross", "[unit][long]") {
     // Balls near each other get a speed, and then another: less than find_contacts takes into account, or more.
     const Real change = GENERATE(Real(0.3), Real(120));
     CAPTURE(change);

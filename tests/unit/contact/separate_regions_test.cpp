@@ -209,7 +209,7 @@ void check_same(const RegionTable& regions, const RegionTable& twin) {
     CHECK(regions.iterations.size() == twin.iterations.size());
 }
 
-TEST_CASE("many contacts are separated in blocks as in order", "[unit][contact][determinism]") {
+TEST_CASE("many contacts are separated in blocks as in order", "[unit][contact][determinism][long]") {
     std::mt19937 random(14);
     SeparationMemory in_order_memory, memory;  // of all: nothing may be left of the step before
     RegionTable regions, twin;

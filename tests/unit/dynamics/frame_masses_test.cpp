@@ -93,7 +93,7 @@ TEST_CASE("in its frame elements take no more mass than there is, and nearly all
         }
 }
 
-TEST_CASE("the step in the frame of a body is below the limit and within an eighth of it at rest", "[unit]") {
+TEST_CASE("the step in the frame of a body is below the limit and within an eighth of it at rest", "[unit][long]") {
     for (const ElementKind kind : test::element_kinds)
         for (const MaterialModel model : test::material_models)
             for (const Real jitter : {0.0, 0.3})

@@ -125,7 +125,7 @@ Matrix by_component(const Matrix& by_node) {
 
 }  // namespace
 
-TEST_CASE("with clusters the exact highest frequency stands the step", "[unit][clusters]") {
+TEST_CASE("with clusters the exact highest frequency stands the step", "[unit][clusters][long]") {
     const auto kind = GENERATE(ElementKind::linear, ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
     const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     INFO(name_of(kind) << ", " << name_of(model));

@@ -66,7 +66,7 @@ TEST_CASE("elements take no more mass than there is, and nearly all", "[unit]") 
         }
 }
 
-TEST_CASE("the step by mass forms is below the limit and near it", "[unit]") {
+TEST_CASE("the step by mass forms is below the limit and near it", "[unit][long]") {
     // docs/methods/stable_step.md 2.3: linear elements 0.7 to 0.9 of the limit at rest, smoothed ones 0.8 and more
     for (const ElementKind kind : test::element_kinds)
         for (const MaterialModel model : test::material_models)
@@ -131,7 +131,7 @@ TEST_CASE("what relaxes counts in the step by mass forms", "[unit]") {
 
 // Springs count by 2 / (2 + h r). Most elements are compared with the step that others allow, and no more is known of
 // them: none that does not stand it may pass.
-TEST_CASE("the step that is found is one that all elements stand as they relax in it", "[unit]") {
+TEST_CASE("the step that is found is one that all elements stand as they relax in it", "[unit][long]") {
     MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000);
     material.loss_factor = 0.1;
     for (const ElementKind kind : test::element_kinds)

@@ -214,7 +214,7 @@ TEST_CASE("responses of touched nodes are the columns of those nodes, whatever w
     check(some);
 }
 
-TEST_CASE("columns of all nodes that a step touches are kept, however many", "[dynamics][implicit]") {
+TEST_CASE("columns of all nodes that a step touches are kept, however many", "[dynamics][implicit][long]") {
     const ElasticBody body(jittered_box({9, 9, 9}, 0.1, 0.2, 2), stiff_rubber());
     StiffBody stiff = stiff_body_of(body);
     const std::size_t count = stiff.size(), within_memory = StiffBody::column_memory / (count * sizeof(Mat3));

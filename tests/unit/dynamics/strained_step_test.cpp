@@ -53,7 +53,7 @@ void press_middle(ElasticBody& body, const Vec3& size, Real by) {
 
 }  // namespace
 
-TEST_CASE("the step of a body that is strained in places is below the limit", "[unit]") {
+TEST_CASE("the step of a body that is strained in places is below the limit", "[unit][long]") {
     for (const ElementKind kind : test::element_kinds)
         for (const MaterialModel model : test::material_models)
             for (const Real pressed : {0.0, 0.3, 0.6, -0.6})

@@ -107,7 +107,8 @@ TEST_CASE("the impulses of a step solve the problem that it shows", "[unit][prob
     CHECK(turns > 10);
 }
 
-TEST_CASE("the impulses of a step of rigid or implicit bodies solve the problem that it shows", "[unit][problem]") {
+TEST_CASE("the impulses of a step of rigid or implicit bodies solve the problem that it shows",
+          "[unit][problem][long]") {
     const auto dynamics = GENERATE(BodyDynamics::rigid, BodyDynamics::implicit_elastic);
     const auto modulus = GENERATE(1e6, 1e9);
     Settings settings = Stack::exact();
@@ -137,7 +138,7 @@ TEST_CASE("the impulses of a step of a held implicit body solve the problem that
     for (const StepProblem& step : stack.problems) CHECK(independent_error(step.problem, step.impulse) < 1e-6);
 }
 
-TEST_CASE("the impulses of a step of rigid spheres solve the problem that it shows", "[unit][problem]") {
+TEST_CASE("the impulses of a step of rigid spheres solve the problem that it shows", "[unit][problem][long]") {
     Settings settings = Stack::exact();
     settings.step_size = 2e-3;
     Stack stack(settings, {.young_modulus = 1e6, .density = 500}, BodyDynamics::rigid);

@@ -111,7 +111,7 @@ TEST_CASE("a higher count adds cases and changes none", "[unit]") {
     CHECK(few == std::vector<double>(many.begin(), many.begin() + 5));
 }
 
-TEST_CASE("draws have the mean and the spread of their distribution", "[unit]") {
+TEST_CASE("draws have the mean and the spread of their distribution", "[unit][long]") {
     // Means of 40,000 draws are within four standard errors of theirs, 0.02 standard deviations.
     constexpr int count = 40000;
     const std::vector<double> uniform = drawn(R"("from": 2, "to": 5)", count);

@@ -55,7 +55,7 @@ std::span<const char> text(const std::string& content) {
 
 }  // namespace
 
-TEST_CASE("a saved world that was cut off anywhere is refused by its size", "[unit]") {
+TEST_CASE("a saved world that was cut off anywhere is refused by its size", "[unit][long]") {
     const SavedFile saved(full_world());
     SplitMix random(1);
     for (int i = 0; i < 200; ++i) {
@@ -74,7 +74,7 @@ TEST_CASE("a saved world that was cut off anywhere is refused by its size", "[un
     CHECK(saved.refusal(saved.bytes).empty());
 }
 
-TEST_CASE("a saved world of which any bit was turned over is refused", "[unit]") {
+TEST_CASE("a saved world of which any bit was turned over is refused", "[unit][long]") {
     const SavedFile saved(full_world());
     SplitMix random(2);
     std::vector<char> bytes = saved.bytes;
