@@ -28,7 +28,7 @@ Told run(int count, int at_once, skerry::FunctionRef<int(int)> job, bool after_f
 
 }  // namespace
 
-TEST_CASE("every job runs once, so many at a time", "[unit]") {
+TEST_CASE("every job runs once, so many at a time", "[unit][processes]") {
     const skerry::TemporaryFolder folder;
     const auto job = [&](int index) {
         std::ofstream(folder.path() / std::to_string(index), std::ios::app) << index;
@@ -45,7 +45,7 @@ TEST_CASE("every job runs once, so many at a time", "[unit]") {
     CHECK(run(0, 3, job).end.done == 0);
 }
 
-TEST_CASE("a job that ends badly, by itself or by a signal, takes no other with it", "[unit]") {
+TEST_CASE("a job that ends badly, by itself or by a signal, takes no other with it", "[unit][processes]") {
     const auto job = [](int index) {
         if (index == 1) raise(SIGKILL);
         return index == 3 ? 7 : 0;
@@ -57,14 +57,14 @@ TEST_CASE("a job that ends badly, by itself or by a signal, takes no other with 
         CHECK_THAT(how, Catch::Contains(index == 1 ? "signal 9" : "ended with 7"));
 }
 
-TEST_CASE("no job begins after one that says so", "[unit]") {
+TEST_CASE("no job begins after one that says so", "[unit][processes]") {
     const Told told = run(
         100, 1, [](int index) { return index == 4 ? 3 : 0; }, false);
     CHECK(told.end.done == 4);
     CHECK(told.end.lost.size() == 1);
 }
 
-TEST_CASE("a signal ends what is under way, and nothing begins after it", "[unit]") {
+TEST_CASE("a signal ends what is under way, and nothing begins after it", "[unit][processes]") {
     const pid_t parent = getpid();
     const auto job = [&](int index) {
         if (index == 1) kill(parent, SIGINT);
