@@ -24,10 +24,13 @@ phase() {
     trap 'kill '"$ticker"' 2>/dev/null || true' EXIT
     # A subshell, since `set -e` is off inside a function whose status is looked at.
     set +e
-    { TIMEFORMAT='%U %S'; time (
-        set -e
-        "$@"
-    ) >"$log" 2>&1; } 2>"$log.cpu"
+    {
+        TIMEFORMAT='%U %S'
+        time { (
+            set -e
+            "$@"
+        ) >"$log" 2>&1; }
+    } 2>"$log.cpu"
     status=$?
     set -e
     kill "$ticker" 2>/dev/null || true
