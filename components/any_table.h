@@ -25,7 +25,7 @@ public:
     std::byte* write() const { return static_cast<std::byte*>(changed().rows()); }
     /// New rows are value-initialised.
     void resize(std::size_t count) const;
-    /// As Column::erase.
+    /// Removes ranges of rows; Column::erase has the conditions.
     void erase(std::span<const Range> gone) const { changed().erase(gone, type_->bytes); }
     bool is(const void* column) const { return memory_ == column; }
 
@@ -68,7 +68,7 @@ public:
     AnyColumn column(const ColumnInfo& info) const {
         return {reinterpret_cast<RowMemory*>(table_ + info.offset), *info.type};
     }
-    /// Of all columns that have one row each.
+    /// Applies to all columns that have one row each.
     void resize(std::size_t rows) const;
     void erase(std::span<const Range> gone) const;
 

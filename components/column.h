@@ -77,7 +77,7 @@ public:
     }
     /// Removes `count` rows from `first` on; later rows move down in order.
     void erase(std::size_t first, std::size_t count) { changed().erase(first, count, sizeof(T)); }
-    /// Removes ranges of rows, ascending; what of them is beyond the end is not there. One pass over the rows behind.
+    /// Removes ranges of rows in ascending order, in one pass. Parts of a range beyond the last row are ignored.
     void erase(std::span<const Range> gone) { changed().erase(gone, sizeof(T)); }
     void swap(Column& other) noexcept { changed().swap(other.changed()); }
 

@@ -139,8 +139,8 @@ struct ElementPatches {
     Column<Index> node;           // by slot: row of NodeTable
     Ragged<Index> slots_of_node;  // by node, ascending
     Column<PaddedVec3> position;  // m, by slot; scratch
-    Column<PaddedVec3> force;     // N, by slot, what the patch does to the node; scratch
-    Column<Real> relaxed;         // J, by patch: what relaxed in its elements in this step; scratch
+    Column<PaddedVec3> force;     // force of the patch on the node, by slot [N]; scratch
+    Column<Real> relaxed;         // energy that relaxed in the elements of a patch in this step [J]; scratch
     // by block, of those that are viscous in this step; no rows if no block is viscous; scratch
     Column<ElementViscousImpulse> viscous_impulse;
     Column<std::uint8_t> viscous;  // by block: whether it has one in this step; as many rows; scratch

@@ -174,7 +174,7 @@ constexpr std::optional<Enum> from_name(std::string_view name) {
     return std::nullopt;
 }
 
-/// What to use in place of a name that was removed; empty for any other name.
+/// The hint that names the replacement of a removed name; empty for any other name.
 template <class Enum>
 constexpr std::string_view hint_for_removed(std::string_view name) {
     for (const auto& [removed, hint] : RemovedNames<Enum>::table)

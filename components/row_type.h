@@ -1,4 +1,4 @@
-// What the rows of a column consist of, for code that does not know their type: it saves, loads, hashes, resizes or
+// Descriptions of the rows of a column, for code that does not know their type: it saves, loads, hashes, resizes or
 // erases them. A struct that tables hold has its NumbersOf or MembersOf below its definition.
 #pragma once
 

@@ -21,7 +21,7 @@ public:
     /// The state before a solve.
     void reset();
     void solve(const SolverSettings& settings);
-    /// The same by a method of the lab.
+    /// Solves the problem with a method of the lab.
     void solve(const SolverSettings& settings, lab::Method method);
 
     const std::vector<Vec3>& impulse() const { return impulse_; }  // N s, world axes

@@ -10,7 +10,7 @@
 namespace skerry {
 namespace {
 
-/// J, what the contact's reaction and velocity miss of complementarity and of friction against the slip.
+/// Energy gap of one contact: violation of complementarity plus that of friction opposite to the slip [J].
 Real coulomb_gap(const Vec3& r, const Vec3& u, Real mu, Friction friction) {
     const Real slip = friction == Friction::cone ? std::hypot(u[1], u[2]) : std::abs(u[1]) + std::abs(u[2]);
     return r[0] * u[0] + mu * r[0] * slip + r[1] * u[1] + r[2] * u[2];

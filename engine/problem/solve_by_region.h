@@ -13,7 +13,7 @@ namespace skerry {
 /// Solves one region from the operator's present impulse.
 using BlockMethod = std::function<SolveResult(BlockOperator&, const SolveLimits&)>;
 
-/// As solve_problem, by `method` in place of settings.method.
+/// Solves a problem like solve_problem, with `method` in place of settings.method.
 ProblemSolution solve_by_region(const ContactProblem& problem, const ProblemSettings& settings,
                                 const BlockMethod& method);
 

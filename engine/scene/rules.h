@@ -46,7 +46,7 @@ using SchemaBook = Json;
 template <class T>
 struct Value;
 
-/// A key that earlier versions had, and a hint that says what to do instead.
+/// A key of earlier versions, and a hint that names its replacement.
 struct Withdrawn {
     std::string_view key, instead;
 };
@@ -64,7 +64,7 @@ public:
     Json schema(SchemaBook& book) const;
 
 protected:
-    /// How the value of a key is read and described, whatever its type.
+    /// Functions that read and describe the value of a key of any type.
     struct ValueFunctions {
         void (*read)(const Json&, const Place&, const KeyDoc&, void* value);
         Json (*describe)(SchemaBook&, const KeyDoc&);
@@ -119,7 +119,7 @@ public:
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }
     Rule& at_most_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::at_most_one, std::move(keys)); }
     Rule& together(std::vector<std::string> keys) { return group(KeyGroup::Kind::together, std::move(keys)); }
-    /// A key that is refused with a message that says what to use instead.
+    /// Refuses a key of earlier versions with a hint that names its replacement.
     Rule& withdrawn(std::string_view key, std::string_view instead) {
         add_withdrawn({key, instead});
         return *this;

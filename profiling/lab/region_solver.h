@@ -11,7 +11,7 @@ namespace skerry::lab {
 /// Keeps its memory from one call to the next.
 class RegionSolver {
 public:
-    /// As skerry::solve_regions, one region after the other; settings.method says nothing. Without clusters, rigid and
+    /// Solves regions like skerry::solve_regions, one after the other, and ignores settings.method. Without clusters, rigid and
     /// implicit bodies.
     void solve(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Method method, Real h,
                RegionTable& regions, const RegionOutputs& out);

@@ -9,7 +9,7 @@
 
 namespace skerry::lab {
 
-/// As skerry::solve_problem; settings.method says nothing. Throws std::invalid_argument when the method leaves friction
+/// Solves a problem like skerry::solve_problem and ignores settings.method. Throws std::invalid_argument when the method leaves friction
 /// out and the problem has some.
 ProblemSolution solve_problem(const ContactProblem& problem, Method method, const ProblemSettings& settings);
 

@@ -11,7 +11,7 @@ import tempfile
 
 PROGRAM, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
 
-# What has kernels of its own: laws and kinds of elements, losses, clusters, methods of the solver, sleep.
+# Runs that use every kernel: laws and kinds of elements, losses, clusters, methods of the solver, sleep.
 RUNS = [
     ("scenes/skittles.json", "0.3", []),
     ("scenes/skittles.json", "0.2", ["materials.ball.model=corotational", "materials.skittle.model=linear"]),

@@ -1,4 +1,4 @@
-// The one list of what a file holds of a world: the code that writes files and the code that reads them both walk it.
+// The only list of the contents of a saved world: the code that writes files and the code that reads them both walk it.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Writes or reads what it is given, under its path.
+/// Writes or reads columns and values under their paths.
 class Archive {
 public:
     virtual void column(const std::string& path, AnyColumn column) = 0;

@@ -16,7 +16,7 @@ inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     return sum;
 }
 
-/// The largest entries of what one iteration left, for (20) and (21).
+/// The largest entries of the residual after one iteration, for (20) and (21).
 struct ConjugateChange {
     Real impulse = 0, residual = 0;
     bool used_up = false;  // no direction to go on in

@@ -1,4 +1,4 @@
-// Tables and columns whose types the caller does not know: they do what the typed ones do.
+// Tables and columns whose types the caller does not know: they behave like the typed ones.
 #include "components/any_table.h"
 
 #include <catch2/catch.hpp>

@@ -46,7 +46,7 @@ Separated separate(const std::vector<Stencil>& stencil, const std::vector<Real>&
     return result;
 }
 
-/// By Algorithm 1 of the paper.
+/// Separates the regions with Algorithm 1 of the paper.
 std::vector<Index> areas_of_the_paper(const std::vector<Stencil>& stencil, const std::vector<Real>& inverse_mass) {
     std::vector<Index> area(stencil.size());
     lab::label_by_algorithm_1(stencil, inverse_mass, area);

@@ -43,7 +43,7 @@ SolverSettings strict(Friction friction = Friction::cone) {
     return settings;
 }
 
-/// As ContactScene::solve, by a method of the lab.
+/// Solves a scene like ContactScene::solve, with a method of the lab.
 SolvedScene solve_by(lab::Method method, const ContactScene& scene, const SolverSettings& settings,
                      ContactRegions mode = ContactRegions::separate) {
     SolvedScene result;
