@@ -32,7 +32,8 @@ void profile_cone(const SeparationOptions& options, const std::vector<StepProble
 /// The error that each method leaves after a fixed number of iterations: poor.csv.
 void profile_poor_cases(const SeparationOptions& options, const std::vector<StepProblem>& steps);
 
-/// The paper's Algorithm 1 beside union-find: number of its areas that share a node, and the cost of both. Writes algorithm_1.csv.
+/// The paper's Algorithm 1 beside union-find: number of its areas that share a node, and the cost of both. Writes
+/// algorithm_1.csv.
 void profile_algorithm_1(const SeparationOptions& options, const std::vector<StepProblem>& steps);
 
 }  // namespace skerry::profiling

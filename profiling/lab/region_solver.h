@@ -11,8 +11,8 @@ namespace skerry::lab {
 /// Keeps its memory from one call to the next.
 class RegionSolver {
 public:
-    /// Solves regions like skerry::solve_regions, one after the other, and ignores settings.method. Without clusters, rigid and
-    /// implicit bodies.
+    /// Solves regions like skerry::solve_regions, one after the other, and ignores settings.method. Without clusters,
+    /// rigid and implicit bodies.
     void solve(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Method method, Real h,
                RegionTable& regions, const RegionOutputs& out);
 

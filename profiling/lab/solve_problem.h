@@ -9,8 +9,8 @@
 
 namespace skerry::lab {
 
-/// Solves a problem like skerry::solve_problem and ignores settings.method. Throws std::invalid_argument when the method leaves friction
-/// out and the problem has some.
+/// Solves a problem like skerry::solve_problem and ignores settings.method. Throws std::invalid_argument when the
+/// method leaves friction out and the problem has some.
 ProblemSolution solve_problem(const ContactProblem& problem, Method method, const ProblemSettings& settings);
 
 using AssociatedMethod = std::function<SolveResult(AssociatedOperator&, const SolveLimits&)>;
