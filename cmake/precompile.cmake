@@ -1,6 +1,5 @@
-# The headers of packages that nearly all sources read are read once for the tests, and with SKERRY_PRECOMPILE once for
-# the library. The presets of the sanitizers, release and portable have it; the preset dev does not, and there a source
-# of the library finds only what it includes itself.
+# Headers of packages that nearly all sources include are compiled once: for the tests, and with SKERRY_PRECOMPILE for
+# the library too. A missing include of such a header does not show in the build; the target check_includes finds it.
 set(skerry_common_headers
     <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <optional> <span> <string> <vector>
     <Eigen/Geometry>)
