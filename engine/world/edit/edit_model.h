@@ -83,13 +83,13 @@ void forget_mass_forms(Model& model, Range blocks);
 /// new.
 void find_steps(Model& model, Index row, const NewBody& body, std::span<const MaterialZone> zones,
                 Column<Real>& stiffness_sum);
-/// The same after its materials have changed, all that follows from the old ones forgotten.
+/// Derives a body again after its materials have changed, without anything kept from the old ones.
 void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum);
 /// What bodies that came before have found out for a new one of their mesh, materials and element; nullptr: nothing.
 const KnownElements* known_elements(const Model& model, const NewBody& body);
 /// In place of find_steps, of a body whose elements lie as its mesh does.
 void take_steps(const KnownElements& known, Index row, Model& model);
-/// Keeps what find_steps found for a new body, for bodies of the same mesh that come later. `places` of its elements.
+/// Keeps the results of find_steps of a new body for later bodies of the same mesh. `places` of its elements.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
 
 // edit_colliders.cpp; `now` is the time at which they come, s

@@ -50,7 +50,7 @@ struct BlockMemory {
     void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
-/// F_i for rho = 1: what the impulse lacks to answer its velocity, by the cone of FCLIB or the paper's pyramid.
+/// F_i for rho = 1: residual of the impulse against its velocity, by the cone of FCLIB or the paper's pyramid.
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// One region: the contacts at the places [begin, end) of the memory, to which no other region's blocks refer.

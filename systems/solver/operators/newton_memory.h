@@ -1,4 +1,4 @@
-// What dense Newton steps work with (systems/solver/methods/newton.cpp). It stands with the operators since they keep
+// Memory of dense Newton steps (systems/solver/methods/newton.cpp). It stands with the operators since they keep
 // it.
 #pragma once
 
