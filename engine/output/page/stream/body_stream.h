@@ -56,7 +56,7 @@ public:
 
 private:
     struct Values {
-        int exponent = 0;
+        int exponent = ValueScale::lowest;
         std::vector<int> code;  // by vertex
         std::int64_t sum = 0;   // of the codes
     };

@@ -46,7 +46,7 @@ private:
 
     std::vector<Row> rows_, rows_prev_;
     std::vector<Index> order_prev_;
-    int exponent_prev_ = 0;
+    int exponent_prev_ = ValueScale::lowest;
 };
 
 }  // namespace skerry

@@ -17,6 +17,8 @@ namespace skerry {
 class ValueScale {
 public:
     static constexpr int last = 2047;
+    /// Exponents of a new scale and of the widest one: 4^highest is finite.
+    static constexpr int lowest = -255, highest = 511;
 
     void widen(Real value) {
         if (!std::isfinite(value)) return;
@@ -38,8 +40,6 @@ public:
     }
 
 private:
-    static constexpr int lowest = -255, highest = 511;  // 4^highest is finite
-
     int exponent_ = lowest;
 };
 

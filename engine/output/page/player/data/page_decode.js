@@ -2,7 +2,7 @@
 "use strict";
 
 const decode = (() => {
-  const last_code = 2047;  // of a value scale
+  const last_code = 2047, lowest_exponent = -255;  // of a value scale
 
   function bytes(base64) {
     const text = atob(base64);
@@ -54,7 +54,7 @@ const decode = (() => {
     return {
       name, vertices, node, triangles, origin, step, frames: 0, now: new Float64Array(3 * vertices),
       before: new Float64Array(3 * vertices),
-      values: times(fields, () => ({ exponent: 0, code: new Int32Array(vertices), sum: 0 })),
+      values: times(fields, () => ({ exponent: lowest_exponent, code: new Int32Array(vertices), sum: 0 })),
     };
   }
 
