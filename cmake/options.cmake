@@ -16,6 +16,7 @@ option(SKERRY_PRECOMPILE "Read package headers once for the library; a missing i
 option(SKERRY_UNITY "Compile up to twelve sources of a folder as one: faster, and a missing include goes unseen" OFF)
 option(SKERRY_FUZZERS "Build the fuzzers of the readers (clang only)" OFF)
 set(SKERRY_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
+set(SKERRY_TEST_OBJECTS "" CACHE PATH "Build folder whose compiled tests are linked; empty: tests are compiled here")
 
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Kind of build" FORCE)

@@ -39,7 +39,7 @@ World busy_world(Real step_safety, Real damping = 0, const MaterialSettings& los
 
 }  // namespace
 
-TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the error of the step", "[scene]") {
+TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the error of the step", "[scene][long]") {
     const MaterialSettings usual, none = test::lossless({});
     for (const auto& [safety, losses, most] :
          {std::tuple{0.65, none, 1e-3},  // without losses the error is of second order in the step

@@ -79,7 +79,7 @@ TEST_CASE("a node has the mean stress of its tetrahedra by volume", "[scene]") {
     CHECK((stress.front() - stress.front().transpose()).norm() <= 1e-12 * stress.front().norm());
 }
 
-TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scene]") {
+TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scene][long]") {
     const ElementKind kind = GENERATE(from_range(test::element_kinds));
     const MaterialModel model = GENERATE(from_range(test::material_models));
     const BodyDynamics dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic);

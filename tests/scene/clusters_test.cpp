@@ -194,7 +194,7 @@ TEST_CASE("where implicit elements of some bodies change, all clusters are those
     CHECK(model.clusters.inverse[0] == followed);
 }
 
-TEST_CASE("a spinning body with clusters keeps energy, momentum and angular momentum", "[scene][clusters]") {
+TEST_CASE("a spinning body with clusters keeps energy, momentum and angular momentum", "[scene][clusters][long]") {
     World world(weightless(true));
     const BodyHandle body =
         world.add_body(sliver_box(0.2, 8, 0.01, 0.005), {.material = world.add_material(lossless_rubber()),
@@ -234,7 +234,7 @@ TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
     CHECK(end.energy_error_share < 1e-2);  // booked by the masses of the nodes: 0.13
 }
 
-TEST_CASE("what hangs from clusters hangs as low as without", "[scene][clusters]") {
+TEST_CASE("what hangs from clusters hangs as low as without", "[scene][clusters][long]") {
     std::vector<Real> height;
     for (const bool clusters : {false, true}) {
         Settings settings;
@@ -257,7 +257,7 @@ TEST_CASE("what hangs from clusters hangs as low as without", "[scene][clusters]
 }
 
 TEST_CASE("bodies with clusters that meet exchange momentum, and energy adds up as their step is short",
-          "[scene][clusters]") {
+          "[scene][clusters][long]") {
     std::vector<Real> energy_error;
     for (const Real safety : {1.0, 0.5}) {
         Settings settings = weightless(true);

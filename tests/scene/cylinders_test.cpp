@@ -85,7 +85,7 @@ TEST_CASE("a cylinder slides on its end as Coulomb's law has it, and stays below
         }
 }
 
-TEST_CASE("a cylinder rolls down a slope at two thirds of its pull, without a bump", "[scene]") {
+TEST_CASE("a cylinder rolls down a slope at two thirds of its pull, without a bump", "[scene][long]") {
     constexpr Real degrees = 10, seconds = 0.5;
     const Real law = 2.0 / 3 * g * std::sin(degrees * pi / 180) * seconds;
     for (const Floor floor : floors) {
@@ -130,7 +130,7 @@ TEST_CASE("a cylinder that rolls on its side keeps its speed for ten turns", "[s
     }
 }
 
-TEST_CASE("a cylinder tips over its rim where its middle has passed the rim", "[scene]") {
+TEST_CASE("a cylinder tips over its rim where its middle has passed the rim", "[scene][long]") {
     // on a slope that it does not slide down it falls from tan(a) = 2 r / height on
     const Real falls = std::atan(2 * radius / height) * 180 / pi;
     for (const Floor floor : floors)

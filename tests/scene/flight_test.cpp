@@ -71,7 +71,7 @@ TEST_CASE("what flies has no elements to compute until it touches, and bounces a
     CHECK(fall.apart(twin) < 1e-8);
 }
 
-TEST_CASE("bodies with clusters fly as others do", "[scene][clusters]") {
+TEST_CASE("bodies with clusters fly as others do", "[scene][clusters][long]") {
     Settings settings = with_gravity();
     settings.tolerance = 1e-8;
     const Mesh mesh = sliver_box(0.2, 8, 0.01, 0.005);

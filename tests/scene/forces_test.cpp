@@ -289,7 +289,7 @@ TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, d
         }
 }
 
-TEST_CASE("an attachment that turns a bar gives the force that keeps it on its circle", "[scene]") {
+TEST_CASE("an attachment that turns a bar gives the force that keeps it on its circle", "[scene][long]") {
     Settings settings;
     settings.gravity.setZero();
     World world(settings);

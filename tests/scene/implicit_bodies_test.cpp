@@ -88,7 +88,7 @@ TEST_CASE("a free implicit body keeps its momenta, and loses no energy of its sp
 }
 
 TEST_CASE("an implicit block stands below the friction angle without creep, and slides above it by the law",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     const Real mu = 0.3, critical = std::atan(mu) * 180 / std::numbers::pi;
     for (const Real modulus : {1e7, 1e9, 2e11})
         for (const Real h : {1.0 / 60, 1.0 / 1000}) {

@@ -168,7 +168,7 @@ TEST_CASE("leapfrog keeps order 2 when the length of the step changes all the ti
     CHECK(std::log2(error(100) / error(200)) == Approx(2).margin(0.05));
 }
 
-TEST_CASE("after an impact symplectic Euler converges with order 1 and leapfrog no slower", "[scene]") {
+TEST_CASE("after an impact symplectic Euler converges with order 1 and leapfrog no slower", "[scene][long]") {
     // When the surface is met within a step changes the errors from step length to step length, so the order is taken
     // over a factor of eight. A single soft touch such as this one leaves leapfrog nearly its second order; only order
     // 1 is asked of it.

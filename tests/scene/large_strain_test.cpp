@@ -191,7 +191,8 @@ TEST_CASE("a thin bar that is bent by a load at its end is an elastica", "[scene
     }
 }
 
-TEST_CASE("a bent cantilever that is let go moves as an explicit one, to the order of the step", "[scene][implicit]") {
+TEST_CASE("a bent cantilever that is let go moves as an explicit one, to the order of the step",
+          "[scene][implicit][long]") {
     const auto kind = GENERATE(ElementKind::linear, ElementKind::smoothed);
     const MaterialSettings soft =
         lossless({.young_modulus = kind == ElementKind::linear ? 3e5 : 1e6, .poisson_ratio = 0.3});
@@ -219,7 +220,7 @@ TEST_CASE("a bent cantilever that is let go moves as an explicit one, to the ord
 }
 
 TEST_CASE("a free bar that is let go stretched and twisted keeps its momenta and gains no energy",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     const Real theta = GENERATE(1.0, 0.75);
     CAPTURE(name_of(model), theta);
@@ -242,7 +243,7 @@ TEST_CASE("a free bar that is let go stretched and twisted keeps its momenta and
 }
 
 TEST_CASE("a free bar that spins stretched keeps the angular momentum of its nodes, and gains no energy",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     const Real theta = GENERATE(1.0, 0.55);
     CAPTURE(name_of(model), theta);
@@ -273,7 +274,7 @@ TEST_CASE("a free bar that spins stretched keeps the angular momentum of its nod
 }
 
 TEST_CASE("a free bar that spins stretched turns and shortens as an explicit one, to the order of the step",
-          "[scene][implicit]") {
+          "[scene][implicit][long]") {
     constexpr Real h = 4e-3, time = 0.16;
     const auto along = [&](Real step, BodyDynamics dynamics) {
         Spun scene(settings_of(step, 1, Vec3::Zero()), dynamics);

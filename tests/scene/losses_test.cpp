@@ -68,7 +68,7 @@ Real bending_period(Real young_modulus, Real density) {
 
 }  // namespace
 
-TEST_CASE("a bending beam loses what its loss factor says, at any stiffness", "[scene][accuracy]") {
+TEST_CASE("a bending beam loses what its loss factor says, at any stiffness", "[scene][accuracy][long]") {
     for (Real young_modulus : {1e4, 1e6, 1e10})
         for (Real loss_factor : {0.02, 0.05, 0.1}) {
             Beam beam({.young_modulus = young_modulus, .poisson_ratio = 0.3, .loss_factor = loss_factor});
@@ -110,7 +110,7 @@ TEST_CASE("losses keep momentum and leave rigid motion alone", "[scene]") {
     }
 }
 
-TEST_CASE("at its stable step a body with losses is stable, and energy adds up", "[scene]") {
+TEST_CASE("at its stable step a body with losses is stable, and energy adds up", "[scene][long]") {
     for (MaterialModel model : {MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean})
         for (const auto& [loss_factor, viscosity] : {std::pair{0.3, 0.0}, {0.0, 1.0}, {0.3, 1.0}, {0.05, 0.06}}) {
             World world(Settings{.gravity = Vec3::Zero()});

@@ -134,7 +134,7 @@ TEST_CASE("the state of a body tells which of its tetrahedra have which material
     CHECK(hash_of(true) != hash_of(false));
 }
 
-TEST_CASE("a body of several materials has the same bits on any number of threads", "[scene][determinism]") {
+TEST_CASE("a body of several materials has the same bits on any number of threads", "[scene][determinism][long]") {
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 8}) {
         World world(Settings{.threads = threads});
@@ -150,7 +150,7 @@ TEST_CASE("a body of several materials has the same bits on any number of thread
     CHECK(hashes == std::vector<std::uint64_t>(3, hashes.front()));
 }
 
-TEST_CASE("what materials of one body lose adds up", "[scene]") {
+TEST_CASE("what materials of one body lose adds up", "[scene][long]") {
     struct Case {
         MaterialModel below, above;
         Real loss_below, loss_above;

@@ -173,7 +173,7 @@ TEST_CASE("what hangs on an attachment that moves does not rest, however slowly 
 
 // The engine's own limits (docs/methods/skipping.md 3.1)
 
-TEST_CASE("by the engine's own limits what has settled rests close to where it would go on", "[scene]") {
+TEST_CASE("by the engine's own limits what has settled rests close to where it would go on", "[scene][long]") {
     Tower tower(own_limits), awake(0);
     REQUIRE(tower.settle());
     REQUIRE(awake.world.advance(tower.world.time() + 1).ok());
@@ -282,7 +282,7 @@ TEST_CASE("what sinks or swings under its own weight rests half a percent of its
     CHECK(deflection(sleepy) == Approx(deflection(awake)).epsilon(5e-3));
 }
 
-TEST_CASE("a block that begins to tip over is never put to rest", "[scene]") {
+TEST_CASE("a block that begins to tip over is never put to rest", "[scene][long]") {
     for (const Real degrees : {14.2, 14.5, 15.5}) {  // a stiff one stands up to 14.04
         World world(Slab::settings(degrees));
         world.add_collider(Plane{});
@@ -298,7 +298,8 @@ TEST_CASE("a block that begins to tip over is never put to rest", "[scene]") {
     }
 }
 
-TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling, carried, or by a motor", "[scene]") {
+TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling, carried, or by a motor",
+          "[scene][long]") {
     constexpr Real speed = 1e-4;  // m/s: 2 to 7 times slower than what comes too far to be still
     enum What { on_ice, rolling, carried, by_motor };
     const auto what = GENERATE(on_ice, rolling, carried, by_motor);
@@ -341,7 +342,7 @@ TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling
 }
 
 TEST_CASE("while all look still regions are solved to 1e-5, before that to the tolerance, with the same bits",
-          "[scene]") {
+          "[scene][long]") {
     Tower tower(own_limits), awake(0);
     std::vector<Real> error, error_awake;  // of each call
     while (!tower.all_asleep() && tower.world.time() < 8) {

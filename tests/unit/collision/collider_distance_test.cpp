@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/support/collision_world.h"
+#include "tests/support/draws.h"
 
 namespace skerry::test::collider_distance_test {
 
@@ -125,7 +126,7 @@ TEST_CASE("the distance to every shape agrees with its sampled surface, inside a
         INFO(shape.name);
         const RigidMotion motion = test::CollisionWorld::at(random.vector(), random.rotation());
         const std::vector<Vec3> surface = sample_surface(shape.geometry, step);
-        for (int trial = 0; trial < 300; ++trial) {
+        for (int trial = 0; trial < draws(300); ++trial) {
             const Vec3 local = 1.2 * random.vector();
             const SurfacePoint found =
                 distance_to_collider(shape.geometry, motion, motion.position + motion.rotation * local);
@@ -145,7 +146,7 @@ TEST_CASE("normal and nearest point belong to the distance, and its gradient is 
         INFO(shape.name);
         const RigidMotion motion = test::CollisionWorld::at(random.vector(), random.rotation());
         int compared = 0;
-        for (int trial = 0; trial < 300; ++trial) {
+        for (int trial = 0; trial < draws(300); ++trial) {
             const Vec3 p = motion.position + motion.rotation * Vec3(1.2 * random.vector());
             const SurfacePoint found = distance_to_collider(shape.geometry, motion, p);
             CHECK(found.normal.norm() == Approx(1).epsilon(1e-12));
@@ -164,7 +165,7 @@ TEST_CASE("normal and nearest point belong to the distance, and its gradient is 
             // curvature at points near the axis of a body of revolution
             CHECK((gradient - found.normal).norm() <= 1e-4);
         }
-        CHECK(compared > 290);
+        CHECK(compared > draws(290));
     }
 }
 
@@ -199,7 +200,7 @@ TEST_CASE("outside a bucket the nearer of its parts is the distance to it; in it
     test::Random random(13);
     const RigidMotion motion = test::CollisionWorld::at(random.vector(), random.rotation());
     REQUIRE(collider_part_count(bucket.shape) == 2);
-    for (int trial = 0; trial < 300; ++trial) {
+    for (int trial = 0; trial < draws(300); ++trial) {
         const Vec3 p = motion.position + motion.rotation * Vec3(random.vector());
         const Real whole = distance_to_collider(bucket, motion, p).distance;
         const Real least = std::min(distance_to_collider_part(bucket, motion, 0, p).distance,

@@ -5,6 +5,7 @@
 
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/colliders/face_contact.h"
+#include "tests/support/draws.h"
 #include "tests/support/random.h"
 
 namespace skerry::test::collider_features_test {
@@ -58,8 +59,8 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
     test::Random random{7};
     for (const Named& shape : shapes) {
         INFO(shape.name);
-        std::size_t between = 0;
-        for (int trial = 0; trial < 4000; ++trial) {
+        int between = 0;
+        for (int trial = 0; trial < draws(4000); ++trial) {
             const Vec3 a = 1.2 * random.vector(), b = a + 0.4 * random.vector();
             for (Index part = 0; part < collider_part_count(shape.geometry.shape); ++part) {
                 const Sampled sampled = sample_edge(shape.geometry, part, a, b);
@@ -94,7 +95,7 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
                 if (sampled.least < 0.2) CHECK(least <= sampled.least + 2e-4 * length);
             }
         }
-        CHECK(between > 50);
+        CHECK(between > draws(50));
     }
 }
 
@@ -129,7 +130,7 @@ TEST_CASE("where a collider is flat no place of a segment or triangle is nearer 
     for (const Named& shape : shapes) {
         INFO(shape.name);
         std::size_t flat = 0;
-        for (int trial = 0; trial < 20000; ++trial) {
+        for (int trial = 0; trial < draws(20000); ++trial) {
             const Vec3 middle = 0.9 * random.vector();
             const LocalFace face{middle + 0.2 * random.vector(), middle + 0.2 * random.vector(),
                                  middle + 0.2 * random.vector()};
@@ -160,7 +161,7 @@ TEST_CASE("the distance of a hull is a bound of that of each of its places", "[u
     for (const Named& shape : shapes) {
         INFO(shape.name);
         Real tightest = std::numeric_limits<Real>::infinity();
-        for (int trial = 0; trial < 2000; ++trial) {
+        for (int trial = 0; trial < draws(2000); ++trial) {
             const Vec3 middle = 1.5 * random.vector();
             const LocalFace face{middle + 0.3 * random.vector(), middle + 0.3 * random.vector(),
                                  middle + 0.3 * random.vector()};
@@ -178,8 +179,8 @@ TEST_CASE("a face meets the deepest point of a collider behind it, or an edge or
         INFO(shape.name);
         if (shape.geometry.shape == ColliderShape::bucket)
             continue;  // not convex: what is least may be inside its hollow
-        std::size_t faces = 0;
-        for (int trial = 0; trial < 3000; ++trial) {
+        int faces = 0;
+        for (int trial = 0; trial < draws(3000); ++trial) {
             const Vec3 middle = 1.5 * random.vector();
             const LocalFace face{middle + 0.5 * random.vector(), middle + 0.5 * random.vector(),
                                  middle + 0.5 * random.vector()};
@@ -205,7 +206,7 @@ TEST_CASE("a face meets the deepest point of a collider behind it, or an edge or
             CHECK(std::min(found, of_faces) <= truth + 1e-3);
             CHECK(std::min(found, of_faces) >= truth - 2e-2);
         }
-        CHECK(faces > 20);
+        CHECK(faces > draws(20));
     }
 }
 

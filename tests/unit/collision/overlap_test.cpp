@@ -5,6 +5,7 @@
 #include "systems/collision/build_surface.h"
 #include "systems/collision/overlap/collider_overlap.h"
 #include "systems/collision/overlap/solid_overlap.h"
+#include "tests/support/draws.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
 #include "tests/support/surfaces_cross.h"
@@ -75,7 +76,7 @@ bool overlap_by_force(const Solid& first, const Solid& second, const Vec3& shift
 TEST_CASE("tetrahedra overlap as every edge, face and corner says, and are apart where the way out ends", "[unit]") {
     Random random(1);
     int overlapping = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < draws(3000); ++i) {
         const Solid a = solid_of(one_tetrahedron(random)), b = solid_of(one_tetrahedron(random));
         const Vec3 shift = random.vector();
         const SimplexOverlap overlap(a.at(0).moved(shift), b.at(0), 0);
@@ -87,7 +88,7 @@ TEST_CASE("tetrahedra overlap as every edge, face and corner says, and are apart
         CHECK(SimplexOverlap(a.at(0).moved(shift + (way - 1e-6) * direction), b.at(0), 0).overlapping());
         CHECK_FALSE(SimplexOverlap(a.at(0).moved(shift + (way + 1e-6) * direction), b.at(0), 0).overlapping());
     }
-    CHECK(overlapping > 500);
+    CHECK(overlapping > draws(500));
 }
 
 TEST_CASE("a triangle overlaps a tetrahedron that it goes through, and none that it lies on", "[unit]") {
@@ -209,7 +210,7 @@ TEST_CASE("points are inside of a surface as they are inside of its tetrahedra, 
     Random random(2);
     const SolidMesh ball = ball_mesh(1, 4);
     const Solid tetrahedra = solid_of(ball), shell = surface_of(ball);
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < draws(2000); ++i) {
         const Vec3 x = 1.2 * random.vector();
         CHECK(contains(shell, x, 0) == contains(tetrahedra, x, 0));
     }
@@ -218,7 +219,7 @@ TEST_CASE("points are inside of a surface as they are inside of its tetrahedra, 
 TEST_CASE("random solids overlap if and only if every edge, face and node by itself says so", "[unit]") {
     Random random(3);
     int overlapping = 0, apart = 0;
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < draws(1000); ++i) {
         const auto any = [&] {
             const Mat3 turn = random.rotation();
             if (random.number() > 0) return solid_of(ball_mesh(0.5 + 0.2 * random.number(), 2), turn);
@@ -237,8 +238,8 @@ TEST_CASE("random solids overlap if and only if every edge, face and node by its
         CHECK_FALSE(overlap_at(first, second, shift + (overlap->depth + 1e-7) * overlap->direction));
         if (overlap->kind == OverlapKind::crossing) CHECK(overlap->depth < 2);
     }
-    CHECK(overlapping > 100);
-    CHECK(apart > 100);
+    CHECK(overlapping > draws(250));
+    CHECK(apart > draws(250));
 }
 
 TEST_CASE("a box in every collider is found, outside by nothing it is not", "[unit]") {

@@ -9,6 +9,7 @@
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/geometry/rotation.h"
 #include "systems/geometry/time_of_contact.h"
+#include "tests/support/draws.h"
 #include "tests/support/random.h"
 
 namespace skerry::test::time_of_touch_test {
@@ -183,7 +184,7 @@ TEST_CASE("nodes that end a step behind a plane are found, and no others", "[uni
     Random random{23};
     const ColliderGeometry plane{ColliderShape::plane, Vec3::Zero()};
     Tally tally;
-    for (int trial = 0; trial < 300; ++trial) {
+    for (int trial = 0; trial < draws(300); ++trial) {
         const Scene scene = random_scene(random, Kind::node, 0, 0.2 * random.vector(), trial % 3 == 0);
         const Real start = scene.at(0)[0].z(), end = scene.at(1)[0].z();
         const std::optional<Touch> touch = first_touch(plane, scene.motion, h, scene.feature);
@@ -192,15 +193,15 @@ TEST_CASE("nodes that end a step behind a plane are found, and no others", "[uni
         ++(touch ? tally.touching : tally.free);
         if (touch) CHECK(touch->normal.z() == Approx(1));
     }
-    CHECK(tally.touching > 50);
-    CHECK(tally.free > 50);
+    CHECK(tally.touching > draws(50));
+    CHECK(tally.free > draws(50));
 }
 
 TEST_CASE("spheres that come to touch a collider are found before they do, and no others", "[unit]") {
     Random random{19};
     for (const Named& shape : shapes) {
         Tally tally;
-        for (int trial = 0; trial < 200; ++trial) {
+        for (int trial = 0; trial < draws(800); ++trial) {
             const Index part = trial % collider_part_count(shape.geometry.shape);
             Scene scene = random_scene(random, Kind::node, part, inside(random, shape.geometry), trial % 3 == 0);
             const Real radius = 0.2 * std::abs(random.number()),
@@ -224,8 +225,8 @@ TEST_CASE("spheres that come to touch a collider are found before they do, and n
             CHECK(touch->distance > 0);
             CHECK(touch->distance <= 1e-3);
         }
-        CHECK(tally.touching > 10);
-        CHECK(tally.free > 10);
+        CHECK(tally.touching > draws(40));
+        CHECK(tally.free > draws(40));
     }
 }
 
@@ -234,7 +235,7 @@ TEST_CASE("points, ends and rims of colliders that come to touch a face are foun
     int free = 0;
     for (const Named& shape : shapes) {
         int touching = 0;
-        for (int trial = 0; trial < 250; ++trial) {
+        for (int trial = 0; trial < draws(1000); ++trial) {
             Index k = trial % collider_point_count(shape.geometry.shape);
             const bool has_rims =
                 shape.geometry.shape == ColliderShape::cylinder || shape.geometry.shape == ColliderShape::bucket;
@@ -255,9 +256,9 @@ TEST_CASE("points, ends and rims of colliders that come to touch a face are foun
             CHECK(touch->normal.norm() == Approx(1));
         }
         INFO(shape.name);
-        CHECK(touching > 2);
+        CHECK(touching > draws(8));
     }
-    CHECK(free > 50);
+    CHECK(free > draws(200));
 }
 
 TEST_CASE("a face that slides very near along a ball for long is not given up as touching", "[unit]") {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "systems/geometry/closest_points.h"
+#include "tests/support/draws.h"
 #include "tests/support/random.h"
 
 namespace skerry::test::time_of_contact_test {
@@ -123,7 +124,7 @@ TEST_CASE("the time of contact is never later than the exact one, and then they 
     Random random(seed);
     for (FeaturePair kind : {FeaturePair::point_triangle, FeaturePair::edge_edge}) {
         int met = 0, reported = 0;
-        for (int trial = 0; trial < 20000; ++trial) {
+        for (int trial = 0; trial < draws(20000); ++trial) {
             const FourPoints x = random_points(random, 1);
             // Half of them aim at the other feature, with some common motion; the rest move anyhow.
             FourPoints d = random_points(random, 1);
@@ -140,8 +141,8 @@ TEST_CASE("the time of contact is never later than the exact one, and then they 
             check_against_oracle(kind, x, d, met);
             reported += time_of_contact(kind, x, d).has_value();
         }
-        CHECK(met > 5000);
-        CHECK(reported - met > 100);  // near misses count
+        CHECK(met > draws(5000));
+        CHECK(reported - met > draws(100));  // near misses count
     }
 }
 
@@ -149,7 +150,7 @@ TEST_CASE("features that stay further apart than the slack are never reported", 
     Random random(seed + 1);
     int far = 0;
     for (FeaturePair kind : {FeaturePair::point_triangle, FeaturePair::edge_edge})
-        for (int trial = 0; trial < 2000; ++trial) {
+        for (int trial = 0; trial < draws(2000); ++trial) {
             const FourPoints x = random_points(random, 1), d = random_points(random, 1);
             Real nearest = std::numeric_limits<Real>::infinity();
             for (int i = 0; i <= 200; ++i) nearest = std::min(nearest, distance_at(kind, x, d, i / 200.0));
@@ -158,7 +159,7 @@ TEST_CASE("features that stay further apart than the slack are never reported", 
             ++far;
             REQUIRE_FALSE(time_of_contact(kind, x, d));
         }
-    CHECK(far > 2000);
+    CHECK(far > draws(2000));
 }
 
 TEST_CASE("degenerate motions have the time of contact that they should", "[unit]") {
@@ -228,7 +229,7 @@ TEST_CASE("features that keep a distance are not nearer before the time, and the
     constexpr int looks = 300;
     for (FeaturePair kind : {FeaturePair::point_triangle, FeaturePair::edge_edge}) {
         int met = 0, passed = 0;
-        for (int trial = 0; trial < 1000; ++trial) {
+        for (int trial = 0; trial < draws(1000); ++trial) {
             const FourPoints x = random_points(random, 1), d = random_points(random, 1);
             const Real start = distance_at(kind, x, d, 0);
             const KeptApart kept{start * 0.9 * std::abs(random.number()), trial % 2 ? 1e-3 * start : 1};
@@ -240,8 +241,8 @@ TEST_CASE("features that keep a distance are not nearer before the time, and the
                 REQUIRE(distance_at(kind, x, d, *time) - kept.distance <=
                         std::min(contact_slack * (start - kept.distance), kept.near));
         }
-        CHECK(met > 100);
-        CHECK(passed > 100);
+        CHECK(met > draws(100));
+        CHECK(passed > draws(100));
     }
 }
 

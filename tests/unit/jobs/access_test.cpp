@@ -371,7 +371,7 @@ TEST_CASE("workers that help one stage and then another may touch what that one 
 
 #else
 
-// What a stage may touch is checked, and the check tested, in builds without NDEBUG: those of the sanitizers.
+// What a stage may touch is checked, and the check tested, in builds without NDEBUG: that of the thread sanitizer.
 
 #endif
 

@@ -5,11 +5,12 @@
 #include "components/check.h"
 #include "engine/world/world_state.h"
 
-namespace skerry::test::scene_access_test {
+namespace skerry::test::determinism_access_test {
 
 #ifdef SKERRY_CHECK_ACCESS
 
-TEST_CASE("a stage that is slipped into the step and looks at what it has not declared fails, by name", "[scene]") {
+TEST_CASE("a stage that is slipped into the step and looks at what it has not declared fails, by name",
+          "[determinism]") {
     WorldState world{Settings{}};
     world.scratch.parameters.h = world.scratch.parameters.kick = 1e-3;
     const auto fails_with = [&](const char* message, auto touch) {
@@ -35,8 +36,8 @@ TEST_CASE("a stage that is slipped into the step and looks at what it has not de
 
 #else
 
-// Without it, in builds with NDEBUG, there is nothing to test; asan and tsan build with it.
+// Without it, in builds with NDEBUG, there is nothing to test; tsan builds with it.
 
 #endif
 
-}  // namespace skerry::test::scene_access_test
+}  // namespace skerry::test::determinism_access_test
