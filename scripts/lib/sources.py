@@ -7,6 +7,8 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIBRARY = ("components", "jobs", "systems", "engine")
+# All text of a source; the group holds the text that is neither comment nor space.
+CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|\s+|("(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|.)""", re.DOTALL)
 INCLUDE = re.compile(r'^#include "(.*)"', re.MULTILINE)
 # Sources that need packages, definitions or templates of their own, or belong to another project.
 SPECIAL = re.compile(
@@ -26,14 +28,27 @@ def in_folders(folders):
     return sorted(name for name in names if not SPECIAL.fullmatch(name))
 
 
+def code_of(text):
+    """The text without comments and space."""
+    return "".join(CODE.findall(text))
+
+
 def changed_files():
-    """Names of files that differ from the last commit or that a commit of the last day changed; None without git."""
+    """Names of files whose code differs from the last commit or from that before the last day; None without git."""
     newest = git("log", "-1", "--format=%ct")
     if not newest:
         return None
-    log = git("log", f"--since={int(newest) - LATELY}", "--name-only", "--format=")
+    since = int(newest) - LATELY
+    log = git("log", f"--since={since}", "--name-only", "--format=")
     status = git("status", "--porcelain", "--untracked-files=all")
-    return set(log.split()) | {line[3:] for line in status.splitlines()}
+    names = set(log.split()) | {line[3:] for line in status.splitlines()}
+    before = (git("rev-list", "-1", f"--before={since}", "HEAD") or "").strip()
+
+    def same_code(name):
+        old = git("show", f"{before}:{name}") if before else None
+        return old is not None and (ROOT / name).exists() and code_of(old) == code_of((ROOT / name).read_text())
+
+    return {name for name in names if not name.endswith((".h", ".cpp")) or not same_code(name)}
 
 
 def of_library(everything):
