@@ -62,7 +62,7 @@ Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettin
 /// together.
 void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
-    std::array<Index, largest_lane_region + 2> begin{};  // of each size; large ones first
+    std::array<Index, largest_lane_region + 2> begin{};  // start of each size in the order; large ones first
     const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
     for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];
     const Index large = begin[1];

@@ -169,7 +169,7 @@ public:
         }
     }
 
-    /// Returns the place of its first contact.
+    /// Adds the tail. Returns the place of its first contact.
     Index add_tail() {
         leave(memory_.bin_begin[tail_bin]);
         const Index begin = place_;

@@ -79,7 +79,7 @@ public:
     // motion before the step [m/s, rad/s]
     Column<Real> present, answered, change, step, before;
     Column<Mat3> answer;  // by contact: derivative of the impulse in the last matrix
-    // By contact: sliding direction when the matrix was last built, or zero; and 1 if it is to stop in the next step.
+    // Contact data: sliding direction when the matrix was last built, or zero; and 1 if it is to stop in the next step.
     Column<Vec3> way;
     Column<std::uint8_t> stops;
     Index rises = 0;  // number of steps of a round that were accepted although they raised the merit

@@ -115,8 +115,8 @@ struct RegionInputs {
     std::span<const Real> gap;
     std::span<const Vec3> surface_velocity;
     std::span<const Real> static_friction, dynamic_friction, restitution;
-    std::span<const Real> inverse_mass;  // by node
-    std::span<const Vec3> velocity;      // by node, at the start of the step
+    std::span<const Real> inverse_mass;  // by node [1/kg]
+    std::span<const Vec3> velocity;      // by node, at the start of the step [m/s]
     Real gravity = 0;                    // norm of gravity, for the scale of the error measure [m/s^2]
     // Ascending keys that identify regions across steps. Without keys the scheduler has no history.
     std::span<const ContactKey> key{};

@@ -34,7 +34,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
     contact.node_count = 0;
     contact.diagonal = 0;
-    Real lightest = 0;  // 1/kg
+    Real lightest = 0;  // [1/kg]
     for (std::size_t a = 0; a < 4; ++a) {
         const Real weight = stencil.weight[a];
         if (weight == 0) continue;

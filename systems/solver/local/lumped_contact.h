@@ -13,7 +13,7 @@ namespace skerry {
 /// Data of one contact for a sweep, side by side. The stencil omits nodes that do not move; `offset` holds their
 /// velocity.
 struct LumpedContact {
-    Vec4 normal;                 // unit
+    Vec4 normal;                 // unit vector
     Vec4 offset;                 // fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
     std::array<Real, 4> weight;  // weights of the moving nodes
     std::array<Real, 4> step;    // weight times inverse mass [1/kg]

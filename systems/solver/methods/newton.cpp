@@ -166,7 +166,7 @@ private:
 
     AnyOperator& op_;
     NewtonMemory& memory_;
-    std::span<Vec4> impulse_, pull_;  // -u
+    std::span<Vec4> impulse_, pull_;  // pull_ is -u [m/s]
 };
 
 }  // namespace

@@ -65,7 +65,7 @@ concept ContactOperator = SweptOperator<Op> &&
     op.multiply(in, out);                                           // W d
     { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // friction law
     { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) of (19)
-    { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit
+    { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit vector
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
     // scalar substitute for W_ii: a third of its trace; 0: the contact moves nothing [s/kg]
     { constant.mobility(i) } -> std::convertible_to<Real>;

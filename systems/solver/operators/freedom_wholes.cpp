@@ -72,7 +72,7 @@ SolveResult FreedomOperator::take_rounds_of_wholes(Real error, Real tolerance, I
     constexpr Real softness = 0.3;  // fraction of D, above the compliance of the bodies; otherwise rounds gain nothing
     constexpr Real enough = 0.01;   // end of a round: fraction of the error at its start
     constexpr Real gain = 0.5;      // another round follows if the error falls below this fraction
-    constexpr Index most_in_round = 14;  // steps
+    constexpr Index most_in_round = 14;  // limit of steps
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = wholes_memory();
     if (equations == nullptr) return result;

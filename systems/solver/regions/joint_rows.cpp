@@ -41,7 +41,7 @@ Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion&
 /// Greatest correction speed: the recovery_speed of the settings, or 1 rad/s, plus the speeds of both bodies by
 /// rotation.
 Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& first, const BodyMotion& second) {
-    constexpr Real turning = 1;  // rad/s
+    constexpr Real turning = 1;  // [rad/s]
     return of_spins ? turning + first.spin.norm() + second.spin.norm()
                     : stage.settings.recovery_speed + first.turning().norm() + second.turning().norm();
 }

@@ -84,7 +84,7 @@ struct RegionMemory {
     Column<Index> place;  // number in its region's list of nodes; stale if that list disagrees
     // by region
     Column<Real> cost;           // predicted [microseconds]
-    Column<Real> cost_parts;     // working memory
+    Column<Real> cost_parts;     // partial sums of the costs
     RegionHistoryTable history;  // of the last step
     RegionHistoryTable present;  // of this step
     // by task

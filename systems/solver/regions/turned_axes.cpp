@@ -14,8 +14,7 @@ namespace {
 /// lowest point of a rim: the height of the point that is lowest then, because the lowest point moves around the rim
 /// [m]
 Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
-    constexpr Real lowest = 1e-9,
-                   least_tilt = 1e-4;  // relative to the radius; [rad], below it many rim points are lowest
+    constexpr Real lowest = 1e-9, least_tilt = 1e-4;  // of the radius; [rad], below it many rim points are lowest
     const Real up = axis.dot(place), radius = (place - up * axis).norm();
     const auto lowest_of_rim = [&](const Vec3& of) { return up * of.dot(normal) - radius * of.cross(normal).norm(); };
     if (axis.cross(normal).norm() > least_tilt && normal.dot(place) <= lowest_of_rim(axis) + lowest * radius)
