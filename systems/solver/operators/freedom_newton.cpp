@@ -299,8 +299,8 @@ void FreedomOperator::stop_turned(BodyEquations& equations, std::span<const Vec4
     }
 }
 
-/// Updates the velocities of the region and `answered` from the impulses. Sets the right-hand side to K times (
-/// answered - present ). Returns the norm of this difference squared by K [J]
+/// Updates the velocities of the region and `answered` from the impulses. With d = answered - present it sets the
+/// right-hand side to K d and returns d K d [J]
 Real FreedomOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
     if (equations.wholes)
         push_wholes(start);

@@ -80,7 +80,7 @@ public:
     void assemble(Eigen::MatrixXd& matrix) const;
 
     /// Newton steps (docs/methods/region_solver.md 5.9) from an impulse with this error: at most `limit` steps; the
-    /// best impulse is kept. They use three workspace vectors, and lease memory at the first call.
+    /// best impulse is kept. They use slots 1 and 2 of the workspace, and lease memory at the first call.
     SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
     Real newton_step_cost() { return newton_memory().cost(); }  // estimate [ns]
     /// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies (5.10), in
