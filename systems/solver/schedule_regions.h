@@ -1,5 +1,5 @@
-// Which regions are solved together, and in which order they are started (docs/methods/regions.md 4). What is predicted
-// and remembered here changes when a region is solved, never what comes out.
+// Grouping of regions into tasks, and their order (docs/methods/regions.md 4). Predictions and history only change when
+// a region is solved; they never change its result.
 #pragma once
 
 #include "components/column.h"
@@ -10,15 +10,15 @@
 
 namespace skerry {
 
-/// Writes regions.id from the keys of the contacts, and finds what each region needed in the last step. Without keys
-/// nothing is known.
+/// Writes regions.id from the keys of the contacts and finds the effort of each region in the last step. Without keys
+/// no history is available.
 void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionMemory& memory, RegionTable& regions);
 
-/// Writes regions.order and packs it into tasks that are worth starting: regions that do not fit into lanes one by one,
-/// largest predicted cost first; small ones by size, so that lanes fill; then single contacts.
+/// Writes regions.order and groups it into tasks. Regions too large for lanes come first, by falling predicted cost.
+/// Small regions follow by size, so that lanes fill; single contacts are last.
 void schedule_regions(Executor& executor, const SolverSettings& settings, RegionMemory& memory, RegionTable& regions);
 
-/// Notes what each region needed, for the next step.
+/// Records the effort of each region for the next step.
 void remember_regions(RegionMemory& memory, const RegionTable& regions);
 
 }  // namespace skerry

@@ -14,7 +14,7 @@
 namespace skerry {
 namespace {
 
-constexpr std::size_t cleared_per_block = 4096;  // some microseconds of clearing
+constexpr std::size_t cleared_per_block = 4096;  // takes some microseconds
 
 void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, RegionTable& regions) {
     LaneQueue queue(stage, regions);
@@ -84,7 +84,7 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
     SKERRY_CHECK(out.velocity_next.size() == contacts.inverse_mass.size() &&
                  out.push_out.size() == contacts.inverse_mass.size());
     RegionMemory& data = memory.data();
-    // advance_positions has used the last push; a refused step has not
+    // Clear the last push: advance_positions has used it, or its step was refused.
     if (data.pushed.exchange(false))
         parallel_for(executor, out.push_out.size(), cleared_per_block, [&](std::size_t begin, std::size_t end) {
             std::fill(out.push_out.begin() + begin, out.push_out.begin() + end, Vec3::Zero());

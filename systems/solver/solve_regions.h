@@ -12,7 +12,7 @@ namespace skerry {
 
 struct RegionMemory;
 
-/// Working memory of the stage, kept between steps so that it allocates only when the step is larger than any before.
+/// Working memory of the stage, kept between steps. It allocates only if a step is larger than all before.
 class SolverMemory {
 public:
     SolverMemory();
@@ -23,9 +23,10 @@ private:
     std::unique_ptr<RegionMemory> data_;
 };
 
-/// Solves every region to the tolerance: closed form for a single contact, else the method of the settings. Regions run
-/// as concurrent jobs, largest first, small ones batched; no two write the same node. Fills iterations, error and
-/// status of the regions, and whether they pushed. Returns false when there are no regions (skipped).
+/// Solves every region to the tolerance: in closed form for a single contact, otherwise by the method of the settings.
+/// Regions run as concurrent jobs, largest first, small ones in batches; no two regions write the same node. Fills the
+/// outcome columns of `regions` (iterations, error, status and others) and regions.pushed. Returns false if there are
+/// no regions (skipped).
 bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h,
                    SolverMemory& memory, RegionTable& regions, const RegionOutputs& out);
 

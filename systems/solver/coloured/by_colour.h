@@ -1,5 +1,5 @@
-// The walk of a large region: its contacts in the order of a colouring, by a team of workers. Impulses have the bits of
-// a walk by one thread over the contacts in that order; sums are taken block by block.
+// Walk of a large region: a team of workers visits its contacts in the order of a colouring. Impulses have the bits of
+// one thread that visits the contacts in that order; sums are taken block by block.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 
 namespace skerry {
 
-/// Rows by node, and by contact before there is an order, are done in blocks of this many: so many copies of 32 bytes
-/// take several times as long as claiming the block.
+/// Block size of loops over nodes, and over contacts before they are ordered. Copying this many rows of 32 bytes takes
+/// several times as long as claiming the block.
 inline constexpr std::size_t row_block = 256;
 
 inline Index row_block_count(std::size_t rows) {
     return static_cast<Index>((rows + row_block - 1) / row_block);
 }
 
-/// body(begin, end, block) for blocks of row_block rows.
+/// Calls body(begin, end, block) for blocks of row_block rows.
 template <class Body>
 void for_row_blocks(Team& team, std::size_t count, Body&& body) {
     team.run_blocks(row_block_count(count), [&](Index block) {
@@ -30,10 +30,10 @@ void for_row_blocks(Team& team, std::size_t count, Body&& body) {
     });
 }
 
-/// What a block adds to a sum, whichever it is.
+/// Partial result of a block, with one member per type of sum.
 using BlockSum = std::tuple<Real, SweepChange, LoadSums>;
 
-/// How many blocks an order has.
+/// Number of blocks of an order.
 inline std::size_t block_count(const ColouredOrder& order) {
     return order.block_offset.size() - 1;
 }
@@ -48,7 +48,8 @@ public:
         : order_(&order), team_(&team), partial_(partial) {}
 
     std::size_t number_of(std::size_t place) const { return static_cast<std::size_t>(order_->contact[place]); }
-    /// Phase after phase, also where the phases are of no matter, so that each worker finds the contacts in its cache.
+    /// Visits phase after phase, even if their order is irrelevant, so that each worker finds its contacts in its
+    /// cache.
     template <class Body>
     void contacts(std::size_t, Body&& body) const {
         for_blocks([&body](std::size_t begin, std::size_t end, Index) { body(begin, end); });

@@ -10,8 +10,8 @@ namespace {
 constexpr Index colour_limit = 64;        // bits of ColouringMemory::colours_used
 constexpr Index tail_bin = colour_limit;  // the bins of hubs follow it
 
-/// A colour is split evenly into a number of blocks that 2, 4, 8 or 16 workers can share without remainder, of about 64
-/// contacts: one takes a microsecond, claiming it a twentieth of that.
+/// Splits a colour evenly into blocks of about 64 contacts, in a number that 2, 4, 8 or 16 workers can share without
+/// remainder. A block takes a microsecond, claiming it a twentieth of that.
 Index blocks_of_colour(Index contacts) {
     constexpr std::uint32_t most_contacts = 64, even = 16;  // workers that share a phase evenly
     const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + most_contacts - 1) / most_contacts;
@@ -26,7 +26,7 @@ void for_each_node(const ContactNodes& nodes, Visit&& visit) {
     }
 }
 
-/// The lowest colour that none of the nodes has, which they have from now on; colour_limit if there is none.
+/// The lowest colour that none of the nodes has, or colour_limit. take() gives it to the nodes.
 struct FreeColour {
     ColouringMemory& memory;
     std::uint64_t used = 0;
@@ -47,7 +47,8 @@ void count_degrees(std::span<const ContactNodes> contact, Index node_count, Colo
     for (const ContactNodes& nodes : contact) for_each_node(nodes, [&](Index node) { ++memory.degree[node]; });
 }
 
-/// Bins by colour, and by hub for the contacts that have one: the first of theirs. Returns the number of hubs.
+/// Fills the bins: contacts with a hub go to the bin of their first hub, others to a colour. Returns the number of
+/// hubs.
 Index fill_bins(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
     const bool has_hubs =
         std::any_of(memory.degree.begin(), memory.degree.end(), [](Index degree) { return degree > hub_degree; });
@@ -83,7 +84,7 @@ Index fill_bins(std::span<const ContactNodes> contact, Index node_count, Colouri
     return hub_count;
 }
 
-/// The contacts of each hub, in order.
+/// Lists the contacts of each hub in order.
 void list_hubs(Index hub_count, ColouringMemory& memory) {
     memory.hub_offset.assign(static_cast<std::size_t>(hub_count) + 1, 0);
     for (Index hub = 0; hub < hub_count; ++hub)
@@ -96,7 +97,7 @@ void list_hubs(Index hub_count, ColouringMemory& memory) {
     }
 }
 
-/// Colours the hubs' blocks and lists them by colour, then by number.
+/// Colours the blocks of the hubs and lists them by colour, then by number.
 void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, ColouringMemory& memory) {
     list_hubs(hub_count, memory);
     std::fill(memory.colours_used.begin(), memory.colours_used.end(), 0);
@@ -116,8 +117,8 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
     });
 }
 
-/// Lays out phases and blocks, and turns the counts of the bins into the place of their first contact, or no_index for
-/// the tail.
+/// Lays out phases and blocks. Replaces the count of each bin by the place of its first contact, or no_index for the
+/// tail.
 class Layout {
 public:
     Layout(ColouringMemory& memory, ColouredOrder& order) : memory_(memory), order_(order) {
@@ -168,7 +169,7 @@ public:
         }
     }
 
-    /// Returns the place of its first contact.
+    /// Adds the tail. Returns the place of its first contact.
     Index add_tail() {
         leave(memory_.bin_begin[tail_bin]);
         const Index begin = place_;
@@ -177,7 +178,7 @@ public:
             order_.block_offset.push_back(begin);
             place_ += order_.tail_size;
         }
-        begin_phase();  // one more
+        begin_phase();  // end marker
         order_.block_offset.push_back(place_);
         return begin;
     }
@@ -202,7 +203,7 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         for_each_node(nodes, [&](Index other) { node = std::min(node, other); });
         return node;
     };
-    // contacts without a node are sorted as if they had the first, which need not be there
+    // Contacts without a node are sorted as if they had node 0, which need not exist.
     memory.node_offset.assign(static_cast<std::size_t>(std::max(node_count, Index(1))) + 2, 0);
     for (const ContactNodes& nodes : contact) ++memory.node_offset[lowest(nodes) + 2];
     for (std::size_t n = 2; n < memory.node_offset.size(); ++n) memory.node_offset[n] += memory.node_offset[n - 1];
@@ -211,8 +212,8 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Contacts of a colour by their nodes: workers that take the same share of each colour then meet the same nodes again.
-/// Those of the hubs and of the tail in their own order.
+/// Places contacts of a colour in the order of their nodes: a worker with the same share of each colour then uses the
+/// same nodes again. Contacts of hubs and of the tail keep their order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);

@@ -3,7 +3,7 @@
 namespace skerry {
 namespace {
 
-/// Writes the moving nodes of all contacts. Returns whether they are those that were there.
+/// Writes the moving nodes of all contacts. Returns true if they are unchanged.
 bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& team, ColouredRegion& region) {
     const bool as_many = region.moving.size() == row.size();
     region.moving.resize(row.size());
@@ -23,8 +23,8 @@ bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& te
     return same;
 }
 
-/// Numbers the nodes in the order in which contacts name them. A node's number is remembered by node; an entry left
-/// from elsewhere shows by the list not agreeing.
+/// Numbers the nodes in the order of their first appearance. `place` caches the number by row of NodeTable. A stale
+/// entry is detected because the list holds a different node there.
 void number_nodes(std::span<Index> place, ColouredRegion& region) {
     region.node.clear();
     region.local.resize(region.moving.size());

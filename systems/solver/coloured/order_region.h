@@ -1,4 +1,4 @@
-// The coloured order of a large region, kept as long as its contacts have the same moving nodes.
+// Coloured order of a large region, kept as long as the moving nodes of its contacts do not change.
 #pragma once
 
 #include <span>
@@ -9,15 +9,15 @@
 
 namespace skerry {
 
-/// What a large region keeps from step to step.
+/// Data of a large region that are kept from step to step.
 struct ColouredRegion {
-    Column<ContactNodes> moving;  // by contact: rows of NodeTable
-    Column<ContactNodes> local;   // by contact: the same as rows of `node`
+    Column<ContactNodes> moving;  // by contact: its moving nodes as rows of NodeTable
+    Column<ContactNodes> local;   // by contact: its moving nodes as rows of `node`
     Column<Index> node;           // rows of NodeTable
     ColouredOrder order;
     ColouringMemory colouring;
     Column<BlockSum> partial;         // by block of the order
-    Column<std::uint8_t> same_nodes;  // by block of contacts: whether they have the moving nodes of the last call
+    Column<std::uint8_t> same_nodes;  // by block of contacts: 1 if the moving nodes are those of the last call
 
     ByColour walk(Team& team) { return {order, team, partial.span()}; }
 };
@@ -25,8 +25,8 @@ struct ColouredRegion {
 /// The nodes that an impulse of contact `row` can move, in the order of the stencil.
 ContactNodes moving_nodes(const RegionInputs& inputs, Index row);
 
-/// Orders the contacts `row`. `place` is memory by row of NodeTable, its contents are of no matter. Returns false when
-/// the order of the last call still holds and was kept: a region at rest is not coloured again.
+/// Orders the contacts `row`. `place` is scratch memory by row of NodeTable with any contents. Returns false if the
+/// order of the last call is still valid and was kept, as for a region at rest.
 bool order_region(const RegionInputs& inputs, std::span<const Index> row, Team& team, std::span<Index> place,
                   ColouredRegion& region);
 

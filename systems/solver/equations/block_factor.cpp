@@ -28,7 +28,7 @@ void BlockFactor::couple(Index g, Index h) {
     coupled_[pair(g, h)] = coupled_[pair(h, g)] = 1;
 }
 
-/// The part that is cheapest to eliminate; of equal ones the first.
+/// Returns the part that is cheapest to eliminate; the first one of equals.
 Index BlockFactor::next_to_eliminate() const {
     Index next = no_index;
     Real least = std::numeric_limits<Real>::infinity();
@@ -42,7 +42,7 @@ Index BlockFactor::next_to_eliminate() const {
     return next;
 }
 
-/// Couples those that are coupled to it.
+/// Couples all remaining parts that are coupled to `next`.
 void BlockFactor::eliminate_pattern(Index next) {
     rank_[static_cast<std::size_t>(next)] = static_cast<Index>(order_.size());
     order_.push_back(next);
@@ -87,7 +87,7 @@ bool BlockFactor::analyse() {
     return true;
 }
 
-/// Of each part its own block, then those beside it, then those below it as one matrix.
+/// Layout of each part: its diagonal block, the blocks to the right, then those below as one matrix.
 void BlockFactor::place_blocks() {
     first_.resize(coupled_.size());
     stride_below_.resize(size_.size());

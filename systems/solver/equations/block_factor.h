@@ -1,5 +1,5 @@
-// The factor of a sparse matrix of dense blocks of different sizes, in an order that fills in little. Symmetric in its
-// pattern, not in its numbers.
+// Factor of a sparse matrix of dense blocks of different sizes, in an order with little fill-in. The pattern is
+// symmetric, the numbers need not be.
 #pragma once
 
 #include <cstdint>
@@ -12,32 +12,32 @@
 
 namespace skerry {
 
-/// Keeps its memory: what has been solved once allocates nothing again.
+/// Memory is kept: solving a problem of a size seen before allocates nothing.
 class BlockFactor {
 public:
-    /// No parts yet.
+    /// Removes all parts.
     void start();
-    /// A row and a column of blocks with this many numbers. Returns its place.
+    /// Adds a row and a column of blocks with this many numbers. Returns its index.
     Index add_part(Index size);
-    /// Two parts that have blocks. Not before all parts are added.
+    /// Marks the blocks of two parts as nonzero. Call it after close_parts().
     void couple(Index g, Index h);
     void close_parts();
-    /// Finds the order. False where the factor would take more memory than is sensible: then nothing else may be asked.
+    /// Finds the elimination order. Returns false if the factor needs too much memory; then call nothing else.
     bool analyse();
-    /// Multiplications of a factorisation.
+    /// Number of multiplications of a factorisation.
     Real work() const { return work_; }
 
     Index part_count() const { return static_cast<Index>(size_.size()); }
     Index size(Index g) const { return size_[static_cast<std::size_t>(g)]; }
-    /// All blocks, zero after analyse().
+    /// Numbers of all blocks; zero after analyse().
     Column<Real>& numbers() { return number_; }
     DenseBlock block(Index g, Index h);
-    /// The right-hand side, then the solution; a part has its numbers from first() on.
+    /// Right-hand side, then the solution. The numbers of a part begin at first().
     Column<Real>& right() { return right_; }
     std::size_t first(Index g) const { return first_right_[static_cast<std::size_t>(g)]; }
-    /// right() = blocks x, with blocks as numbers() has them.
+    /// Sets right() = A x, where `blocks` holds the numbers of A in the layout of numbers().
     void multiply(std::span<const Real> blocks, std::span<const Real> x);
-    /// False where a pivot breaks down. The factor takes the place of the blocks.
+    /// Factors and solves in place: the factor overwrites the blocks. Returns false if a pivot breaks down.
     bool solve();
 
 private:
@@ -50,12 +50,12 @@ private:
     void place_blocks();
 
     Column<Index> size_;            // by part
-    Column<std::uint8_t> coupled_;  // by pair of parts, with what is filled in
-    Column<Index> beside_;          // by part: numbers of those coupled to it that are not eliminated
-    Column<Index> order_, rank_;    // of elimination, and by part the place in it
-    Ragged<Index> later_;           // by place in the order: those that the elimination of the part changes
-    Column<std::size_t> first_;     // by pair of parts, in `number_`
-    Column<Index> stride_below_;    // by part, of its blocks below the diagonal
+    Column<std::uint8_t> coupled_;  // by pair of parts, including fill-in
+    Column<Index> beside_;          // by part: total size of the coupled parts that are not eliminated
+    Column<Index> order_, rank_;    // elimination order, and the place of each part in it
+    Ragged<Index> later_;           // by place in the order: parts that the elimination changes
+    Column<std::size_t> first_;     // by pair of parts: index in `number_`
+    Column<Index> stride_below_;    // by part: stride of its blocks below the diagonal
     Column<std::size_t> first_right_;
     Column<Real> number_, right_;
     Column<Index> pivot_;

@@ -8,7 +8,8 @@
 namespace skerry {
 namespace {
 
-/// J of a push: the velocity of the contact from the numbers of the part. Three columns of it where nothing turns.
+/// J of a push: maps the numbers of the part to the velocity of the contact. Without rotation only three columns are
+/// used.
 Eigen::Matrix<Real, 3, 6> jacobian_of(const BodyPush& push) {
     Eigen::Matrix<Real, 3, 6> jacobian;
     jacobian.leftCols<3>() = push.weight * Mat3::Identity();
@@ -45,7 +46,7 @@ void BodyEquations::add(Index contact, const Mat3& block) {
     for (const BodyPush& row : of.all())
         for (const BodyPush& column : of.all()) {
             const DenseBlock to = factor_.block(row.part, column.part);
-            if (!row.turns && !column.turns) {  // as most
+            if (!row.turns && !column.turns) {  // the usual case
                 const Real weight = row.weight * column.weight;
                 for (Index k = 0; k < 3; ++k)
                     for (Index l = 0; l < 3; ++l) to.column(column.place + k)[row.place + l] += weight * block(l, k);

@@ -9,7 +9,7 @@
 namespace skerry {
 namespace {
 
-constexpr Index panel = 8;  // columns that are eliminated one by one before the rest is brought up to date
+constexpr Index panel = 8;  // number of columns eliminated one by one before the rest is updated
 
 Real8 load(const Real* from, Real8) {
     return *reinterpret_cast<const Real8InMemory*>(from);
@@ -28,8 +28,8 @@ void subtract(Real what, Real* from) {
     *from -= what;
 }
 
-/// What becomes of a column of registers of a product: taken off what is there, or only off the last rows of it, those
-/// above being done, or put in its place.
+/// Ways to store a column of registers of a product: subtract it, subtract only its last rows because those above are
+/// done, or overwrite.
 constexpr auto take_off = [](const auto& what, Real* from) { subtract(what, from); };
 struct TakeOffLast {
     Index count;
@@ -40,7 +40,7 @@ struct TakeOffLast {
 };
 constexpr auto put_there = [](const Real8& what, Real* to) { put(what, to); };
 
-/// A column of registers of a b, sums in registers, which `finish` brings to the same rows of c. Part: Real8 or Real.
+/// Computes a column of registers of a b and passes it to `finish` with the same rows of c. Part: Real8 or Real.
 template <class Part>
 void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c, Index row, const auto& finish) {
     const Real* const start = a.data + row;
@@ -69,7 +69,7 @@ void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c
     }
 }
 
-/// From the first to behind the last column that is not zero in these eight rows.
+/// Range from the first to behind the last column that has a nonzero number in these eight rows.
 std::pair<Index, Index> columns_that_count(const DenseBlock& a, Index row) {
     const auto counts = [&](Index k) {
         const Real* const at = a.column(k) + row;
@@ -93,7 +93,7 @@ void subtract_scaled(Real factor, const Real* x, Real* y, Index count) {
     for (; k < count; ++k) y[k] -= factor * x[k];
 }
 
-/// The columns [begin, end) of a; rows are exchanged in all of it.
+/// Factors the columns [begin, end) of a; rows are exchanged in the whole matrix.
 bool factor_panel(const DenseBlock& a, Index begin, Index end, Index* pivot) {
     for (Index k = begin; k < end; ++k) {
         Real* const column = a.column(k);
@@ -110,7 +110,7 @@ bool factor_panel(const DenseBlock& a, Index begin, Index end, Index* pivot) {
     return true;
 }
 
-/// Inverse of the triangle of a whole panel: to solve for many columns with it is to multiply registers.
+/// Inverse of the triangle of a whole panel. It turns the solution for many columns into products of registers.
 struct TriangleInverse {
     static_assert(panel == 8);
     alignas(Real8) Real number[panel * panel] = {};  // column by column
@@ -138,10 +138,10 @@ struct TriangleInverse {
         }
         return of;
     }
-    /// b is multiplied by it: four columns are read before they are written.
+    /// Sets b to this inverse times b. In-place is safe: four columns are read before they are written.
     void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, put_there); }
 };
-constexpr Index many_columns = panel;  // from as many on an inverse is worth its cost, `many` below
+constexpr Index many_columns = panel;  // number of columns from which the inverse pays off; `many` below
 
 /// b = L^-1 b of the unit lower triangle of the factors' rows and columns [begin, end).
 void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b, bool many) {
@@ -168,8 +168,8 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
     }
 }
 
-/// Calls `of(begin, count)` for columns that follow each other, but for gaps of zeros that are worth the while: a node
-/// that no contact presses couples to nothing across.
+/// Calls `of(begin, count)` for ranges of columns, skipping gaps of at least eight zero columns. A node that no contact
+/// presses couples to nothing across.
 void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
     constexpr Index gap = 8;
     const auto counts = [&](Index k) {
@@ -191,7 +191,7 @@ void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
 void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
     Index row = 0;
     for (; row + 8 <= c.rows; row += 8) {
-        // contacts couple each node of a face to few of the other's, which follow each other
+        // Contacts couple each node of a face to few nodes of the other face, and these are consecutive.
         const auto [first, last] = columns_that_count(a, row);
         multiply_rows<Real8>(a.part(0, first, a.rows, last - first), b.part(first, 0, last - first, b.columns), c, row,
                              take_off);
@@ -257,7 +257,8 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
 }
 
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
-    const bool many = b.columns >= many_columns;  // of all: bits do not depend on where zeros are
+    // Uses the count of all columns: bits must not depend on the position of zeros.
+    const bool many = b.columns >= many_columns;
     for_each_run_of_columns(
         b, [&](Index begin, Index count) { solve_all(factors, pivot, b.part(0, begin, b.rows, count), many); });
 }

@@ -1,6 +1,6 @@
-// Dense matrices in memory of the caller: factors, solutions and products that allocate nothing, for blocks of a sparse
-// factor (body_equations.h). Columns one after the other, `stride` numbers apart. Sums are in the order of their
-// index, so that bits do not depend on the width of registers.
+// Dense matrices in memory of the caller: factors, solutions and products without allocation, for the blocks of a
+// sparse factor (body_equations.h). Storage is by columns, `stride` numbers apart. Sums are taken in index order, so
+// that bits do not depend on the width of registers.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +22,12 @@ struct DenseBlock {
 
 /// c -= a b.
 void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c);
-/// y += a x, where `numbers` are those of a, placed as in `shape`.
+/// y += a x. `shape` gives size and layout of a, `numbers` its values.
 void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Real* y);
-/// a = L U with rows exchanged: `pivot[k]` is the row that came to k. Returns false where a is singular.
+/// Factors a = L U with row exchanges: `pivot[k]` is the row exchanged with row k. Returns false if a pivot is zero or
+/// not finite.
 bool factor_dense(const DenseBlock& a, Index* pivot);
-/// b = a^-1 b, of the factors.
+/// b = a^-1 b, from the factors.
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b);
 
 }  // namespace skerry

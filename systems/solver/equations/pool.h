@@ -1,4 +1,4 @@
-// Memory of regions that are solved at the same time.
+// Pool of working memories for regions that are solved concurrently.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// As many as there are workers. Which one a region gets changes nothing of what it comes to.
+/// One memory per worker. Results do not depend on which one a region gets.
 template <class Memory>
 class Pool {
     struct Slot {
@@ -17,7 +17,7 @@ class Pool {
     };
 
 public:
-    /// Gives its memory back.
+    /// Returns its memory to the pool on destruction.
     class Lease {
     public:
         Lease() = default;
@@ -38,11 +38,11 @@ public:
         Slot* slot_ = nullptr;
     };
 
-    /// For this many workers. Not while memory is lent.
+    /// Makes room for this many workers. Call it only while no memory is leased.
     void make_room(std::size_t workers) {
         while (slots_.size() < workers) slots_.push_back(std::make_unique<Slot>());
     }
-    /// A worker solves one region at a time: there is always one.
+    /// Leases a free memory. One is always free, because each worker solves one region at a time.
     Lease lease() {
         while (true)
             for (const std::unique_ptr<Slot>& slot : slots_)

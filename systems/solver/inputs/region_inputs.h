@@ -1,4 +1,4 @@
-// What the stage solve_regions reads and writes, as spans.
+// Inputs and outputs of the stage solve_regions, as spans.
 #pragma once
 
 #include <span>
@@ -16,33 +16,34 @@
 
 namespace skerry {
 
-/// Rigid bodies at the start of the step, kicked. By row of RigidBodyTable, but for positions.
+/// State of the rigid bodies at the start of the step, after the kick (the change of velocity by the forces of the
+/// step). All spans except `position` have one entry per row of RigidBodyTable.
 struct RigidInputs {
     RigidNodes nodes{};
-    std::span<const Vec3> position{};  // m, by node
+    std::span<const Vec3> position{};  // by node [m]
     std::span<const Vec3> center{};
     std::span<const Real> mass{};
     RigidSpins spins{};
     std::span<const Vec3> momentum{}, kick{};
     std::span<const Vec3> moments{};
     std::span<const Mat3> rotation{};
-    std::span<const Index> body{}, core_nodes{};  // row of BodyTable; BodyTable
-    // AttachmentTable, or no_index; empty: none is held. What deforms in a frame that is held has rows that stand still
-    // for that, and its nodes all of their velocity (docs/methods/implicit_bodies.md 7)
+    std::span<const Index> body{}, core_nodes{};  // row of BodyTable; by row of BodyTable
+    // Row of AttachmentTable, or no_index; empty if no body is held. A deformable body in a held frame has a rigid row
+    // with zero velocity, and its nodes carry their whole velocity (docs/methods/implicit_bodies.md 7).
     std::span<const Index> holder{};
 
     bool any() const { return nodes.any(); }
-    /// 1/kg
+    /// Inverse mass; 0 for a held body [1/kg]
     Real inverse_mass(std::size_t r) const { return holder.empty() || holder[r] == no_index ? 1 / mass[r] : 0; }
     Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
     bool is_capsule(Index r) const { return core_of(r) == 2; }
     bool is_cylinder(Index r) const { return core_of(r) == cylinder_core_nodes; }
-    /// m, of one that is round
+    /// Radius of a round body [m]
     Real radius(Index r) const {
         return nodes.round_radius[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
 
-    /// Nodes, of a row of RigidBodyTable.
+    /// Number of core nodes of the body at a row of RigidBodyTable; 0 if no body has a core.
     Index core_of(Index r) const {
         return core_nodes.empty() ? 0 : core_nodes[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
@@ -65,13 +66,13 @@ struct RigidInputs {
     }
 };
 
-/// Bodies that move implicitly: what deforms in their frames, which are among the rigid bodies.
+/// Implicit bodies: deformations relative to their moving frames. The frames are rows of RigidBodyTable.
 struct ImplicitInputs {
-    std::span<const Range> body_implicit{};      // BodyTable
-    const ImplicitCoupling* coupling = nullptr;  // null, or without nodes: contacts touch none
-    // ImplicitNodeTable, m/s, in the frame of the mesh: kicked, and at the start of the step
+    std::span<const Range> body_implicit{};      // by row of BodyTable
+    const ImplicitCoupling* coupling = nullptr;  // null or without nodes: no contact touches an implicit body
+    // Velocities after the kick and at the start of the step, in the mesh frame, by row of ImplicitNodeTable [m/s]
     std::span<const Vec3> velocity{}, velocity_before{};
-    std::span<const Mat3> axes{}, rotation{};  // RigidBodyTable
+    std::span<const Mat3> axes{}, rotation{};  // by row of RigidBodyTable
 
     static ImplicitInputs bind(const Binder& binder, const BodyTable& body, const RigidBodyTable& rigid,
                                const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling) {
@@ -84,20 +85,21 @@ struct ImplicitInputs {
     }
 
     bool any() const { return coupling != nullptr && coupling->nodes.size() > 0; }
-    /// Row of ImplicitNodeTable, or no_index.
+    /// Row of the node in ImplicitNodeTable, or no_index.
     Index row(Index node, const RigidNodes& nodes) const {
         if (!any()) return no_index;
         const auto body = static_cast<std::size_t>(nodes.node_body[static_cast<std::size_t>(node)]);
         const Range rows = body_implicit[body];
         return rows.size() == 0 ? no_index : rows.begin + node - nodes.body_nodes[body].begin;
     }
-    /// m/s, world: beside the motion of the frame. `row`: of ImplicitNodeTable; `body`: of RigidBodyTable.
+    /// Velocity of a node relative to the motion of its frame, in world axes. `row` is a row of ImplicitNodeTable,
+    /// `body` a row of RigidBodyTable [m/s]
     Vec3 deforming(Index row, Index body) const {
         const auto r = static_cast<std::size_t>(body);
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
-    /// m/s, world: what the elasticity of its body gave a node in the kick, which contacts take back where it is in
-    /// equilibrium with them.
+    /// Velocity change of a node by the kick of its implicit body, in world axes; zero for other nodes. It comes from
+    /// elasticity; contacts in equilibrium with the body cancel it [m/s]
     Vec3 thrown(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();
@@ -106,32 +108,34 @@ struct ImplicitInputs {
     }
 };
 
-/// What the stage reads beside the contacts.
+/// Inputs of the stage: contacts, nodes, bodies and joints.
 struct RegionInputs {
     std::span<const Stencil> stencil;
     std::span<const Vec3> normal;
     std::span<const Real> gap;
     std::span<const Vec3> surface_velocity;
     std::span<const Real> static_friction, dynamic_friction, restitution;
-    std::span<const Real> inverse_mass;  // by node
-    std::span<const Vec3> velocity;      // by node, at the start of the step
-    Real gravity = 0;                    // m/s^2, norm: scale of the error measure
-    // ascending; names the regions across steps. Without it there is no history to schedule by
+    std::span<const Real> inverse_mass;  // by node [1/kg]
+    std::span<const Vec3> velocity;      // by node, at the start of the step [m/s]
+    Real gravity = 0;                    // norm of gravity, for the scale of the error measure [m/s^2]
+    // Ascending keys that identify regions across steps. Without keys the scheduler has no history.
     std::span<const ContactKey> key{};
-    const NodeClusters* clusters = nullptr;  // nodes that move together; none, or null: every node by its own mass
-    std::span<const Vec3> cluster_kick{};    // N s, of this step, by item of clusters->nodes
-    RigidInputs rigid{};                     // bodies that move as a whole; none by default
-    ImplicitInputs implicit{};               // those of them that deform; none by default
-    std::span<const JointBlock> joints{};    // of rigid bodies; none by default
-    // rows of BodyTable that a contact joins, or no_index; and by body. Empty: nobody knows what is still
+    // Clusters of nodes with coupled masses; null or empty: every node has its own mass.
+    const NodeClusters* clusters = nullptr;
+    std::span<const Vec3> cluster_kick{};  // impulse of this step by item of clusters->nodes [N s]
+    RigidInputs rigid{};                   // rigid bodies; none by default
+    ImplicitInputs implicit{};             // deformations of the implicit bodies among them; none by default
+    std::span<const JointBlock> joints{};  // joints of rigid bodies; none by default
+    // Rows of BodyTable of the two bodies of a contact, or no_index; kind and still time by row of BodyTable. Empty: no
+    // body is known to be still.
     std::span<const Index> first_body{}, second_body{};
     std::span<const BodyKind> body_kind{};
-    std::span<const Real> still_time{};  // s
-    TouchPlaces touch{};                 // of cylinders
+    std::span<const Real> still_time{};  // [s]
+    TouchPlaces touch{};                 // contact points on cylinders
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
-    /// `velocity`: of the nodes, at the start of the step.
+    /// `velocity`: velocities of the nodes at the start of the step.
     static RegionInputs bind(const Binder& binder, const ContactTable& contact, const NodeTable& node,
                              const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
                              const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid,
@@ -162,12 +166,12 @@ struct RegionInputs {
 };
 
 struct RegionOutputs {
-    std::span<Vec3> impulse;        // by contact: warm start in, solution out
-    std::span<Vec3> velocity_next;  // by node: predicted in, solved out
-    std::span<Vec3> push_out;       // by node, but for those of rigid bodies
-    // by row of RigidBodyTable, from zero
+    std::span<Vec3> impulse;        // by contact: warm start in, solution out [N s]
+    std::span<Vec3> velocity_next;  // by node: predicted in, solved out [m/s]
+    std::span<Vec3> push_out;       // by node, except nodes of rigid bodies [m/s]
+    // Rows of RigidBodyTable, zero before the solve.
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
-    std::span<Vec3> deforming_impulse{};  // N s, by row of ImplicitNodeTable, from zero
+    std::span<Vec3> deforming_impulse{};  // by row of ImplicitNodeTable, zero before the solve [N s]
     std::span<Vec3> joint_impulse{};      // by joint block: warm start in, solution out
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,

@@ -1,4 +1,4 @@
-// What a user sets of the contact solver.
+// User settings of the contact solver.
 #pragma once
 
 #include "components/options.h"
@@ -10,29 +10,30 @@ struct SolverSettings {
     SolverMethod method = SolverMethod::automatic;
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
-    Real tolerance = 1e-3;       // e_nat, docs/methods/errors.md 2
-    Real still_tolerance = 1;    // of regions whose bodies are all still, where it is less (docs/methods/errors.md 7)
-    Index max_iterations = 200;  // sweeps of a region
-    // do exactly max_iterations sweeps: with pgs, separate and global are then bitwise the same
+    Real tolerance = 1e-3;  // e_nat, docs/methods/errors.md 2
+    // Used instead in regions whose bodies are all still, if smaller (docs/methods/errors.md 7).
+    Real still_tolerance = 1;
+    Index max_iterations = 200;  // limit of sweeps per region
+    // Do exactly max_iterations sweeps. With pgs, separate and global regions then give bitwise equal results.
     bool fixed_iterations = false;
     Real relaxation = 1.0;          // over-relaxation of the sweep
-    Real restitution_speed = 0.05;  // m/s: slower impacts do not bounce (docs/methods/contact.md 3.2)
-    // beta: share of a negative gap taken back per step by the split impulse (docs/methods/contact.md 3.4)
+    Real restitution_speed = 0.05;  // slower impacts do not bounce (docs/methods/contact.md 3.2) [m/s]
+    // beta: share of a negative gap that the split impulse corrects per step (docs/methods/contact.md 3.4).
     Real recovery = 0.15;
-    Real recovery_speed = 0.5;              // m/s, cap of the recovery
-    Index parallel_region_contacts = 2000;  // larger regions: coloured order, all workers within the region
-    // Shortcuts (docs/methods/skipping.md 1, 2): off changes no result beyond the tolerance.
-    bool certify_warm_start = true;  // no sweep where the warm start solves the region
-    bool skip_separating = true;     // no impulse where no contact closes
-    bool frictionless_rows = true;   // scalar rows where no contact of the region has friction
-    // 2 to 12 contacts: eight regions side by side (method ags, cone, one coefficient)
+    Real recovery_speed = 0.5;  // upper bound of the recovery speed [m/s]
+    // Regions from this size on are solved one by one in their coloured order by all workers.
+    Index parallel_region_contacts = 2000;
+    // Shortcuts (docs/methods/skipping.md 1, 2). Switching one off changes results only within the tolerance.
+    bool certify_warm_start = true;  // skip the sweeps if the warm start solves the region
+    bool skip_separating = true;     // return zero impulses if no contact closes
+    bool frictionless_rows = true;   // scalar rows if no contact of the region has friction
+    // Regions of 2 to 12 contacts: solve eight in SIMD lanes (method ags, cone, equal static and dynamic friction).
     bool small_regions_in_lanes = true;
 
     bool operator==(const SolverSettings&) const = default;
 };
 
-/// Whether a region of the step is solved by accelerated sweeps (solve_ags), which the shortcuts have in forms of their
-/// own.
+/// True if regions are solved by accelerated sweeps (solve_ags). The shortcuts have their own versions of that method.
 inline bool sweeps_accelerated(const SolverSettings& settings) {
     return (settings.method == SolverMethod::ags || settings.method == SolverMethod::automatic) &&
            !settings.fixed_iterations;

@@ -1,6 +1,6 @@
-// Small regions side by side: each lane holds one region of at most K contacts, in the dense form that lumped masses
-// allow (docs/methods/contact.md 2.1, docs/methods/region_solver.md 3): u_i = q_i + sum_j C_ij r_j with a number C_ij.
-// T is Real8, or Real for the twin of one lane that a test compares.
+// Small regions in SIMD lanes. Each lane holds one region of at most K contacts, in the dense form that lumped masses
+// allow (docs/methods/contact.md 2.1, docs/methods/region_solver.md 3): u_i = q_i + sum_j C_ij r_j with scalars C_ij. T
+// is Real8, or Real for the scalar version that a test compares with.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace skerry {
 
-/// Contacts of a lane's region are padded to the next of these.
+/// The number of contacts of a lane is padded to the next of these sizes.
 inline constexpr std::array<int, 6> lane_sizes{2, 3, 4, 6, 8, 12};
 inline constexpr int largest_lane_region = lane_sizes.back();
 
-/// Place in lane_sizes for a region of so many contacts, 2 .. largest_lane_region.
+/// Index in lane_sizes for a region with this number of contacts, 2 .. largest_lane_region.
 inline constexpr std::size_t lane_size_class(std::size_t contacts) {
     std::size_t c = 0;
     while (static_cast<std::size_t>(lane_sizes[c]) < contacts) ++c;
@@ -24,22 +24,22 @@ inline constexpr std::size_t lane_size_class(std::size_t contacts) {
 
 template <class T, int K>
 struct LaneProblem {
-    T coupling[K][K];              // C, 1/kg
-    LaneVec3<T> normal[K];         // unit; zero for a place that is not used
-    LaneVec3<T> free_velocity[K];  // q, m/s
-    LaneVec3<T> impulse[K];        // N s, the start and then the solution
-    T diagonal[K];                 // D of docs/methods/contact.md 2.1, 1/kg; zero for a place that is not used
-    T inverse_diagonal[K];         // kg; likewise
+    T coupling[K][K];              // C [1/kg]
+    LaneVec3<T> normal[K];         // unit vector; zero at unused places
+    LaneVec3<T> free_velocity[K];  // q [m/s]
+    LaneVec3<T> impulse[K];        // start value, then the solution [N s]
+    T diagonal[K];                 // D of docs/methods/contact.md 2.1; zero at unused places [1/kg]
+    T inverse_diagonal[K];         // zero at unused places [kg]
     T friction[K];
-    T scale;      // sqrt(J), of e_nat
-    T tolerance;  // of e_nat
+    T scale;      // scale of e_nat [sqrt(J)]
+    T tolerance;  // tolerance of e_nat
 };
 
-/// One region as a lane takes it.
+/// Input of one region for a lane.
 struct LaneRegion {
     std::span<const LumpedContact> contact;
-    std::span<const Vec4> free_velocity;  // q by contact, m/s
-    std::span<Vec4> impulse;              // N s
+    std::span<const Vec4> free_velocity;  // q by contact [m/s]
+    std::span<Vec4> impulse;              // [N s]
     std::size_t node_count;
     Real scale, tolerance;
 };
@@ -68,10 +68,10 @@ Vec4 lane_of(const LaneVec3<T>& all, int lane) {
     return {lane_of(all.x, lane), lane_of(all.y, lane), lane_of(all.z, lane), 0};
 }
 
-/// Writes C = B M^-1 B^T of the region into its lane. Places that are not used stay as they are.
+/// Writes C = J M^-1 J^T of the region into its lane. Unused places keep their values.
 template <class T, int K>
 void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
-    std::array<Real, 4 * K> step;  // by node: what an impulse of contact i does to it, per N s
+    std::array<Real, 4 * K> step;  // by node: its velocity change per impulse of contact i [1/kg]
     std::fill_n(step.begin(), region.node_count, 0);
     for (std::size_t i = 0; i < region.contact.size(); ++i) {
         const LumpedContact& one = region.contact[i];
@@ -87,7 +87,7 @@ void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& proble
     }
 }
 
-/// Clears the problem, so that lanes and places that are not filled ask for nothing.
+/// Clears the problem, so that unused lanes and places need no impulse.
 template <class T, int K>
 void clear(LaneProblem<T, K>& problem) {
     problem = LaneProblem<T, K>();
@@ -101,7 +101,7 @@ void fill_lane(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
     set_lane(problem.tolerance, lane, region.tolerance);
     for (std::size_t i = 0; i < region.contact.size(); ++i) {
         const LumpedContact& contact = region.contact[i];
-        if (contact.node_count == 0) continue;  // no impulse of it could move anything
+        if (contact.node_count == 0) continue;  // no impulse of this contact could move anything
         set_lane(problem.normal[i], lane, contact.normal);
         set_lane(problem.free_velocity[i], lane, region.free_velocity[i]);
         set_lane(problem.impulse[i], lane, region.impulse[i]);

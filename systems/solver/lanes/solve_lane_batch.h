@@ -1,4 +1,4 @@
-// Up to eight small regions at once.
+// Solver of up to eight small regions at once.
 #pragma once
 
 #include "systems/solver/lanes/lane_problem.h"
@@ -11,9 +11,9 @@ struct LaneResult {
     bool solved = false;
 };
 
-/// Solves at most element_lanes regions of one size class, each to its tolerance. Writes the impulses of those that are
-/// solved; the others, which needed more sweeps than lanes do (lane_sweep_limit) or ran into a number that is not
-/// finite, are left at their start. Nothing that is written of a region depends on the others of the batch.
+/// Solves at most element_lanes regions of one size class, each to its tolerance. Writes the impulses of solved
+/// regions. The others keep their start: they need more sweeps than lane_sweep_limit, or a number is not finite. The
+/// output of a region does not depend on the other regions of the batch.
 void solve_lane_batch(std::size_t size_class, std::span<const LaneRegion> region, Index max_iterations, Real relaxation,
                       std::span<LaneResult> result);
 

@@ -1,6 +1,6 @@
-// Accelerated Gauss-Seidel on regions side by side: docs/methods/region_solver.md 2, 3 in the dense form, every lane on
-// its own. No operation goes across lanes and a lane that is solved stands still, so a region's result does not depend
-// on what the other lanes hold.
+// Accelerated Gauss-Seidel on regions in SIMD lanes: docs/methods/region_solver.md 2, 3 in the dense form. Lanes are
+// independent: no operation combines them, and solved lanes do not change. So the result of a region does not depend on
+// the other lanes.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// The watchdog of solve_ags does not bark before: until then the two are the same iteration.
+/// Up to this number of sweeps the watchdog of solve_ags does not act, so both do the same iteration.
 inline constexpr Index lane_sweep_limit = watchdog_patience;
 
 inline bool any_lane(bool mask) {
@@ -29,7 +29,7 @@ LaneVec3<T> select(const LaneMask<T>& mask, const LaneVec3<T>& a, const LaneVec3
     return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 
-/// u_i of the present impulse.
+/// u_i for the present impulse.
 template <class T, int K>
 LaneVec3<T> lane_velocity(const LaneProblem<T, K>& problem, int i) {
     LaneVec3<T> u = problem.free_velocity[i];
@@ -37,7 +37,7 @@ LaneVec3<T> lane_velocity(const LaneProblem<T, K>& problem, int i) {
     return u;
 }
 
-/// project_coulomb with one coefficient. Not-a-number stays not-a-number.
+/// Lane version of project_coulomb with equal coefficients. NaN stays NaN.
 template <class T>
 LaneVec3<T> project_lanes(const LaneVec3<T>& z, const LaneVec3<T>& normal, const T& mu) {
     const T zero{};
@@ -50,7 +50,7 @@ LaneVec3<T> project_lanes(const LaneVec3<T>& z, const LaneVec3<T>& normal, const
     return select<T>(along <= zero, {zero, zero, zero}, kept);
 }
 
-/// project_onto_cone.
+/// Lane version of project_onto_cone.
 template <class T>
 LaneVec3<T> project_lanes_onto_cone(const LaneVec3<T>& z, const LaneVec3<T>& normal, const T& mu) {
     const T zero{};
@@ -80,7 +80,7 @@ T lane_error(const LaneProblem<T, K>& problem) {
     return square_root(sum) / problem.scale;
 }
 
-/// Lanes outside of `swept` keep their impulses.
+/// One sweep. Lanes outside of `swept` keep their impulses.
 template <class T, int K>
 SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous, const LaneMask<T>& swept,
                              Real relaxation) {
@@ -98,8 +98,8 @@ SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* prev
     return sum;
 }
 
-/// What lanes have in place of the Delassus operators: the dense form, in which nothing is carried along. A lane that
-/// is not swept any longer keeps its impulses.
+/// Lane version of a Delassus operator: the dense form, without velocities carried along. A lane that is no longer
+/// swept keeps its impulses.
 template <class T, int K>
 class LaneOperator {
 public:
@@ -114,7 +114,7 @@ public:
         return sweep_lanes<T, K>(problem_, previous_, swept_, relaxation);
     }
     T error() const { return lane_error<T, K>(problem_); }
-    /// `tolerance`: a number, or one by lane.
+    /// `tolerance`: one number, or one per lane.
     LaneMask<T> suggests_check(const T& change, const auto& tolerance) const {
         return change <= (tolerance * tolerance) * (problem_.scale * problem_.scale);
     }
@@ -141,8 +141,8 @@ struct LaneOutcome {
     LaneMask<T> solved;
 };
 
-/// ErrorTest by lane. The last iteration is no reason to measure: what lanes do not finish is solved again without
-/// them.
+/// Lane version of ErrorTest. The last iteration does not force a measurement: unfinished regions are solved again
+/// outside of lanes.
 template <class T, int K>
 class LaneTest {
 public:
@@ -160,7 +160,7 @@ public:
         outcome_.error = solved ? error : outcome_.error;
         outcome_.iterations = solved ? zero + static_cast<Real>(iteration) : outcome_.iterations;
         constexpr Real infinite = std::numeric_limits<Real>::infinity();
-        // those that are left are neither solved nor not finite
+        // keep lanes whose error is finite and above the tolerance, or is not due
         op_.keep_sweeping(op_.swept() & !(due & !((error > tolerance_) & (error < zero + infinite))));
         if (!any_lane(op_.swept())) return true;
         if (all_due) check_ = next_check(iteration);
@@ -175,8 +175,8 @@ private:
     Index check_ = 1;
 };
 
-/// Sweeps the `active` lanes until each is solved to its tolerance, or for max_iterations sweeps. A lane that is not
-/// solved then has no useful impulse.
+/// Sweeps the `active` lanes until each is solved to its tolerance, or for max_iterations sweeps. The impulse of a lane
+/// that is not solved is not usable.
 template <class T, int K>
 LaneOutcome<T> solve_lanes(LaneProblem<T, K>& problem, const LaneMask<T>& active, Index max_iterations,
                            Real relaxation) {

@@ -1,5 +1,5 @@
-// The friction laws as projections of one contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6).
-// V is a world vector of 3, or of 4 with a zero last place; `normal` is a unit vector, `mu` Coulomb's coefficient.
+// Friction laws as projections of one contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6). V is
+// a world vector of size 3, or 4 with a last entry of zero. `normal` is a unit vector, `mu` Coulomb's coefficient.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// A world vector padded to a vector register; the last place is zero.
+/// A world vector padded to a vector register; the last entry is zero.
 using Vec4 = Eigen::Matrix<Real, 4, 1>;
 
 inline Vec4 padded(const Vec3& v) {
@@ -24,14 +24,13 @@ inline Vec3 shortened(const Vec4& v) {
     return v.head<3>();
 }
 
-/// The two limits of friction: an impulse inside the static cone sticks, one outside slides with the dynamic
-/// coefficient.
+/// Static and dynamic coefficient: an impulse inside the static cone sticks, one outside slides with the dynamic one.
 struct FrictionLimits {
     Real stick, slide;
 };
 
-/// Exact Coulomb solution of one isotropic contact: `z` is the impulse that would stop it. The tangential part is cut
-/// back along itself, the normal part is kept (docs/methods/friction.md 2.1). Not-a-number stays not-a-number.
+/// Exact Coulomb solution of one isotropic contact; `z` is the impulse that would stop it. The tangential part is
+/// scaled down to the limit, the normal part is kept (docs/methods/friction.md 2.1). NaN stays NaN.
 template <class V>
 inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -45,7 +44,7 @@ inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
     return pressed + (mu.slide * along / std::sqrt(length_squared)) * tangential;
 }
 
-/// The same for the paper's pyramid (eq. 6): each tangential component is cut back on its own.
+/// Variant for the paper's pyramid (eq. 6): each tangential component is clamped separately.
 template <class V>
 inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -61,14 +60,13 @@ inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     return result;
 }
 
-/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of docs/methods/friction.md 2.5, for the error
-/// measures.
+/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of docs/methods/friction.md 2.5, for the error measures.
 template <class V>
 inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
     const V tangential = z - along * normal;
     const Real length = tangential.norm();
-    // The polar cone first: without friction and without a tangential part both would hold of an impulse that pulls.
+    // Test the polar cone first: a pulling impulse without tangential part passes both tests if mu is zero.
     if (mu * length <= -along) return V::Zero();
     if (length <= mu * along) return z;
     const Real nearest = (along + mu * length) / (1 + mu * mu);
@@ -82,8 +80,8 @@ inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Fricti
 }
 
 /// W(lambda) of the paper's (19), read as in docs/methods/contact.md 5.6: the part of the residual along which the
-/// impulse may move without leaving its limit. An impulse of zero can only grow; one on the limit of friction does not
-/// go on outwards.
+/// impulse may move without violating its limits. A zero impulse can only grow; one at the friction limit cannot move
+/// further outwards.
 template <class V>
 inline V feasible_direction(const V& residual, const V& impulse, const V& normal, FrictionLimits mu,
                             Friction friction) {
@@ -91,7 +89,7 @@ inline V feasible_direction(const V& residual, const V& impulse, const V& normal
     const Real growth = normal.dot(residual);
     if (along <= 0) return std::max(Real(0), growth) * normal;
     if (mu.stick == 0) return growth * normal;
-    constexpr Real rounding = 1e-9;  // relative: what a projection leaves beside the surface counts as on it
+    constexpr Real rounding = 1e-9;  // relative; a projected impulse this close to the surface counts as on it
     const Real limit = mu.slide * along * (1 - rounding);
     if (friction != Friction::pyramid) {
         const V tangential = impulse - along * normal;

@@ -1,4 +1,4 @@
-// What a joint does with three rows of one joint: those that are locked are equations, its axis has limits and a motor
+// Law of one block of three joint rows. Locked rows are equations; the axis has limits and a motor
 // (docs/methods/joints.md 2, 3).
 #pragma once
 
@@ -9,13 +9,14 @@
 
 namespace skerry {
 
-/// Velocities of the axis, m/s or rad/s, and the greatest impulse of its motor, N s or N m s.
+/// Limits and target velocity of the axis [m/s or rad/s], and the greatest impulse `most` of its motor [N s or N m s]
 struct AxisBounds {
     Real low = -std::numeric_limits<Real>::infinity(), high = std::numeric_limits<Real>::infinity();
     Real target = 0, most = 0;
 };
 
-/// r with u = w r + b: u is `target` as long as the motor can, and between low and high whatever that takes.
+/// Returns r with u = w r + b. The motor drives u to `target` within its greatest impulse; limits low and high always
+/// hold.
 inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
     if (!(w > 0)) return 0;
     const Real motor = axis.most > 0 ? std::clamp((axis.target - b) / w, -axis.most, axis.most) : 0;
@@ -27,15 +28,15 @@ inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
 
 /// Three rows with their block of W, in their own frame.
 struct JointLaw {
-    bool axis_free;  // the third row is an axis, else locked as the others are
+    bool axis_free;  // the third row is an axis; otherwise it is locked like the others
     AxisBounds axis{};
-    Mat3 block;          // of W
-    Mat3 inverse;        // of the locked part of it
-    Real axis_mobility;  // of the axis with the locked rows in force
+    Mat3 block;          // block of W
+    Mat3 inverse;        // inverse of its locked part
+    Real axis_mobility;  // mobility of the axis while the locked rows hold (Schur complement)
 
     void prepare(const Mat3& of, bool with_axis);
 
-    /// r with u = W r + b, u zero in the locked rows.
+    /// Returns r with u = W r + b and u zero in the locked rows.
     Vec3 answer(const AxisBounds& bounds, const Vec3& b) const {
         if (!axis_free) return -(inverse * b);
         const Vec3 held(b.x(), b.y(), 0), towards(block(0, 2), block(1, 2), 0);
@@ -47,7 +48,7 @@ struct JointLaw {
     }
     Vec3 answer(const Vec3& b) const { return answer(axis, b); }
 
-    /// How far r is from what u asks for, with a number in the place of W (docs/methods/errors.md 1).
+    /// Residual of the law at r and u, with a scalar in place of W (docs/methods/errors.md 1).
     Vec3 natural_map(const Vec3& r, const Vec3& u, Real mobility) const {
         Vec3 residual = u / mobility;
         if (axis_free) residual.z() = r.z() - answer_axis(axis, mobility, u.z() - mobility * r.z());

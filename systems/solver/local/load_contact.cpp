@@ -6,7 +6,8 @@
 namespace skerry {
 namespace {
 
-/// m/s, velocity of the contact at the start of the step and as predicted, without what implicit bodies deform.
+/// Velocity of the contact at the start of the step and as predicted, without deformation of implicit bodies by the
+/// kick [m/s]
 struct AroundKick {
     Vec3 before, now;
 };
@@ -43,11 +44,11 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     if (restitution == 0) return closing;
     const auto [before, coming] = around_kick(inputs, row, velocity_next);
     const Real approach = before.dot(inputs.normal[row]);
-    // What is not clearly faster than what forces give it in one step is no impact (docs/methods/contact.md 3.2):
-    // weight alone gives g h to a resting contact, and elastic forces can throw a node back down in each step, onto a
-    // floor that would throw it up again for ever.
+    // An approach that is not clearly faster than the velocity change by forces in one step is no impact
+    // (docs/methods/contact.md 3.2). Weight alone gives g h to a resting contact. Elastic forces can throw a node down
+    // in each step, and the floor would throw it up again for ever.
     const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
-    constexpr Real clearly = 2;  // times faster
+    constexpr Real clearly = 2;  // factor
     const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;
@@ -59,9 +60,9 @@ Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> 
     const Vec3& normal = inputs.normal[row];
     const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal,
                turn = slip - slip_before;
-    // What is about to stop or to turn back keeps the law as it is: it has no direction halfway. In between it fades,
-    // or a step would jump.
-    constexpr Real gone = 2, slope = 4;  // in full up to a quarter of the speed, nothing from half of it on
+    // A contact that is about to stop or reverse has no sliding direction halfway: no correction. In between it fades
+    // out, to keep the step continuous.
+    constexpr Real gone = 2, slope = 4;  // full up to a quarter of the speed, none from half of it on
     const Real fading = gone - slope * turn.norm() / slip_before.norm();
     if (!(fading > 0) || turn.isZero(0)) return Vec3::Zero();
     return 0.5 * std::min(Real(1), fading) * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);

@@ -1,4 +1,4 @@
-// A contact as the solver works with it, from the rows of the step's tables.
+// Builds the solver's data of a contact from the rows of the step's tables.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,20 @@
 
 namespace skerry {
 
-/// b_n of docs/methods/contact.md 3.1: the gap may close within the step; an impact turns back with the restitution.
-/// Gaps below zero are left to push_out_region.
+/// b_n of docs/methods/contact.md 3.1. The gap may close within the step; an impact rebounds with the restitution. Gaps
+/// below zero are left to the split impulse (push_contact.h).
 Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                   const SolverSettings& settings, Real h);
 
-/// m/s, half of what forces turn the slip by in this step, at right angles to it. The law of friction looks at the
-/// velocity after the impulse; without this the direction of sliding would be that at the end of the step's kick, an
-/// error of first order, instead of that in its middle. Zero where nothing slides, without friction, or where it goes
-/// straight on.
+/// Half of the turn of the sliding velocity by the forces of this step: its component perpendicular to the sliding
+/// direction. The friction law uses the velocity after the impulse. Without this correction it would act along the
+/// sliding direction at the end of the kick, a first-order error, instead of the middle. Zero without sliding, friction
+/// or turn [m/s]
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
-/// Loads contact `row`; `local(node)` gives the region's row of a moving node. `velocity_next` is what the contact sees
-/// before the solve. A node of which `elsewhere(node, weight)` is true moves with a rigid body: no node of the contact.
+/// Loads contact `row`. `local(node)` returns the region's row of a moving node. `velocity_next` is the predicted
+/// velocity of the nodes. Nodes for which `elsewhere(node, weight)` is true move with a rigid body; they are no nodes
+/// of the contact.
 template <class Local, class Elsewhere>
 LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                            const SolverSettings& settings, Real h, Local&& local, Elsewhere&& elsewhere) {
@@ -33,7 +34,7 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     Vec3 offset = contact.bias * inputs.normal[row] - inputs.surface_velocity[row];
     contact.node_count = 0;
     contact.diagonal = 0;
-    Real lightest = 0;  // 1/kg
+    Real lightest = 0;  // [1/kg]
     for (std::size_t a = 0; a < 4; ++a) {
         const Real weight = stencil.weight[a];
         if (weight == 0) continue;
@@ -51,9 +52,9 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
         contact.diagonal += weight * weight * inverse_mass;
         lightest = std::max(lightest, inverse_mass);
     }
-    // a moving node whose share is below 1e-6 would have to move a million times faster than the contact to stop it: it
-    // cannot
-    constexpr Real smallest_share = 1e-12;  // of the squared weight
+    // A moving node with a share below 1e-6 would have to move a million times faster than the contact to stop it, so
+    // it cannot.
+    constexpr Real smallest_share = 1e-12;  // ratio of squared weights
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
     contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};

@@ -1,5 +1,5 @@
-// What loading a region adds up over its contacts: whether there is anything to do, and what its error is measured
-// against.
+// Sums over the contacts of a region, collected while loading: they tell whether anything is to be solved, and give the
+// scale of the error.
 #pragma once
 
 #include "systems/solver/local/lumped_contact.h"
@@ -7,12 +7,12 @@
 namespace skerry {
 
 struct LoadSums {
-    Real asked = 0;              // J, squared natural map of zero impulses: what contacts would have to stop
-    Real moving = 0;             // J, all that moves between surfaces, gaps within reach, too
-    Real inverse_diagonals = 0;  // kg
+    Real asked = 0;              // squared natural map of zero impulses, over closing contacts [J]
+    Real moving = 0;             // squared contact velocities over D, including contacts that do not close [J]
+    Real inverse_diagonals = 0;  // sum of 1/D [kg]
     bool separating = true;      // no contact closes: zero impulses solve it
     bool frictionless = true;    // no contact has friction
-    bool one_friction = true;    // every contact has one coefficient
+    bool one_friction = true;    // the static and dynamic coefficients of every contact are equal
 
     /// `u`: velocity of the contact without impulses.
     void add(const LumpedContact& contact, Friction friction, const Vec4& u) {
@@ -37,9 +37,9 @@ struct LoadSums {
     }
 };
 
-/// sqrt(J), of e_nat. Not of all velocities (docs/methods/errors.md 2.1, 2.2): it leaves out what no impulse stops, or
-/// the errors allowed in a step of something that slides, or that is a little apart, would not get smaller with the
-/// step, and would add up over the steps.
+/// Scale of e_nat. It leaves out velocities that no impulse stops (docs/methods/errors.md 2.1, 2.2). Otherwise the
+/// error allowed per step would not decrease with the step for sliding or slightly open contacts, and would add up over
+/// the steps [sqrt(J)]
 Real error_scale(const LoadSums& sums, Real gravity, Real h, Real tolerance);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// One contact of lumped masses: its block of W is a number times the identity (docs/methods/contact.md 2.1), so that a
-// step of it is a gather of node velocities, a projection and a scatter.
+// One contact of lumped masses: its block of W is a scalar times the identity (docs/methods/contact.md 2.1). Solving it
+// is a gather of node velocities, a projection and a scatter.
 #pragma once
 
 #include <array>
@@ -10,22 +10,22 @@
 
 namespace skerry {
 
-/// What a sweep needs of one contact, side by side. Nodes that do not move are not in the stencil: their velocity is in
-/// `offset`.
+/// Data of one contact for a sweep, side by side. The stencil omits nodes that do not move; `offset` holds their
+/// velocity.
 struct LumpedContact {
-    Vec4 normal;                 // unit
-    Vec4 offset;                 // m/s: velocity of fixed nodes minus that of the collider, plus bias along the normal
-    std::array<Real, 4> weight;  // of the moving nodes
-    std::array<Real, 4> step;    // 1/kg, weight times inverse mass
+    Vec4 normal;                 // unit vector
+    Vec4 offset;                 // fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
+    std::array<Real, 4> weight;  // weights of the moving nodes
+    std::array<Real, 4> step;    // weight times inverse mass [1/kg]
     std::array<Index, 4> node;   // rows of the region's own nodes
-    Index node_count;            // 0: it moves no node by itself
-    Real diagonal;               // 1/kg, D of docs/methods/contact.md 2.1
-    Real inverse_diagonal;       // kg; 0: no impulse of this contact could move anything
-    Real bias;                   // m/s, its part of the offset
+    Index node_count;            // 0: it moves no node outside of rigid bodies
+    Real diagonal;               // D of docs/methods/contact.md 2.1 [1/kg]
+    Real inverse_diagonal;       // 0: no impulse of this contact could move anything [kg]
+    Real bias;                   // part of the offset along the normal [m/s]
     FrictionLimits friction;
 };
 
-/// start + sum of weight times velocity of the moving nodes.
+/// Returns start + sum of weight times velocity over the moving nodes.
 [[gnu::always_inline]] inline Vec4 add_node_velocities(const LumpedContact& contact, const Vec4* velocity, Vec4 start) {
     for (Index a = 0; a < contact.node_count; ++a) start += contact.weight[a] * velocity[contact.node[a]];
     return start;
@@ -40,7 +40,7 @@ inline void apply_impulse(const LumpedContact& contact, const Vec4& impulse, Vec
     for (Index a = 0; a < contact.node_count; ++a) velocity[contact.node[a]] += contact.step[a] * impulse;
 }
 
-/// 1/kg: the block of W of two contacts is this number times the identity.
+/// Scalar c: the block of W of two contacts is c times the identity [1/kg]
 inline Real coupling_of(const LumpedContact& a, const LumpedContact& b) {
     Real coupling = 0;
     for (Index k = 0; k < a.node_count; ++k)
@@ -49,8 +49,8 @@ inline Real coupling_of(const LumpedContact& a, const LumpedContact& b) {
     return coupling;
 }
 
-/// The Gauss-Seidel step of one contact (docs/methods/friction.md 2.2); `apply` moves nodes by an impulse. Returns
-/// D |change|^2.
+/// Gauss-Seidel step of one contact (docs/methods/friction.md 2.2); `apply` moves nodes by an impulse. Returns D
+/// |change|^2.
 template <class Apply>
 inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity,
                           Vec4& impulse, const Apply& apply) {
@@ -59,7 +59,7 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
     const Vec4 next = project_friction(stopping, contact.normal, contact.friction, friction);
     const Vec4 change = next - impulse;
     const Real size = change.dot(change);
-    if (size == 0) return 0;  // most contacts that are apart: nothing to scatter
+    if (size == 0) return 0;  // no change, as for most open contacts: nothing to scatter
     apply(contact, change, velocity);
     impulse = next;
     return contact.diagonal * size;
@@ -71,8 +71,8 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
         [](const LumpedContact& of, const Vec4& change, Vec4* moved) { apply_impulse(of, change, moved); });
 }
 
-/// F_i of docs/methods/errors.md 1: how far the impulse is from the one its velocity asks for. The De Saxce form where
-/// it exists (cone, one coefficient), else the residual of the contact step.
+/// F_i of docs/methods/errors.md 1: difference between the impulse and the one that the law gives for its velocity.
+/// Uses the De Saxce form where it exists (cone, equal coefficients), otherwise the residual of the contact step.
 inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse, const Vec4& u) {
     const FrictionLimits mu = contact.friction;
     if (friction == Friction::cone && mu.stick == mu.slide) {
@@ -84,7 +84,7 @@ inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const V
     return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
 }
 
-/// Whether a contact with this velocity needs no impulse.
+/// True if a contact with this velocity needs no impulse.
 inline bool separates(const LumpedContact& contact, const Vec4& u) {
     return contact.normal.dot(u) >= 0;
 }

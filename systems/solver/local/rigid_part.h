@@ -1,5 +1,4 @@
-// What a contact has beside its nodes where it touches rigid bodies: its block of W is a matrix
-// (docs/methods/rigid_bodies.md 3).
+// Part of a contact that belongs to rigid bodies. With it the block of W is a matrix (docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include <array>
@@ -21,29 +20,30 @@ inline Mat3 cross_matrix(const Vec3& a) {
     return matrix;
 }
 
-/// A rigid body in a contact: the sums over its nodes in the stencil of their weights, and of weight times place.
+/// A rigid body in a contact: sums over its nodes in the stencil of the weights, and of weight times position.
 struct RigidTerm {
-    Index row = no_index;  // of RigidBodyTable
-    Index slot = 0;        // of its velocity among those of the region; its spin comes next
+    Index row = no_index;  // row of RigidBodyTable
+    Index slot = 0;        // index of its velocity among those of the region; its spin is the next one
     Real weight = 0;       // often 1 or -1
-    Real step = 0;         // 1/kg, weight over mass
-    Vec4 arm;              // m, from the centre of mass, times weight
-    Columns3 spin_step;    // 1/(kg m), by what an impulse changes the spin: I^-1 [arm]
-    Real turn = 0;         // of the spin itself: 1 or -1 in a joint's rows of spins, whose impulses are moments
+    Real step = 0;         // weight over mass [1/kg]
+    Vec4 arm;              // vector from the centre of mass, times weight [m]
+    Columns3 spin_step;    // change of spin per impulse: I^-1 [arm] [1/(kg m)]
+    Real turn = 0;         // weight of the spin: 1 or -1 in a joint's rows of spins, whose impulses are moments
 };
 
 struct RigidPart {
     std::array<RigidTerm, 2> term;
     Index term_count = 0;
     std::span<const RigidTerm> terms() const { return {term.data(), static_cast<std::size_t>(term_count)}; }
-    Columns3 mobility;  // 1/kg, W_ii
+    Columns3 mobility;  // W_ii [1/kg]
     Columns3 frame;     // normal and two tangents
-    LocalBlock block;   // of W_ii, in the frame
-    Real along_normal;  // 1/kg, n W_ii n where nothing deforms
-    Real steepest;      // 1/kg, at least the largest eigenvalue of W_ii
+    LocalBlock block;   // W_ii in the frame
+    Real along_normal;  // n W_ii n without deformation of bodies [1/kg]
+    Real steepest;      // upper bound of the largest eigenvalue of W_ii [1/kg]
 };
 
-/// u of the rigid bodies of a contact. Of each step of each contact: a compiler that has much to do leaves it outside.
+/// Adds the velocity of a contact's rigid bodies to `start`. Always inlined: it is part of every contact step, and
+/// compilers tend not to inline it.
 [[gnu::always_inline]] inline Vec4 add_rigid_velocities(const RigidPart& part, const Vec4* velocity, Vec4 start) {
     for (Index k = 0; k < part.term_count; ++k) {
         const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
@@ -61,7 +61,7 @@ struct RigidPart {
     }
 }
 
-/// 1/kg, the share of the rigid bodies in the block of W of two contacts.
+/// Share of the rigid bodies in the block of W of two contacts [1/kg]
 inline Mat3 rigid_coupling(const RigidPart& a, const RigidPart& b) {
     Mat3 sum = Mat3::Zero();
     for (Index k = 0; k < a.term_count; ++k)

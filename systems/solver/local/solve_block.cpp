@@ -7,10 +7,10 @@
 namespace skerry {
 namespace {
 
-/// The letters of docs/methods/friction.md 3.1, 3.2: impulse as a function of s = |u_t| / |r_t|, and the derivatives.
+/// Notation of docs/methods/friction.md 3.1, 3.2: impulse as a function of s = |u_t| / |r_t|, and its derivatives.
 struct SlipCurve {
     const LocalBlock& block;
-    Real bn, b[2];  // m/s; tangents after elimination, along the principal axes
+    Real bn, b[2];  // tangents after elimination, along the principal axes [m/s]
     Real mu;
 
     Real rt[2], rt_length, rn, rt_slope, rn_slope;
@@ -32,7 +32,7 @@ struct SlipCurve {
         const Real limit = mu * rn;
         return rn > 0 && std::abs(rt_length - limit) <= 8 * std::numeric_limits<Real>::epsilon() * limit;
     }
-    /// The change of s that Newton's method asks for on 1/|rt| - 1/(mu rn), which is nearly linear in s. Needs rn > 0.
+    /// Newton step in s for 1/|rt| - 1/(mu rn), which is nearly linear in s. Needs rn > 0.
     Real newton_step() const {
         const Real limit = mu * rn;
         const Real value = 1 / rt_length - 1 / limit;
@@ -41,7 +41,7 @@ struct SlipCurve {
     }
 };
 
-/// The s > 0 at which the impulse lies on the cone, kept inside a bracket.
+/// Finds the s > 0 at which the impulse lies on the cone. Newton's method with bisection in a bracket.
 Real find_slip_safely(SlipCurve& curve) {
     const LocalBlock& block = curve.block;
     const Real b_length = std::hypot(curve.b[0], curve.b[1]);
@@ -72,18 +72,18 @@ Real find_slip_safely(SlipCurve& curve) {
     return s;
 }
 
-/// From the last solution it takes one or two steps. Any root is a solution; what does not settle at once is searched
-/// safely.
+/// Newton's method from the last solution, which takes one or two steps. Any root is a solution. Without quick
+/// convergence it uses the safe search.
 Real find_slip(SlipCurve& curve, Real start) {
     Real s = start;
-    constexpr int fast_limit = 6;  // three times what it takes from the last solution
+    constexpr int fast_limit = 6;  // three times the usual number
     for (int iteration = 0; iteration < fast_limit && s > 0; ++iteration) {
         curve.evaluate(s);
         if (!(curve.rn > 0)) break;
         if (curve.on_cone()) return s;
         const Real step = curve.newton_step();
         s += step;
-        if (std::abs(step) <= 4 * std::numeric_limits<Real>::epsilon() * s) return s;  // as far as rounding lets it
+        if (std::abs(step) <= 4 * std::numeric_limits<Real>::epsilon() * s) return s;  // converged to rounding
     }
     return find_slip_safely(curve);
 }
@@ -119,8 +119,8 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[0] = a;
         block.eigenvalue[1] = c;
     }
-    // a rank-deficient block leaves rounding here, of either sign
-    constexpr Real rank_rounding = 1e-14;  // of the trace
+    // A rank-deficient block leaves rounding errors of either sign here.
+    constexpr Real rank_rounding = 1e-14;  // fraction of the trace
     const Real smallest = rank_rounding * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);
     block.coupling[0] = block.cosine * w1 - block.sine * w2;
@@ -130,7 +130,7 @@ LocalBlock prepare_block(const Mat3& matrix) {
 
 Vec3 solve_block(LocalBlock& block, const Vec3& b, Real mu) {
     if (b[0] >= 0 || block.inverse_normal == 0) return Vec3::Zero();
-    const Real pressed = -b[0] * block.inverse_normal;  // N s, without friction
+    const Real pressed = -b[0] * block.inverse_normal;  // normal impulse without friction [N s]
     if (mu == 0) return {pressed, 0, 0};
     SlipCurve curve{block,
                     b[0],
@@ -146,7 +146,7 @@ Vec3 solve_block(LocalBlock& block, const Vec3& b, Real mu) {
     Real shrink = 1;
     if (!curve.inside_cone()) {
         block.slip = find_slip(curve, block.slip);
-        shrink = curve.mu * curve.rn / curve.rt_length;  // onto the cone to the last bit
+        shrink = curve.mu * curve.rn / curve.rt_length;  // exactly onto the cone
     }
     const Real r1 = shrink * curve.rt[0], r2 = shrink * curve.rt[1];
     return {curve.rn, block.cosine * r1 + block.sine * r2, -block.sine * r1 + block.cosine * r2};

@@ -1,8 +1,7 @@
-// How sweeps are accelerated (docs/methods/region_solver.md 2): Nesterov's extrapolation, with a restart when the step
-// turns against the motion, a guard on the residual, and a watchdog that goes back to plain sweeps when nothing is
-// gained. One policy for all regions: T is Real, or Real8 for eight regions side by side, each lane on its own with the
-// bits of one alone. The numbers were tuned by hand on the sheets, stacks and tilted jams of docs/solvers.md,
-// "Constants".
+// Acceleration of sweeps (docs/methods/region_solver.md 2): Nesterov's extrapolation, a restart when a step turns
+// against the motion, a bound on the residual, and a watchdog that returns to plain sweeps if nothing is gained. T is
+// Real, or Real8 for eight regions in SIMD lanes; each lane has the bits of a region solved alone. The constants were
+// tuned by hand on the sheets, stacks and tilted jams of docs/solvers.md, "Constants".
 #pragma once
 
 #include <algorithm>
@@ -13,18 +12,18 @@
 
 namespace skerry {
 
-/// What a comparison of T gives.
+/// Result type of a comparison of T.
 template <class T>
 using LaneMask = decltype(T{} < T{});
 
-/// The momentum of Nesterov's sequence (Nesterov 1983), restarted as in O'Donoghue and Candes 2015.
+/// Momentum of Nesterov's sequence (Nesterov 1983), restarted as in O'Donoghue and Candes 2015.
 template <class T>
 class Acceleration {
 public:
-    /// By how much to extrapolate after a sweep; 0 where the momentum starts anew. `plain`: where it has to.
+    /// Extrapolation factor after a sweep; 0 at a restart. `plain` forces a restart.
     T next(const SweepChangeOf<T>& change, const LaneMask<T>& plain) {
-        // of a sweep's squared change to the smallest since the restart: 10 is 15 % faster on easy problems and fails
-        // on jammed ones
+        // Bound on a sweep's squared change, relative to the smallest one since the restart. 10 is 15 % faster on easy
+        // problems and fails on jammed ones.
         constexpr Real guard = 2;
         const T zero{}, one = zero + 1;
         const T next_momentum = (1 + square_root(T(1 + 4 * momentum_ * momentum_))) / 2;
@@ -40,10 +39,10 @@ private:
     T momentum_ = T{} + 1, smallest_change_ = T{} + std::numeric_limits<Real>::infinity();
 };
 
-/// Sweeps without gain that the watchdog waits for at least; after a while half of the sweeps since it last barked.
+/// Fewest sweeps without gain before the watchdog acts. Later it waits for half of the sweeps since it last acted.
 inline constexpr Index watchdog_patience = 60;
 
-/// When to trust the acceleration. Lanes are swept for no longer than its patience: theirs sleeps.
+/// Decides when to use the acceleration. The lane version never acts: lanes do fewer sweeps than its patience.
 template <class T>
 class Watchdog {
 public:
@@ -54,10 +53,10 @@ public:
 template <>
 class Watchdog<Real> {
 public:
-    /// With which relaxation the next sweep is done.
+    /// Relaxation of the next sweep.
     Real relaxation() const { return relaxation_; }
 
-    /// Whether the sweep that was done, or the next one, is a plain one. `change`: that of the sweep, squared.
+    /// True if the last or the next sweep is a plain one. `change`: squared change of the last sweep.
     bool plain_after(Index iteration, Real change) {
         const bool was_plain = plain_left_ > 0;
         observe(iteration, change);
@@ -65,10 +64,10 @@ public:
     }
 
 private:
-    static constexpr Real gain = 0.7;           // of squared change to the best: less is progress
-    static constexpr Index plain_sweeps = 200;  // doubled with each phase, the first one included
+    static constexpr Real gain = 0.7;           // progress: squared change below this fraction of the best
+    static constexpr Index plain_sweeps = 200;  // doubled with each phase, including the first
     static constexpr Index most_doublings = 7, most_plain = 20000;
-    static constexpr Real damped = 0.8;  // relaxation of every second phase: for what plain sweeps cycle on
+    static constexpr Real damped = 0.8;  // relaxation of every second phase, for problems on which plain sweeps cycle
 
     void observe(Index iteration, Real change) {
         if (change < gain * best_) {

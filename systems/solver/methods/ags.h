@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Accelerated sweeps that can stop and go on where they were. Test: ErrorTest, or what lanes have instead.
+/// Accelerated sweeps that can be interrupted and continued. Test: ErrorTest, or LaneTest for lanes.
 template <SweptOperator Op, class Test = ErrorTest<Op>>
 class AcceleratedSweeps {
 public:
@@ -16,8 +16,8 @@ public:
         op_.remember();
     }
 
-    /// Goes on until the test ends it, or `last` iterations have been done in all: the impulse is then that of the last
-    /// sweep. Returns whether the test has ended it.
+    /// Continues until the test ends it or `last` iterations have been done in total. The impulse is then that of the
+    /// last sweep. Returns true if the test ended it.
     bool run_to(Index last) {
         while (iteration_ < last) {
             if (iteration_ > 0) extrapolate();
@@ -29,7 +29,7 @@ public:
     }
 
     Index iterations() const { return iteration_; }
-    /// Forgets the momentum: the impulse has been changed from outside.
+    /// Resets the momentum after the impulse was changed from outside.
     void start_anew() {
         acceleration_ = {};
         op_.remember();
@@ -40,7 +40,7 @@ private:
     static SweepChangeOf<Number> unknown() { return {Number{} + std::numeric_limits<Real>::infinity(), Number{}}; }
 
     void extrapolate() {
-        // sweeps; extrapolation adds up rounding, and a refresh costs half a sweep
+        // in sweeps; extrapolation accumulates rounding errors, and a refresh costs half a sweep
         constexpr Index refresh_interval = 64;
         const LaneMask<Number> plain = watchdog_.plain_after(iteration_, change_.size);
         const Number extrapolation = acceleration_.next(change_, plain);
@@ -57,8 +57,8 @@ private:
     Index iteration_ = 0;
 };
 
-/// Sweeps from the operator's present impulse. Leaves the last impulse when it converged or the count is fixed, else
-/// the best one seen.
+/// Sweeps from the operator's present impulse. Leaves the last impulse if it converged or the count is fixed, otherwise
+/// the best one measured.
 template <SweptOperator Op>
 SolveResult solve_ags(Op& op, const SolveLimits& limits) {
     ErrorTest<Op> test(op, limits);

@@ -1,5 +1,5 @@
-// Any contact problem behind virtual calls, for methods that are compiled once instead of once for each operator. They
-// make a few calls an iteration; what passes over the contacts stays with the operator.
+// Contact problem with virtual calls, for methods that are compiled once for all operators. They make few calls per
+// iteration; loops over the contacts are inside the operator.
 #pragma once
 
 #include "systems/solver/methods/conjugate_step.h"
@@ -31,7 +31,7 @@ public:
     virtual Real mobility(Index i) const = 0;
     virtual Friction law() const = 0;
     virtual void assemble(Eigen::MatrixXd& matrix) const = 0;
-    /// advance_conjugate_gradients.
+    /// Calls advance_conjugate_gradients.
     virtual ConjugateChange advance_gradients(ConjugateBeta formula) = 0;
 
 protected:
@@ -40,7 +40,7 @@ protected:
 
 static_assert(ContactOperator<AnyOperator>);
 
-/// The operator that it is made from.
+/// Adapter: forwards every call to the wrapped operator.
 template <ContactOperator Op>
 class OperatorView final : public AnyOperator {
 public:

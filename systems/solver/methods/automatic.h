@@ -1,4 +1,4 @@
-// The default: accelerated sweeps, and Newton steps where a region goes on for longer than they would take.
+// The default method: accelerated sweeps, and Newton steps in regions where sweeps would take longer.
 #pragma once
 
 #include <algorithm>
@@ -9,26 +9,25 @@
 
 namespace skerry {
 
-/// Nanoseconds, measured on 4 GHz cores; only their ratio matters, and it only says when which is tried.
+/// Costs measured on 4 GHz cores. Only their ratio matters; it decides when a Newton step is tried [ns]
 inline Real sweep_cost(Index contacts, Index couplings) {
     constexpr Real contact_cost = 40, coupling_cost = 2;
     return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
 }
 inline Real newton_step_cost(Index contacts) {
-    constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;  // equations by pair, factors by triple
+    constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;  // equations per pair, factor per triple
     const Real count = static_cast<Real>(contacts);
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators that keep room for Newton steps and know what they cost. Others get accelerated sweeps alone
-/// (run_method.h): in a step of the engine the warm start and the next step do what is left, at less cost than a
-/// factorisation.
+/// Operators with memory for Newton steps and known costs. Others use accelerated sweeps only (run_method.h): in a step
+/// of the engine, warm starts and the next step remove the remaining error at less cost than a factorisation.
 template <class Op>
 concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
     { constant.couplings() } -> std::convertible_to<Index>;  // blocks of W off the diagonal
 };
-/// Those that have steps of their own, and have to look at the whole region to know what they cost, ns.
+/// Operators with their own Newton steps, which must inspect the whole region to estimate their cost [ns]
 template <class Op>
 concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;
@@ -40,7 +39,7 @@ concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
 template <class Op>
 concept TakesNewtonSteps = KeepsNewtonMemory<Op> || HasNewtonSteps<Op>;
 
-/// Sweeps that cost as much as two Newton steps (docs/decisions/0004).
+/// Number of sweeps with the cost of two Newton steps (docs/decisions/0004).
 template <TakesNewtonSteps Op>
 Real newton_trial(Op& op) {
     constexpr Index trial_steps = 2;
@@ -60,8 +59,8 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
     }
 }
 
-/// A few sweeps at a time, and rounds of bodies that move as wholes after them, as long as these gain. `steps`: those
-/// that were taken.
+/// Alternates a few sweeps with coarse corrections by rigid-body modes, as long as these gain. Adds the Newton steps
+/// taken to `steps`.
 template <HasNewtonSteps Op>
 SolveResult move_wholes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps, const SolveLimits& limits,
                         Index& steps) {
@@ -85,16 +84,16 @@ SolveResult move_wholes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& swee
     return result(test.result());
 }
 
-/// Sweeps first. Once they have cost as much as a few Newton steps would, and will not be through within as much again,
-/// or within what sweeps are left, by the pace of the last stretch, the steps are tried from the present impulse; if
-/// they do not finish, sweeps go on, for three times as long as before.
+/// Sweeps first. Newton steps are tried once the sweeps have cost as much as a few of them and, by the pace of the last
+/// stretch, will not converge within as much again or within the remaining sweeps. If the steps fail, sweeps continue
+/// for twice as long as before.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
-    // the steps are those of the exact cone
+    // the Newton steps solve the exact cone
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);
     AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);
-    constexpr Real least_sweeps = 16;  // before them: most regions are solved by then
+    constexpr Real least_sweeps = 16;  // most regions converge within these
     constexpr bool looks_later = HasNewtonSteps<Op>;
     Real trial = looks_later ? 0 : newton_trial(op);
     Real pause = std::max(trial, least_sweeps);
@@ -108,7 +107,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
         bool ended = false;
-        if (looks_later && trial > 0) {  // the pace is that of the later half: at first all sweeps are fast
+        if (looks_later && trial > 0) {  // use the pace of the later half: the first sweeps are always fast
             ended = sweeps.run_to((sweeps.iterations() + static_cast<Index>(next)) / 2);
             error_before = test.result().error;
             iteration_before = sweeps.iterations();
@@ -120,7 +119,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         if (result.iterations + newton_steps >= limits.max_iterations) break;
         if (looks_later && trial == 0) {
             trial = newton_trial(op);
-            // half of the sweeps are for the steps to begin with, unless these are out of all proportion
+            // Try the steps after half of the allowed sweeps at the latest, unless they are far too expensive.
             constexpr Real out_of_proportion = 10;
             const Real all = limits.max_iterations;
             pause = trial > out_of_proportion * all ? all : std::min(std::max(trial, least_sweeps), all / 2);
@@ -135,7 +134,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         iteration_before = result.iterations;
         const Real left = limits.max_iterations - result.iterations - newton_steps;
         if (pace * std::min(trial, left) > std::log(result.error / limits.tolerance)) continue;
-        // those that finish take up to 14 (docs/decisions/0004); those of rounds, which see themselves where they fail
+        // Successful solves take up to 14 steps (docs/decisions/0004). The operator's own steps detect failure
+        // themselves.
         constexpr Index most_steps = HasNewtonSteps<Op> ? 40 : 20;
         const SolveResult newton =
             take_newton_steps(op, result.error, limits.tolerance,

@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-enum class ConjugateBeta { fletcher_reeves, polak_ribiere };  // (17), (18)
+enum class ConjugateBeta { fletcher_reeves, polak_ribiere };  // (17), (18) of the paper
 
 inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     Real sum = 0;
@@ -16,13 +16,13 @@ inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     return sum;
 }
 
-/// The largest entries of the residual after one iteration, for (20) and (21).
+/// Largest entries of the change of the impulse and of the residual after one iteration, for the paper's (20) and (21).
 struct ConjugateChange {
     Real impulse = 0, residual = 0;
-    bool used_up = false;  // no direction to go on in
+    bool used_up = false;  // no search direction is left
 };
 
-/// One iteration: the impulse moves along the direction and is projected, the residual follows (19).
+/// One iteration: the impulse moves along the direction and is projected, the residual is updated by the paper's (19).
 template <ContactOperator Op>
 ConjugateChange advance_conjugate_gradients(Op& op, ConjugateBeta formula) {
     const std::span<Vec4> impulse = op.impulse(), residual = op.workspace(1), direction = op.workspace(2),

@@ -1,4 +1,4 @@
-// When a method measures its error, what it keeps on the way, and when it ends.
+// Decides when a method measures its error and when it ends, and keeps the best impulse.
 #pragma once
 
 #include <algorithm>
@@ -12,21 +12,21 @@ namespace skerry {
 struct SolveLimits {
     Real tolerance = 1e-3;
     Index max_iterations = 200;
-    bool fixed_iterations = false;  // no tests, exactly max_iterations
+    bool fixed_iterations = false;  // no error tests, exactly max_iterations
     Real relaxation = 1;
 };
 
-/// Error of a start that is compared with zero, which has one of about 1.
+/// A warm start with a larger error is compared with zero impulses, whose error is about 1.
 inline constexpr Real suspicious_start = 0.5;
 
-/// The next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ..., then every 8th part more. A measure
-/// costs half a sweep; a solution is noticed at most an eighth of its iterations, and five, late.
+/// Next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ..., later at intervals of an eighth. A
+/// measurement costs half a sweep. A solution is noticed late by at most an eighth of its iterations plus five.
 inline Index next_check(Index iteration) {
-    constexpr Index first = 2, later = 8, offset = 4;  // shares of the iterations done, and where the second begins
+    constexpr Index first = 2, later = 8, offset = 4;  // fractions of the iterations done; offset of the second rule
     return iteration + 1 + std::min(iteration / first, offset + iteration / later);
 }
 
-/// Where operators have no place of their own for the best impulse it is in slot 0 of the workspace.
+/// Stores the best impulse: in slot 0 of the workspace unless the operator has its own place for it.
 template <SweptOperator Op>
 void keep_impulse(Op& op) {
     if constexpr (ContactOperator<Op>) {
@@ -45,7 +45,7 @@ void restore_impulse(Op& op) {
     }
 }
 
-/// The best impulse seen at the checks, by error (docs/methods/errors.md 5.3).
+/// The best impulse at the measurements, by error (docs/methods/errors.md 5.3).
 template <SweptOperator Op>
 class BestIterate {
 public:
@@ -59,12 +59,12 @@ public:
     }
 
     bool known() const { return known_; }
-    /// The present impulse, not measured before; an error that is not finite is none of the best.
+    /// Offers the present impulse, not measured before. An error that is not finite is ignored.
     void offer_last(Real error) {
         if (std::isfinite(error)) offer(error);
     }
 
-    /// Puts the best impulse back and returns its error.
+    /// Restores the best impulse and returns its error.
     Real restore() {
         if (!known_) return op_.error();
         restore_impulse(op_);
@@ -77,19 +77,19 @@ private:
     Real error_ = 0;
 };
 
-/// The test that all methods share. With a fixed count sweeps measure nothing before the end.
+/// Convergence test shared by all methods. With a fixed count it measures nothing during sweeps.
 template <SweptOperator Op>
 class ErrorTest {
 public:
     ErrorTest(Op& op, const SolveLimits& limits) : op_(op), limits_(limits), best_(op) {}
 
-    /// Whether the error is to be measured after this iteration.
+    /// True if the error is due to be measured after this iteration.
     bool due(Index iteration) const { return iteration >= check_; }
-    /// Makes it due at this iteration.
+    /// Schedules the next measurement at this iteration.
     void expect(Index iteration) { check_ = iteration; }
 
-    /// Measures the present impulse. True when it ends the method: not finite, or within the tolerance where the count
-    /// is not fixed.
+    /// Measures the error of the present impulse. Returns true if the method must end: the error is not finite, or
+    /// within the tolerance and the count is not fixed.
     bool ends(Index iteration) {
         iteration_ = iteration;
         error_ = op_.error();
@@ -99,20 +99,21 @@ public:
         if (due(iteration)) check_ = next_check(iteration);
         return false;
     }
-    /// The same after a sweep with this change, where it is due, is suggested by the change, or was the last one.
+    /// Variant after a sweep with this change. Measures only if due, if the change suggests it, or after the last
+    /// sweep.
     bool ends_after_sweep(Index iteration, Real change, Index last) {
         if (limits_.fixed_iterations) return false;
-        const bool suggested = op_.suggests_check(change, limits_.tolerance);  // once a sweep
+        const bool suggested = op_.suggests_check(change, limits_.tolerance);  // call it exactly once per sweep
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }
 
-    /// Leaves the best impulse seen.
+    /// Restores the best impulse.
     void go_back() { best_.restore(); }
-    /// The present impulse, that another method found.
+    /// Offers the present impulse, found by another method.
     void offer(Real error) { best_.offer(error); }
-    /// Of the last measure.
+    /// Result of the last measurement.
     SolveResult result() const { return {iteration_, error_, error_ <= limits_.tolerance}; }
-    /// When the iterations are used up: leaves the best impulse seen, the last one where none was measured.
+    /// Ends without convergence: restores the best impulse, or keeps the last one if none was measured.
     SolveResult give_up(Index iterations) {
         if (limits_.fixed_iterations && best_.known()) best_.offer_last(op_.error());
         const Real error = best_.restore();

@@ -10,7 +10,7 @@
 namespace skerry {
 namespace {
 
-/// P(z), the impulse that a contact answers with to the impulse z that would stop it, and its derivative.
+/// P(z), the impulse of Coulomb's law if the impulse z would stop the contact, and its derivative.
 struct CoulombAnswer {
     Vec3 impulse;
     Mat3 derivative;
@@ -28,7 +28,7 @@ CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, Real mu) {
     return {along * normal + mu * along * h, pressing + turning + mu * h * normal.transpose()};
 }
 
-/// Newton steps on F_i(r) = r_i - P(r_i - u_i / D_i). Uses all of the operator's workspace but the best iterate.
+/// Newton steps on F_i(r) = r_i - P(r_i - u_i / D_i). Uses the whole workspace of the operator except the best iterate.
 class NewtonSteps {
 public:
     NewtonSteps(AnyOperator& op, NewtonMemory& memory)
@@ -40,10 +40,10 @@ public:
             memory_.contact.push_back({op_.normal(i), op_.mobility(i), op_.limits(i).slide});
     }
 
-    /// Steps until nothing has been gained for a few of them: before the right set of sticking and sliding contacts is
-    /// found the error may rise. The best impulse stays. `error` is that of the present impulse.
+    /// Takes steps until several of them gain nothing: the error may rise before the right sets of sticking and sliding
+    /// contacts are found. The best impulse is kept. `error` is that of the present impulse.
     SolveResult run(Real error, Real tolerance, Index limit) {
-        constexpr Index patience = 4;  // steps (docs/decisions/0004)
+        constexpr Index patience = 4;  // in steps (docs/decisions/0004)
         const std::span<Vec4> kept = op_.workspace(2);
         SolveResult result{0, error, error <= tolerance};
         std::ranges::copy(impulse_, kept.begin());
@@ -73,7 +73,7 @@ private:
         return answer_coulomb(z.head<3>(), contact.normal.head<3>(), contact.mu);
     }
 
-    /// Contacts that open go to zero outright; J d = -F for the others. False when the factorisation broke down.
+    /// Opening contacts go to zero directly; J d = -F for the others. Returns false if the factorisation broke down.
     bool find_change() {
         op_.residual(pull_);
         memory_.active.clear();
@@ -98,10 +98,11 @@ private:
         return memory_.change.allFinite();
     }
 
-    /// Rows of J = I - P' (I - D^-1 W), and -F with what the opening contacts take away.
+    /// Fills the rows of J = I - P' (I - D^-1 W) and the right-hand side -F, including the change of the opening
+    /// contacts.
     void fill_equations() {
-        // Sticking contacts that support each other leave the sum of their impulses open: a little of the identity
-        // chooses. It changes the steps, not what they come to.
+        // Sticking contacts that support each other do not determine the distribution of their impulses. A small
+        // multiple of the identity makes it unique. It changes the steps but not the solution.
         constexpr Real redundancy = 1e-8;
         const std::vector<Index>& active = memory_.active;
         for (std::size_t a = 0; a < active.size(); ++a) {
@@ -119,13 +120,13 @@ private:
         }
     }
 
-    /// Leaves the solution of jacobian x = rest in `rest`, the factors in `jacobian`.
+    /// Solves jacobian x = rest. Leaves the solution in `rest` and the factors in `jacobian`.
     void solve_equations() {
         const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> factors(memory_.jacobian);
         memory_.rest = factors.solve(memory_.rest);
     }
 
-    /// sum of D |F|^2, J; leaves -u in the workspace.
+    /// Returns the sum of D |F|^2 and leaves -u in the workspace [J]
     Real merit() {
         op_.residual(pull_);
         Real sum = 0;
@@ -143,10 +144,10 @@ private:
         op_.refresh();
     }
 
-    /// The first of ever shorter steps that lowers the merit; when none does, the one that raises it least.
+    /// Takes the first of successively halved steps that lowers the merit, otherwise the one that raises it least.
     void search_along_change() {
         constexpr int halvings = 6;   // docs/decisions/0004
-        constexpr Real enough = 0.9;  // of the merit at the start
+        constexpr Real enough = 0.9;  // fraction of the merit at the start
         std::ranges::copy(impulse_, op_.workspace(1).begin());
         const Real start = merit();
         Real least = std::numeric_limits<Real>::infinity(), best_length = 1;
@@ -165,7 +166,7 @@ private:
 
     AnyOperator& op_;
     NewtonMemory& memory_;
-    std::span<Vec4> impulse_, pull_;  // -u
+    std::span<Vec4> impulse_, pull_;  // pull_ is -u [m/s]
 };
 
 }  // namespace

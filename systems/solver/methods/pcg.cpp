@@ -8,7 +8,7 @@
 namespace skerry {
 namespace {
 
-/// n of the paper, after which conjugate gradients end: a contact without friction has one row.
+/// n of the paper, the limit of conjugate gradient iterations. A contact without friction has one row.
 Index row_count(const AnyOperator& op) {
     Index rows = 0;
     for (Index i = 0; i < op.size(); ++i) rows += op.limits(i).stick > 0 ? 3 : 1;
@@ -21,30 +21,30 @@ Real largest_entry(std::span<const Vec4> vectors) {
     return largest;
 }
 
-/// Residual and direction before the first iteration, r = d = b - A lambda.
+/// Sets residual and direction before the first iteration: r = d = b - A lambda.
 void start_conjugate_gradients(AnyOperator& op) {
     const std::span<Vec4> residual = op.workspace(1);
     op.residual(residual);
     for (Index i = 0; i < op.size(); ++i)
-        // the other rows are not there
+        // Without friction the contact has only a normal row.
         if (op.limits(i).stick == 0) residual[i] = op.normal(i).dot(residual[i]) * op.normal(i);
     std::ranges::copy(residual, op.workspace(2).begin());
 }
 
-/// When the phase ends, beside its error.
+/// End criteria of the phase besides the error.
 struct ConjugateLimits {
-    Index iterations;  // at most
-    Real tolerance;    // (20), (21), of the largest impulse and of the first residual; 0: they end nothing
+    Index iterations;  // upper limit
+    Real tolerance;    // (20), (21): relative to the largest impulse and to the first residual; 0: unused
 };
 
-/// The phase from the present impulse. Leaves the impulse that converged, else the best one, its start included:
-/// nothing keeps these steps from going uphill, to overflow in the end, so that a fixed count is measured by the
-/// schedule, too. The result's error is that of the impulse left.
+/// Runs the phase from the present impulse. Leaves the impulse that converged, otherwise the best one, including the
+/// start. Errors can grow until overflow, so they are measured on schedule even with a fixed count. The error of the
+/// result is that of the impulse left.
 SolveResult run_conjugate_gradients(AnyOperator& op, const SolveLimits& limits, const ConjugateLimits& phase,
                                     ConjugateBeta formula, ErrorTest<AnyOperator>& test) {
     if (test.ends(0)) return test.result();
     if (limits.fixed_iterations && test.result().error > suspicious_start) {
-        // nobody has asked whether zero is nearer
+        // The warm start has not been compared with zero yet.
         std::ranges::fill(op.impulse(), Vec4::Zero());
         op.refresh();
         if (test.ends(0)) return test.result();
@@ -81,7 +81,7 @@ SolveResult solve_pcg(AnyOperator& op, const SolveLimits& limits, ConjugateBeta 
 }
 
 SolveResult solve_pcg_pgs(AnyOperator& op, const SolveLimits& limits, ConjugateBeta formula) {
-    // the first phase is asked for less than the second: eps_cg > eps_gs, delta_cg > delta_gs
+    // The first phase has looser tolerances than the second: eps_cg > eps_gs, delta_cg > delta_gs.
     constexpr Real looser = 10;
     ErrorTest<AnyOperator> test(op, limits);
     const ConjugateLimits phase{std::min(row_count(op), limits.max_iterations / 2), looser * limits.tolerance};

@@ -6,7 +6,7 @@
 namespace skerry {
 
 /// Sweeps `first` .. max_iterations over the contacts in order, from the operator's present impulse. Leaves the last
-/// impulse when it converged or the count is fixed, else the best one.
+/// impulse if it converged or the count is fixed, otherwise the best one.
 template <ContactOperator Op>
 SolveResult sweep_until_solved(Op& op, const SolveLimits& limits, Index first, ErrorTest<Op>& test) {
     test.expect(first);

@@ -1,4 +1,4 @@
-// The one place where the name of a method becomes a call.
+// Dispatch from the name of a method to its solver.
 #pragma once
 
 #include "components/options.h"
@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// The methods that are compiled once: newton, pcg_pgs, pcg_fr, pcg_pr.
+/// Runs a method that is compiled once for all operators: newton, pcg_pgs, pcg_fr, pcg_pr.
 SolveResult run_cold_method(SolverMethod method, AnyOperator& op, const SolveLimits& limits);
 
 template <ContactOperator Op>

@@ -1,5 +1,5 @@
-// The Delassus operator of general 3x3 blocks, in the frames of the contacts (normal, tangent 1, tangent 2): problems
-// from files.
+// Delassus operator of general 3x3 blocks, in the contact frames (normal, tangent 1, tangent 2). It is used for
+// problems read from files.
 #pragma once
 
 #include <array>
@@ -16,49 +16,49 @@
 
 namespace skerry {
 
-/// u = W r + q, W in compressed rows of blocks. W is used as given, also where it is not quite symmetric.
+/// u = W r + q with W in compressed rows of blocks. W is used as given, even if it is not quite symmetric.
 struct BlockSystem {
-    std::span<const Index> row_offset;  // contacts + 1
+    std::span<const Index> row_offset;  // contacts + 1 entries
     std::span<const Index> column;
-    std::span<const Mat3> block;  // s/kg
-    std::span<const Vec3> q;      // m/s
+    std::span<const Mat3> block;  // [s/kg]
+    std::span<const Vec3> q;      // [m/s]
     std::span<const Real> mu;
 };
 
-/// A system in the order in which it is swept, blocks side by side and padded to vector registers. The last place of
-/// every vector is zero.
+/// A system in the order of the sweep, with blocks side by side and padded to vector registers. The last entry of every
+/// vector is zero.
 struct BlockMemory {
     struct Contact {
         Vec4 q;
         std::array<Vec4, 3> diagonal;  // columns of W_ii
-        std::array<Vec4, 3> skew;      // of what the local solution leaves out: half of W_ii - W_ii^T
+        std::array<Vec4, 3> skew;      // half of W_ii - W_ii^T, which the local solution leaves out
         LocalBlock local;
         Real mu;
     };
     using Columns = Columns3;
 
     std::vector<Contact> contact;
-    std::vector<Index> offset;    // contacts + 1
+    std::vector<Index> offset;    // contacts + 1 entries
     std::vector<Index> neighbor;  // place of the other contact
     std::vector<Columns> block;   // W_ij, i != j
-    std::vector<Vec4> impulse;    // N s
+    std::vector<Vec4> impulse;    // [N s]
     std::array<std::vector<Vec4>, workspace_limit> workspace;
     NewtonMemory newton;
 
-    /// `order`: contacts of the system in the order of the sweep, those of a region one after the other. Impulses start
-    /// at zero.
+    /// `order`: contacts of the system in the order of the sweep; those of a region are consecutive. Impulses start at
+    /// zero.
     void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
-/// F_i for rho = 1: residual of the impulse against its velocity, by the cone of FCLIB or the paper's pyramid.
+/// F_i for rho = 1: residual of the impulse against its velocity, for the cone of FCLIB or the paper's pyramid.
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
-/// One region: the contacts at the places [begin, end) of the memory, to which no other region's blocks refer.
+/// One region: the contacts at places [begin, end) of the memory. Blocks of other regions must not refer to them.
 class BlockOperator {
 public:
     using Number = Real;
 
-    /// `smallest_size`: the error is not measured against less than this; the region's share of a larger whole.
+    /// `smallest_size`: lower bound of the norm in the relative error; the region's share of a larger problem.
     BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size);
 
     Index size() const { return end_ - begin_; }
@@ -72,7 +72,8 @@ public:
         const BlockMemory::Columns& w = memory_.contact[begin_ + i].diagonal;
         return a.dot(w[0] * b[0] + w[1] * b[1] + w[2] * b[2]);
     }
-    /// |F| / max(|q|, |r|, |u|): the measure of FCLIB and Siconos (docs/methods/errors.md 3), of this region.
+    /// Relative error |F| / max(|q|, |r|, |u|) of this region, the measure of FCLIB and Siconos (docs/methods/errors.md
+    /// 3).
     Real error();
     /// max(|q|, |r|, |u|) at the last error().
     Real measured_size() const { return size_; }
@@ -105,10 +106,10 @@ private:
     Index begin_, end_;
     Friction friction_;
     Real smallest_size_;
-    Real swept_ = 0;        // squared estimate of |F| from the changes of this sweep
-    Real last_swept_ = 0;   // the same of the sweep before, whose |F| error() measures
-    Real calibration_ = 1;  // |F|^2 over the estimate at the last measure
-    Real size_ = 0;         // max(|q|, |r|, |u|) at the last measure
+    Real swept_ = 0;        // estimate of |F|^2 from the changes of this sweep
+    Real last_swept_ = 0;   // estimate of the sweep before, whose |F| error() measures
+    Real calibration_ = 1;  // |F|^2 divided by the estimate, at the last measurement
+    Real size_ = 0;         // max(|q|, |r|, |u|) at the last measurement
 };
 
 }  // namespace skerry

@@ -1,7 +1,7 @@
-// What a method sees of a contact problem: the Delassus operator W = J M^-1 J^T, never formed where it need not be,
-// with the law of friction of each contact. J takes velocities of nodes to those of contacts, M is the lumped mass.
-// LumpedOperator (node velocities carried along; a step of the engine) and BlockOperator (blocks of W, problems from
-// files) fit. NormalRows knows accelerated sweeps alone.
+// Interface of a contact problem for the methods: the Delassus operator W = J M^-1 J^T, formed only where necessary,
+// and the friction law of each contact. J maps node velocities to contact velocities, M is the lumped mass. Models:
+// LumpedOperator (carries node velocities along; used in a step of the engine), FreedomOperator (rigid bodies) and
+// BlockOperator (blocks of W; problems from files). NormalRows supports accelerated sweeps only.
 #pragma once
 
 #include <concepts>
@@ -12,17 +12,17 @@
 
 namespace skerry {
 
-/// Vectors by contact that a method may ask for.
+/// Largest number of workspace vectors by contact that a method may use.
 inline constexpr std::size_t workspace_limit = 4;
 
-/// What a method came to.
+/// Result of a method.
 struct SolveResult {
     Index iterations = 0;
     Real error = 0;
     bool converged = false;
 };
 
-/// What a sweep did. T: Real, or Real8 for eight regions side by side.
+/// Change of the impulses in a sweep. T: Real, or Real8 for eight regions in SIMD lanes.
 template <class T>
 struct SweepChangeOf {
     T size{};     // sum of change . W_ii change
@@ -36,41 +36,41 @@ struct SweepChangeOf {
 };
 using SweepChange = SweepChangeOf<Real>;
 
-/// Impulses that accelerated sweeps improve. Number: what an error is, Real or Real8. W_ii is the diagonal block of
+/// Impulses that accelerated sweeps can improve. Number: type of an error, Real or Real8. W_ii is the diagonal block of
 /// contact i.
 template <class Op>
 concept SweptOperator = requires(Op& op, Real relaxation, typename Op::Number number) {
-    // each contact exactly in its turn, relaxed
+    // one sweep: solves each contact exactly in turn, with relaxation
     { op.accelerated_sweep(relaxation) } -> std::same_as<SweepChangeOf<typename Op::Number>>;
-    { op.error() } -> std::same_as<typename Op::Number>;  // of the present impulse
-    op.suggests_check(number, relaxation);                // after each sweep: its change, tolerance
+    { op.error() } -> std::same_as<typename Op::Number>;  // error of the present impulse
+    op.suggests_check(number, relaxation);                // after each sweep, with its change and the tolerance
     op.remember();                                        // previous = present
     // present += number (present - previous), previous = present
     op.extrapolate(number);
-    op.refresh_all();  // what is carried along with present and previous, again from them
+    op.refresh_all();  // recomputes the state carried along with present and previous
 };
 
-/// u = W r + q with a friction law, and a present impulse r. Errors are relative and mean the same for every method.
+/// u = W r + q with a friction law, and a present impulse r. Errors are relative and comparable between methods.
 template <class Op>
 concept ContactOperator = SweptOperator<Op> &&
     requires(Op& op, const Op& constant, Index i, Real number, std::span<Vec4> out, std::span<const Vec4> in,
              const Vec4& vector, Eigen::MatrixXd matrix) {
     { constant.size() } -> std::convertible_to<Index>;
-    { op.impulse() } -> std::convertible_to<std::span<Vec4>>;  // writing to it asks for refresh()
-    op.refresh();                                              // carried state again from the impulse
-    // slot 0: best iterate; 1: previous, of accelerated sweeps; the rest: the method's
+    { op.impulse() } -> std::convertible_to<std::span<Vec4>>;  // after writing to it call refresh()
+    op.refresh();                                              // recomputes the carried state from the impulse
+    // slot 0: best iterate; 1: previous impulse of accelerated sweeps; others: free for the method
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
-    { op.sweep(number) } -> std::convertible_to<Real>;              // as accelerated_sweep, looking at the size alone
+    { op.sweep(number) } -> std::convertible_to<Real>;              // a sweep that returns only the size of its change
     op.residual(out);                                               // -u, the paper's b - A lambda
     op.multiply(in, out);                                           // W d
     { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // friction law
     { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) of (19)
-    { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit
+    { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit vector
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
-    // s/kg, a number for W_ii: a third of its trace; 0: moves nothing
+    // scalar substitute for W_ii: a third of its trace; 0: the contact moves nothing [s/kg]
     { constant.mobility(i) } -> std::convertible_to<Real>;
     { constant.law() } -> std::same_as<Friction>;
-    constant.assemble(matrix);  // W, dense, 3 size() rows
+    constant.assemble(matrix);  // dense W with 3 size() rows
 };
 
 /// present += factor (present - previous), previous = present.

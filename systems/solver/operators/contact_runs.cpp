@@ -6,7 +6,7 @@ namespace skerry {
 
 namespace {
 
-/// out += sum of columns times factors, some at a time, so that `out` is read and written less often.
+/// out += sum of columns times factors. Several columns at once reduce the reads and writes of `out`.
 void add_columns(std::span<const Real* const> column, std::span<const Real> factor, std::span<Real> out) {
     constexpr std::size_t at_once = 6;
     std::size_t c = 0;
@@ -91,7 +91,7 @@ void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGrou
 void ContactRuns::list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk,
                                std::size_t first_node, Run& run) {
     std::sort(node_.begin() + static_cast<std::ptrdiff_t>(first_node), node_.end());
-    // by rows of the region, in which the touched nodes of a body follow each other
+    // Sort by rows of the region, in which the touched nodes of a body are consecutive.
     for (std::size_t begin = first_node; begin < node_.size();) {
         const std::size_t body = walk.body_of(node_[begin]);
         std::size_t end = begin;
@@ -161,7 +161,7 @@ void ContactRuns::spread(const Run& run, const ThroughGroups& walk, Vec4* veloci
         std::ranges::fill(pending, Vec4::Zero());
         if (impulses_.empty()) continue;
         const std::span<const Real> moved = impulses_.velocities(3 * touched);
-        // those of the run have moved
+        // Skip the nodes of the run, which have moved already.
         std::size_t next = patch.first;
         for (std::size_t k = 0; k < touched; ++k) {
             const Index row = patch.first_row + static_cast<Index>(k);

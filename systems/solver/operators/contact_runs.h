@@ -1,7 +1,7 @@
-// Sweeps over contacts on bodies that deform: an impulse on a node moves all touched nodes of its body, but only those
-// that the next contacts name have to move at once (docs/methods/implicit_bodies.md 4). Runs are consecutive contacts
-// that name few nodes. What the contacts of a run do to other nodes is summed up by node, and done when the run is
-// over: the same sweep, to rounding.
+// Sweeps over contacts on implicit bodies. An impulse on a node moves all touched nodes of its body, but only the nodes
+// of the next contacts need the update at once (docs/methods/implicit_bodies.md 4). A run is a sequence of consecutive
+// contacts with few nodes. The impulses of a run are summed up by node and applied to all other nodes at its end. The
+// result is that of a plain sweep, up to rounding.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace skerry {
 
 using PaddedMat3 = Eigen::Matrix<Real, 4, 3>;  // the fourth row is zero
 
-/// Impulses on touched nodes of one body, and what they do to all of them together.
+/// Impulses on touched nodes of one body, and their joint effect on all touched nodes.
 class SpreadImpulses {
 public:
     SpreadImpulses() = default;
@@ -26,57 +26,59 @@ public:
     }
     void add(const ImplicitCoupling& coupling, std::size_t body, Index place, const Vec4& impulse);
     bool empty() const { return factor_.empty(); }
-    /// By number of the touched nodes, m/s in the frame of the mesh.
+    /// Velocities of the touched nodes in the mesh frame, three numbers per node [m/s]
     std::span<const Real> velocities(std::size_t numbers);
 
 private:
-    Column<const Real*> column_;  // of ImplicitCoupling::response
-    Column<Real> factor_;         // N s
+    Column<const Real*> column_;  // columns of ImplicitCoupling::response
+    Column<Real> factor_;         // [N s]
     Column<Real> sum_;
 };
 
-/// Keeps its memory. Of one region at a time.
+/// Runs of one region at a time. Memory is kept between regions.
 class ContactRuns {
 public:
-    /// Consecutive contacts, and which patches they touch.
+    /// Consecutive contacts, and the range of the patches that they touch.
     struct Run {
         Index begin, end;
         std::size_t first_patch, last_patch;
     };
 
-    /// Of another region: nothing is listed.
+    /// Begins another region: its runs are not listed yet.
     void start() { run_.clear(); }
     bool listed() const { return !run_.empty(); }
-    /// `most_nodes`: of a run. Fewer are spread more often, more move each other more often.
+    /// `most_nodes`: limit of the nodes per run. A small limit spreads impulses more often, a large one moves more
+    /// nodes at each contact.
     void list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows,
               std::size_t most_nodes = 24);
     std::span<const Run> runs() const { return run_; }
-    /// An impulse of contact `i` in its run, but for rigid bodies.
+    /// Applies an impulse of contact `i` within its run, but not to rigid bodies.
     void apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& walk, const Vec4& impulse,
                Vec4* velocity);
-    /// At the end of a run.
+    /// Applies the summed impulses of a run to the touched nodes outside of it. Call it at the end of the run.
     void spread(const Run& run, const ThroughGroups& walk, Vec4* velocity);
-    /// Velocities that a sweep moves, with those that it moves several times.
+    /// Number of node velocities that a sweep updates, counting repeated updates.
     Real moved() const { return moved_; }
 
-    /// By node of the region, zero: for impulses that are not those of a sweep.
+    /// Zeroed sums by node of the region, for impulses outside of sweeps.
     std::span<Vec4> sums(std::size_t rows) {
         sum_.assign(rows, Vec4::Zero());
         return sum_;
     }
-    /// What these do to bodies that deform.
+    /// Applies the impulses in `sums` to the implicit bodies.
     void spread_sums(const ThroughGroups& walk, Vec4* velocity);
 
 private:
-    /// The nodes of one body that the contacts of a run name: `count` of node_ from `first`, with their blocks of W.
+    /// Nodes of one body in the contacts of a run: `count` entries of node_ from `first` on, and their blocks of W.
     struct Patch {
         std::size_t first, count, first_block;
-        std::size_t body;  // RigidBodyTable
-        Index first_row;   // of the region, of the touched nodes of the body
+        std::size_t body;  // row of RigidBodyTable
+        Index first_row;   // row of the region of the first touched node of the body
     };
-    /// Of a node of a contact: what it moves in its run; no `count` where it deforms no body.
+    /// Nodes of the run that an impulse on one node of a contact moves; `count` is 0 if that node is on no implicit
+    /// body.
     struct Near {
-        std::size_t first, count, self, row;  // in node_; `row`: in block_
+        std::size_t first, count, self, row;  // indices in node_, `row` in block_
     };
 
     void list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t first_node,
@@ -85,11 +87,11 @@ private:
 
     Column<Run> run_;
     Column<Patch> patch_;
-    Column<Index> node_;                // rows of the region, ascending in a patch
-    Column<Vec4> pending_;              // N s, by node_
+    Column<Index> node_;                // rows of the region, ascending within a patch
+    Column<Vec4> pending_;              // by index in node_ [N s]
     Column<std::array<Near, 4>> near_;  // by contact
-    Column<PaddedMat3> block_;          // 1/kg, world
-    Column<Index> entry_;               // by row of the region: in node_, if that agrees
+    Column<PaddedMat3> block_;          // in world axes [1/kg]
+    Column<Index> entry_;               // by row of the region: index in node_; stale if node_ disagrees
     Column<Vec4> sum_;
     SpreadImpulses impulses_;
     Real moved_ = 0;

@@ -1,4 +1,4 @@
-// Newton steps of regions that touch rigid bodies: what moves with a contact, and the inertia K of it.
+// Newton steps of regions that touch rigid bodies: the unknowns, their inertia K, and the steps.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 
 using Unknown = BodyEquations::Unknown;
 
-/// Calls `of(first, last)` for all unknowns of each body.
+/// Calls `of(first, last)` for the range of unknowns of each body.
 void for_each_body(const Column<Unknown>& unknown, auto&& of) {
     for (std::size_t begin = 0, end = 0; begin < unknown.size(); begin = end) {
         while (end < unknown.size() && unknown[end].body == unknown[begin].body) ++end;
@@ -30,7 +30,7 @@ void add_identity(const DenseBlock& block, Index at, Real number) {
 
 }  // namespace
 
-/// The rows of velocities that contacts move: bodies by name, those that do not deform first.
+/// Lists the velocity rows that contacts move, sorted by body; bodies that do not deform come first.
 void FreedomOperator::list_unknowns(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     Column<Index>& of_row = equations.unknown_of_row();
@@ -40,7 +40,7 @@ void FreedomOperator::list_unknowns(BodyEquations& equations) const {
         if (std::exchange(of_row[static_cast<std::size_t>(one.row)], 0) == no_index) unknown.push_back(one);
     };
     for (Index i = 0; i < size(); ++i) {
-        std::array<Index, 2> name{no_index, no_index};  // of the contact's bodies
+        std::array<Index, 2> name{no_index, no_index};  // identifiers of the contact's bodies
         const auto add = [&](Index body) {
             if (name[0] != body && name[1] != body) name[name[0] == no_index ? 0 : 1] = body;
         };
@@ -72,8 +72,8 @@ Index FreedomOperator::name_of_node(Index node) const {
     return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
 }
 
-/// A part is a rigid body, or those nodes of one that deforms that touch the same other body: they are coupled to no
-/// other nodes but those of their own body and of that.
+/// Defines the parts. A part is a rigid body, or the nodes of one deformable body that touch the same other body. Such
+/// nodes couple only to nodes of these two bodies.
 void FreedomOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();
@@ -101,7 +101,7 @@ void FreedomOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            if (!is_whole(equations, term)) continue;  // its nodes move as a whole, too
+            if (!is_whole(equations, term)) continue;  // its nodes are part of its rigid motion
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
         }
@@ -113,7 +113,7 @@ void FreedomOperator::list_pushes(BodyEquations& equations) const {
     }
 }
 
-/// By contacts, and by what bodies that deform are made of.
+/// Couples parts that share a contact, and all parts of an implicit body.
 void FreedomOperator::couple_parts(BodyEquations& equations) const {
     BlockFactor& factor = equations.factor();
     factor.close_parts();
@@ -147,21 +147,21 @@ BodyEquations& FreedomOperator::newton_memory() {
 
 BodyEquations& FreedomOperator::list_equations(BodyEquations& equations) {
     equations.set_cost(std::numeric_limits<Real>::infinity());
-    if (touches_clusters()) return equations;  // K is known of nodes and of whole bodies only
+    if (touches_clusters()) return equations;  // K is only available for nodes and whole bodies
     list_unknowns(equations);
     list_parts(equations);
     list_pushes(equations);
-    constexpr Index most_parts = 4000;  // whose pairs are kept
+    constexpr Index most_parts = 4000;  // limit, because all pairs of parts are stored
     if (equations.factor().part_count() > most_parts) return equations;
     couple_parts(equations);
     if (!equations.factor().analyse()) return equations;
     Real work = equations.factor().work();
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         const Real numbers = 3 * static_cast<Real>(end - begin);
-        // the inverse of what impulses do, once for some ten steps
+        // Inversion of the response matrix, shared by about ten steps.
         if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
-    // ns, measured on a 3 GHz core; of many numbers at a time registers are full
+    // Cost per operation on a 3 GHz core, small and large blocks (large ones fill the registers), and per contact [ns]
     constexpr Real small_operation_cost = 0.25, operation_cost = 0.06, contact_cost = 2000;
     equations.set_cost((runs_ ? operation_cost : small_operation_cost) * work +
                        contact_cost * static_cast<Real>(size()));
@@ -193,7 +193,8 @@ void FreedomOperator::assemble(BodyEquations& equations) const {
     equations.keep_inertia();
 }
 
-/// K of the touched nodes of a body: the inverse of what impulses on them do, as a whole and by what it deforms.
+/// Sets K of the touched nodes of a body: the inverse of their response to impulses, rigid motion and deformation
+/// together.
 void FreedomOperator::assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const {
     const Column<Unknown>& unknown = equations.unknown();
     const auto count = static_cast<Index>(end - begin), numbers = 3 * count;
@@ -238,12 +239,12 @@ void FreedomOperator::gather(BodyEquations& equations, Column<Real>& velocity) c
 
 namespace {
 
-/// The impulse of Coulomb's law at z, the one that would stop the contact, and its derivative.
+/// Impulse of Coulomb's law at z, the impulse that would stop the contact, and its derivative.
 struct Answer {
     Vec3 impulse;
     Mat3 derivative;
     bool open = false;
-    Vec3 way = Vec3::Zero();  // of what slides
+    Vec3 way = Vec3::Zero();  // sliding direction, zero unless it slides
 };
 Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -259,10 +260,10 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
 
 }  // namespace
 
-/// Impulses answer to the present motion, P( start - u / (softness D) ), and the velocities of the region and
-/// `answered` are those that they make. Returns ( answered - present ) K ( answered - present ), J, and leaves that
-/// right-hand side, with the matrix where that is looked for, and with what has turned round (stop_turned), where that
-/// is: contacts that slide against the way that they slid when the matrix was made last.
+/// Sets the impulses to the response to the present motion, P( start - u / (softness D) ), and updates the velocities
+/// of the region and `answered` accordingly. Returns the merit ( answered - present ) K ( answered - present ) [J] and
+/// sets the right-hand side K ( answered - present ). Unless `look` is value, also builds the matrix. If it is turns,
+/// also marks contacts that slide against their direction in the last matrix; stop_turned changes their equations.
 Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Look look) {
     const bool with_matrix = look != Look::value;
     if (with_matrix) equations.start_from_inertia();
@@ -285,9 +286,9 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
     return lack;
 }
 
-/// What has turned round has passed the place where it sticks, which is as small as contacts are hard: Newton's step
-/// for what slides would pass it again and again. It takes what has turned for stuck, and the right-hand side has the
-/// impulse that would stop it.
+/// A contact whose sliding direction reversed has passed the sticking state, whose range is small for hard contacts.
+/// Newton's step for sliding would pass it again and again. The matrix treats such contacts as sticking, and the
+/// right-hand side uses the impulse that would stop them.
 void FreedomOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> start) {
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
@@ -298,8 +299,8 @@ void FreedomOperator::stop_turned(BodyEquations& equations, std::span<const Vec4
     }
 }
 
-/// Velocities of the region and `answered` become those that its impulses make, the right-hand side K times what that
-/// is off from `present` by. Returns what it is off by, J.
+/// Updates the velocities of the region and `answered` from the impulses. With d = answered - present it sets the
+/// right-hand side to K d and returns d K d [J]
 Real FreedomOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
     if (equations.wholes)
         push_wholes(start);
@@ -311,9 +312,8 @@ Real FreedomOperator::compare_motion(BodyEquations& equations, std::span<const V
     return equations.set_right(equations.change.span());
 }
 
-/// The first step of a round whose contacts go on as they were when last asked: what stuck, slid or was open then does
-/// so in the motion that is stepped to. Returns what answer_motion does there, with the matrix, or nothing where the
-/// factor broke down.
+/// First step of a round. It assumes that contacts stick, slide or are open as in the last matrix. Returns
+/// answer_motion for the new motion, with the matrix, or nothing if the factorisation broke down.
 std::optional<Real> FreedomOperator::go_on_as_before(BodyEquations& equations, std::span<const Vec4> start) {
     equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
@@ -331,9 +331,10 @@ std::optional<Real> FreedomOperator::go_on_as_before(BodyEquations& equations, s
     return answer_motion(equations, start, Look::turns);
 }
 
-/// One Newton step from the present motion, as long as it lowers what answer_motion returns: the first of lengths 1,
-/// 1/2, ... that lowers it to 0.9 of it, else the best; a step that stops contacts may be of length 1 though it raises
-/// it, a few times a round. Returns that, or nothing where the factor broke down.
+/// One Newton step from the present motion with a line search on the result of answer_motion. Takes the first length of
+/// 1, 1/2, ... that lowers it below 0.9 of its value, otherwise the best one. A step that stops contacts may keep
+/// length 1 although it raises the value, a few times per round. Returns the new value, or nothing if the factorisation
+/// broke down.
 std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
@@ -351,7 +352,7 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
         const Real length = std::ldexp(Real(1), -k);
         go(length);
         const Real next = answer_motion(equations, start, k == 0 ? Look::turns : Look::value);
-        if (k == 0 && next < enough * lack) return next;  // as most
+        if (k == 0 && next < enough * lack) return next;  // the usual case
         if (k == 0 && stops && equations.rises < most_rises) {
             ++equations.rises;
             return next;
@@ -368,13 +369,13 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
 
 namespace {
 
-// Of D, what contacts give way by within a round: the less, the fewer rounds, and the more steps each of them takes.
-// Soft bodies are solved at the first, stiff ones at a hundredth of it, a light one under a heavy one at a small part
-// of their ratio: so that it follows how hard rounds are.
+// Softness: compliance of contacts within a round, as a fraction of D. A small value needs fewer rounds with more steps
+// each. Soft bodies converge at the first value, stiff ones at a hundredth of it, a light body under a heavy one at a
+// small part of their mass ratio. So the softness is adapted to the number of steps of the last round.
 constexpr Real most_softness = 0.3, least_softness = 1e-9;
-constexpr Real first_softness = 0.03;  // with bodies that deform: what turns round stops, and rounds end
+constexpr Real first_softness = 0.03;  // with deformable bodies: rounds end, since reversed contacts stop
 
-/// Of the next round, after one that took so many steps.
+/// Softness of the next round after a round with this number of steps.
 Real softness_after(Index steps, Real softness, bool deforming) {
     constexpr Index few = 4;
     const Real change = steps <= few / 2 ? 0.03 : steps > few ? 1.0 : deforming ? 0.1 : 0.3;
@@ -384,10 +385,10 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 }  // namespace
 
 SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    constexpr Real enough = 0.1;         // of the error at the start of a round, for it to be at its end
-    constexpr Real solved = 1e-3;        // of that, for it to end though the error is no less
-    constexpr Index most_in_round = 14;  // a round that takes more finds no end soon
-    constexpr Real softer = 10;          // after such a round
+    constexpr Real enough = 0.1;         // end of a round: fraction of the error at its start
+    constexpr Real solved = 1e-3;        // fraction of that below which it ends even if the error did not fall
+    constexpr Index most_in_round = 14;  // longer rounds are unlikely to end soon
+    constexpr Real softer = 10;          // increase of the softness after such a round
     BodyEquations& equations = newton_memory();
     if (!std::exchange(inertia_is_known_, true)) assemble(equations);
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
@@ -400,7 +401,7 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
     equations.softness = runs_ ? first_softness : most_softness;
     Real error_at_start = error;
     Index in_round = 0;
-    bool goes_on = false;  // with contacts as the round before left them
+    bool goes_on = false;  // start with contacts as the last round left them
     equations.start_round();
     std::optional<Real> lack = answer_motion(equations, start, Look::matrix);
     while (!result.converged && result.iterations < limit) {
@@ -420,7 +421,7 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
         const bool ended = std::sqrt(*lack) <= (now < error_at_start ? asked : solved * asked);
         if (!ended && steps < most_in_round) continue;
         in_round = 0;
-        // the next round: from these impulses, and the motion that they make; or this one anew
+        // Next round: from these impulses and the motion they make; or restart this one.
         if (ended) {
             equations.softness = softness_after(steps, equations.softness, static_cast<bool>(runs_));
             error_at_start = now;

@@ -13,11 +13,11 @@ Vec4 in_frame(const Columns3& frame, const Vec4& vector) {
     return {frame[0].dot(vector), frame[1].dot(vector), frame[2].dot(vector), 0};
 }
 
-/// Coulomb's answer to b = u - W_ii r, world.
+/// Impulse of Coulomb's law for b = u - W_ii r, in world axes.
 Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
     const Vec3 local = in_frame(part.frame, b).head<3>();
     Vec3 impulse = solve_block(part.block, local, mu.stick);
-    // one that slides does so with the dynamic coefficient
+    // A sliding contact uses the dynamic coefficient.
     constexpr Real rounding = 1e-12;
     if (mu.slide != mu.stick && impulse.tail<2>().norm() >= mu.stick * impulse[0] * (1 - rounding))
         impulse = solve_block(part.block, local, mu.slide);
@@ -34,7 +34,7 @@ Vec4 FreedomOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     }
     if (of.term_count > 0 && friction_ == Friction::cone)
         return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
-    // A number in the place of W_ii: exact where it is one. Elsewhere a step that is not too long.
+    // Uses a scalar in place of W_ii. This is exact if W_ii is a scalar, otherwise a damped step.
     return project(i, impulse - u / of.steepest);
 }
 
@@ -55,7 +55,7 @@ void FreedomOperator::list_runs() const {
 }
 
 void FreedomOperator::for_each_in_sweep(auto&& of) {
-    // one loop for both: a second copy of a step is too much for the compiler to put in place
+    // One loop for both cases: compilers would not inline a second copy of the step.
     const ContactRuns::Run all{0, size(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
     if (runs_) {

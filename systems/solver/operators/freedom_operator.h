@@ -1,6 +1,6 @@
-// The Delassus operator of contacts that touch rigid bodies, beside nodes of their own mass and clusters of nodes: the
-// blocks of W are matrices. It carries velocities along as LumpedOperator does, a rigid body's as two more: of its
-// centre and its spin (docs/methods/rigid_bodies.md 3).
+// Delassus operator of contacts that touch rigid bodies, and also nodes with their own mass and clusters of nodes. The
+// blocks of W are 3x3 matrices. It carries velocities along, as LumpedOperator does. A rigid body has two of them, that
+// of its centre and its spin (docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include <array>
@@ -18,16 +18,16 @@
 
 namespace skerry {
 
-/// One region; by contact, but for velocities. The memory belongs to the caller. LumpedContact::diagonal is a third of
-/// the trace of W_ii.
+/// Memory of one region, owned by the caller. Spans are by contact unless they hold velocities. LumpedContact::diagonal
+/// is a third of the trace of W_ii.
 struct FreedomMemory {
-    std::span<const LumpedContact> contact;  // its nodes are those without a rigid body
+    std::span<const LumpedContact> contact;  // without the nodes of rigid bodies
     std::span<RigidPart> part;
-    std::span<const JointLaw> joint;      // of the last so many contacts, which are rows of joints
-    std::span<Vec4> impulse;              // N s
-    std::span<Vec4> velocity;             // m/s and rad/s, moved by the impulse
-    std::span<const Vec4> free_velocity;  // without impulses
-    std::span<Vec4> scratch;              // as velocity: previous ones, or those of a product
+    std::span<const JointLaw> joint;      // laws of the last contacts, which are rows of joints
+    std::span<Vec4> impulse;              // [N s]
+    std::span<Vec4> velocity;             // includes the effect of the impulse [m/s, rad/s]
+    std::span<const Vec4> free_velocity;  // velocities without impulses
+    std::span<Vec4> scratch;              // size of `velocity`: previous velocities, or those of a product
     std::array<std::span<Vec4>, workspace_limit> workspace;
 };
 
@@ -38,7 +38,7 @@ class FreedomOperator {
 public:
     using Number = Real;
 
-    /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse. `pool`: for Newton steps.
+    /// `scale` is the scale of e_nat [sqrt(J)]. Velocities must match the impulse. `pool`: memory for Newton steps.
     FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughGroups& walk,
                     NewtonPool& pool, RunPool& runs)
         : memory_(memory), friction_(friction), scale_(scale), walk_(walk), pool_(&pool) {
@@ -59,14 +59,14 @@ public:
     void extrapolate(Real factor);
     Real sweep(Real relaxation);
     SweepChange accelerated_sweep(Real relaxation);
-    /// e_nat of docs/methods/errors.md 2, with a third of the trace of W_ii for D.
+    /// e_nat of docs/methods/errors.md 2, with a third of the trace of W_ii as D.
     Real error() const;
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
     void residual(std::span<Vec4> out) const;
     void multiply(std::span<const Vec4> in, std::span<Vec4> out) const;
     Vec4 project(Index i, const Vec4& impulse) const {
-        if (joint(i) != nullptr) return impulse;  // which sweeps do without
+        if (joint(i) != nullptr) return impulse;  // joints are not projected
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
     Vec4 feasible(Index i, const Vec4& residual) const {
@@ -79,27 +79,29 @@ public:
     Friction law() const { return friction_; }
     void assemble(Eigen::MatrixXd& matrix) const;
 
-    /// Newton steps (docs/methods/region_solver.md 5.9) from an impulse of this error: at most `limit`, the best
-    /// impulse stays. They take three vectors of the workspace, and memory when it is asked for first.
+    /// Newton steps (docs/methods/region_solver.md 5.9) from an impulse with this error: at most `limit` steps; the
+    /// best impulse is kept. They use slots 1 and 2 of the workspace, and lease memory at the first call.
     SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
-    Real newton_step_cost() { return newton_memory().cost(); }  // ns, of the order of
-    /// The same as if bodies moved as wholes (5.10), where that is another thing, and known of all of them. Steps stop
-    /// where they gain little.
+    Real newton_step_cost() { return newton_memory().cost(); }  // estimate [ns]
+    /// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies (5.10), in
+    /// rounds until one gains little. moves_wholes() tells whether it pays: free implicit bodies, no clusters, many
+    /// contacts.
     SolveResult take_rounds_of_wholes(Real error, Real tolerance, Index limit);
     bool moves_wholes() const;
-    Real sweep_cost() const;  // ns, of the order of
+    Real sweep_cost() const;  // estimate [ns]
 
-    /// The split impulse of a contact (push_contact.h): along its normal.
+    /// Velocity of a contact without its offset. The split impulse (push_contact.h) uses it, too.
     [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
     }
-    /// The same impulse on what does not deform, nor does what it pushes.
+    /// Applies a split impulse to rigid bodies, clusters and nodes with their own mass. Deformations of implicit bodies
+    /// do not change.
     [[gnu::always_inline]] void push(Index i, const Vec4& impulse, Vec4* velocity) const {
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
 
-    /// null: a contact
+    /// Law of a joint row; null for a contact.
     const JointLaw* joint(Index i) const {
         const Index first = size() - static_cast<Index>(memory_.joint.size());
         return i < first ? nullptr : &memory_.joint[static_cast<std::size_t>(i - first)];
@@ -108,17 +110,17 @@ public:
 private:
     const LumpedContact& contact(Index i) const { return memory_.contact[static_cast<std::size_t>(i)]; }
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
-    // of Newton steps
+    // Functions for Newton steps.
     BodyEquations& newton_memory();
     void assemble(BodyEquations& equations) const;
-    /// What impulses do to the unknowns, from the velocities of the region.
+    /// Copies the velocities of the region to the unknowns of the equations.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
     enum class Look { value, matrix, turns };
     Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, Look look);
     void stop_turned(BodyEquations& equations, std::span<const Vec4> start);
     Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
     BodyEquations& list_equations(BodyEquations& equations);
-    /// Whether a term of a contact is all of its body, and whether a node moves by itself.
+    /// is_whole: the rigid motion of the term's body is an unknown. is_unknown: the velocity of the node is an unknown.
     bool is_whole(const BodyEquations& equations, const RigidTerm& term) const;
     bool is_unknown(const BodyEquations& equations, Index node) const;
     BodyEquations* wholes_memory();
@@ -137,18 +139,18 @@ private:
     bool deforms(const BodyEquations::Unknown& unknown) const;
 
     Vec4 velocity(Index i) const { return contact(i).offset + velocity_at(i, memory_.velocity.data()); }
-    /// The impulse that the law answers with where the other impulses stay: exact for Coulomb's cone.
+    /// Solution of the contact law with all other impulses fixed. It is exact for Coulomb's cone.
     Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
-    /// Returns change . W_ii change.
+    /// Solves one contact. Returns change . W_ii change.
     Real step(Index i, Real relaxation);
-    /// Calls `of` for all contacts, in their order.
+    /// Calls `of` for all contacts in their order.
     void for_each_in_sweep(auto&& of);
     void list_runs() const;
-    /// In a sweep: of nodes that deform bodies those of its run.
+    /// Applies an impulse within a sweep. On implicit bodies it moves only the nodes of the contact's run.
     void apply(Index i, const Vec4& impulse);
     void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
-    /// Adds what impulses do. Of several contacts that name a node of a body that deforms they are summed up first:
-    /// each moves all touched nodes of its body.
+    /// Adds the effect of impulses to the velocities. Impulses on implicit bodies are first summed up by node, because
+    /// each of them moves all touched nodes of its body.
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     FreedomMemory memory_;
@@ -157,9 +159,9 @@ private:
     ThroughGroups walk_;
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
-    RunPool::Lease runs_;  // where something deforms
+    RunPool::Lease runs_;  // leased if contacts of the step touch implicit bodies
     bool own_are_listed_ = false, wholes_are_listed_ = false;
-    bool inertia_is_known_ = false;  // to the equations, from the first steps on
+    bool inertia_is_known_ = false;  // the equations have it after the first Newton steps
 };
 
 }  // namespace skerry

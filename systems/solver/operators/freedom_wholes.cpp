@@ -1,5 +1,5 @@
-// Newton steps of regions of bodies that deform, as if these moved as wholes: what impulses make them deform by is
-// looked at from round to round (docs/methods/region_solver.md 5.10).
+// Coarse correction with rigid-body modes: Newton steps of regions with deformable bodies that move as rigid bodies.
+// Deformations are updated from round to round (docs/methods/region_solver.md 5.10).
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// What is held does not move as a whole.
+/// A held body has no rigid motion.
 bool FreedomOperator::is_whole(const BodyEquations& equations, const RigidTerm& term) const {
     if (!walk_.deforms(term.row)) return true;
     return equations.wholes && walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;
@@ -20,10 +20,10 @@ bool FreedomOperator::is_unknown(const BodyEquations& equations, Index node) con
     return !(equations.wholes && walk_.moves_with_rigid(node));
 }
 
-/// Of few contacts a body sweeps are through by themselves: piles of cubes of 27 nodes have some 20, and cost a sixth
-/// more with rounds.
+/// With few contacts per body sweeps alone are better: piles of cubes of 27 nodes have about 20, and rounds cost them a
+/// sixth more.
 bool FreedomOperator::moves_wholes() const {
-    constexpr Index many = 48;  // contacts a body
+    constexpr Index many = 48;  // contacts per body
     if (!runs_ || touches_clusters()) return false;
     bool any_free = false;
     Index bodies = 0;
@@ -47,7 +47,8 @@ BodyEquations* FreedomOperator::wholes_memory() {
     return std::isfinite(equations.cost()) ? &equations : nullptr;
 }
 
-/// Velocities become those that the impulses make, as they are, and are kept: in the round what deforms goes on so.
+/// Computes the velocities that the impulses make, including deformations, and stores them. Deformation velocities stay
+/// fixed during the round.
 void FreedomOperator::start_round_of_wholes(BodyEquations& equations) {
     refresh();
     std::ranges::copy(memory_.velocity, memory_.scratch.begin());
@@ -58,7 +59,7 @@ void FreedomOperator::start_round_of_wholes(BodyEquations& equations) {
             velocity(i).head<3>() - equations.velocity(i, equations.present.span());
 }
 
-/// Velocities of wholes become those that the impulses make, from those of the impulses `start`, which are kept.
+/// Updates the rigid velocities for the change of the impulses since `start`; the stored velocities belong to `start`.
 void FreedomOperator::push_wholes(std::span<const Vec4> start) {
     std::ranges::copy(memory_.scratch, memory_.velocity.begin());
     for (Index i = 0; i < size(); ++i) {
@@ -68,10 +69,10 @@ void FreedomOperator::push_wholes(std::span<const Vec4> start) {
 }
 
 SolveResult FreedomOperator::take_rounds_of_wholes(Real error, Real tolerance, Index limit) {
-    constexpr Real softness = 0.3;       // of D: above what bodies deform by, or rounds gain nothing
-    constexpr Real enough = 0.01;        // of the error at the start of a round, for it to be at its end
-    constexpr Real gain = 0.5;           // of the error in a round, for another to follow
-    constexpr Index most_in_round = 14;  // steps
+    constexpr Real softness = 0.3;  // fraction of D, above the compliance of the bodies; otherwise rounds gain nothing
+    constexpr Real enough = 0.01;   // end of a round: fraction of the error at its start
+    constexpr Real gain = 0.5;      // another round follows if the error falls below this fraction
+    constexpr Index most_in_round = 14;  // limit of steps
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = wholes_memory();
     if (equations == nullptr) return result;

@@ -1,6 +1,5 @@
-// Walks: in which order, and by how many threads, the contacts of a region are passed over, and what an impulse moves.
-// A walk is a type, so that what is written once for all of them is compiled for each as if it had been written for it
-// alone.
+// A walk defines the order in which the contacts of a region are visited, the number of threads, and the effect of an
+// impulse on the velocities. Walks are types: shared code is written once and compiled separately for each walk.
 #pragma once
 
 #include <concepts>
@@ -12,23 +11,23 @@
 
 namespace skerry {
 
-/// Bodies are called with ranges [begin, end) of places that make up all of them. Contacts that share a node are never
-/// passed over at the same time, and always in the same order.
+/// `body` is called with ranges [begin, end) that together cover all places. Contacts that share a node are never
+/// visited concurrently, and always in the same order.
 template <class W>
 concept RegionWalk = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
                               Real (*part)(std::size_t, std::size_t), const LumpedContact& contact, const Vec4& impulse,
                               Vec4* velocity) {
     { W::one_thread } -> std::convertible_to<bool>;
-    { W::own_masses } -> std::convertible_to<bool>;  // J M^-1 J^T of a contact alone is its LumpedContact::diagonal
-    { walk.number_of(count) } -> std::convertible_to<std::size_t>;  // of the contact at a place, within its region
+    { W::own_masses } -> std::convertible_to<bool>;  // J M^-1 J^T of one contact equals its LumpedContact::diagonal
+    { walk.number_of(count) } -> std::convertible_to<std::size_t>;  // number in the region of the contact at a place
     walk.contacts(count, body);
     walk.nodes(count, body);
-    { walk.template sum<Real>(count, part) } -> std::same_as<Real>;  // over the contacts, always in the same order
-    walk.apply(contact, impulse, velocity);                          // velocities of the region's nodes += M^-1 J^T r
-    { walk.coupling(contact, contact) } -> std::same_as<Real>;       // 1/kg, J M^-1 J^T of two contacts
+    { walk.template sum<Real>(count, part) } -> std::same_as<Real>;  // sum over the contacts, always in the same order
+    walk.apply(contact, impulse, velocity);                     // velocities of the region's nodes += M^-1 J^T impulse
+    { walk.coupling(contact, contact) } -> std::same_as<Real>;  // J M^-1 J^T of two contacts [1/kg]
 };
 
-/// One thread, in the order of the contacts; every node by its own mass.
+/// One thread, in the order of the contacts; every node has its own mass.
 struct InOrder {
     static constexpr bool one_thread = true;
     static constexpr bool own_masses = true;

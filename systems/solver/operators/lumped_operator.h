@@ -1,4 +1,4 @@
-// The Delassus operator of lumped masses: every block is a number times the identity (docs/methods/contact.md 2.1). It
+// Delassus operator of lumped masses: every block is a scalar times the identity (docs/methods/contact.md 2.1). It
 // carries the velocities of the region's moving nodes, so that one contact step is a gather and a scatter.
 #pragma once
 
@@ -14,25 +14,25 @@
 
 namespace skerry {
 
-/// One region; by contact: in the order of the walk. The memory belongs to the caller.
+/// Memory of one region, owned by the caller. Spans by contact are in the order of the walk.
 struct LumpedMemory {
     std::span<const LumpedContact> contact;
-    std::span<Vec4> impulse;              // N s
-    std::span<Vec4> velocity;             // m/s, of the region's nodes, moved by the impulse
+    std::span<Vec4> impulse;              // [N s]
+    std::span<Vec4> velocity;             // velocities of the region's nodes, including the effect of the impulse [m/s]
     std::span<const Index> node;          // rows of NodeTable
-    std::span<const Vec3> free_velocity;  // m/s, by row of NodeTable
-    // by node of the region: previous velocities, or those of a product
+    std::span<const Vec3> free_velocity;  // by row of NodeTable [m/s]
+    // by node of the region: previous velocities, or velocities of a product
     std::span<Vec4> scratch;
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
 };
 
-/// The bits of the impulses do not depend on the walk, given the order of the contacts; those of sums do.
+/// For a given order of the contacts the bits of the impulses do not depend on the walk; those of sums do.
 template <RegionWalk Walk>
 class LumpedOperatorBy {
 public:
     using Number = Real;
 
-    /// `scale` is that of e_nat: sqrt(J). Velocities must be those of the impulse.
+    /// `scale` is the scale of e_nat [sqrt(J)]. Velocities must match the impulse.
     LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Walk& walk = {})
         : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
 
@@ -51,15 +51,16 @@ public:
     }
     void refresh_all() {
         refresh();
-        refresh(memory_.workspace[1], memory_.scratch);  // one without the other lets their difference grow
+        refresh(memory_.workspace[1], memory_.scratch);  // refreshing only one would let their difference grow
     }
     void remember();
     void extrapolate(Real factor);
     Real sweep(Real relaxation);
     SweepChange accelerated_sweep(Real relaxation);
-    /// e_nat of docs/methods/errors.md 2, of all contacts.
+    /// e_nat of docs/methods/errors.md 2 over all contacts.
     Real error();
-    /// A sweep's change is about the natural map of its start: worth a look once it is as small.
+    /// The change of a sweep approximates the natural map at its start. The error is worth measuring once the change is
+    /// small.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     void residual(std::span<Vec4> out);
     void multiply(std::span<const Vec4> in, std::span<Vec4> out);
@@ -77,14 +78,15 @@ public:
     void assemble(Eigen::MatrixXd& matrix) const;
 
 private:
-    /// Does now what waits for a next sweep.
+    /// Applies an extrapolation of the impulses that was postponed to the next sweep.
     void settle();
     static auto apply_by(const Walk& walk) {
         return [&walk](const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
             walk.apply(contact, impulse, velocity);
         };
     }
-    /// The step of contact i, with copies of all it needs: a store of vectors may change whatever is in memory.
+    /// The step of contact i. Copies everything it needs: the compiler must assume that a vector store changes any
+    /// memory.
     auto step(Real relaxation) const {
         return [contact = memory_.contact.data(), velocity = memory_.velocity.data(), friction = friction_, relaxation,
                 walk = walk_](std::size_t i, Vec4& impulse) {
@@ -97,7 +99,8 @@ private:
     Friction friction_;
     Real scale_;
     Walk walk_;
-    // The impulses of an extrapolation wait for the next sweep, which passes over them anyway; its velocities are done.
+    // An extrapolation of impulses is postponed to the next sweep, which visits them anyway. Its velocities are up to
+    // date.
     bool waiting_ = false;
     Real factor_ = 0;
 };
@@ -181,7 +184,7 @@ Real LumpedOperatorBy<Walk>::error() {
         }
         return part;
     });
-    if (sum == 0) return 0;  // solved exactly, whatever the scale
+    if (sum == 0) return 0;  // solved exactly, for any scale
     return std::sqrt(sum) / scale_;
 }
 

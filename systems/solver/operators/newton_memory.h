@@ -1,5 +1,4 @@
-// Memory of dense Newton steps (systems/solver/methods/newton.cpp). It stands with the operators since they keep
-// it.
+// Memory of dense Newton steps (systems/solver/methods/newton.cpp). It is in this folder because operators own it.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +16,7 @@ struct NewtonMemory {
     };
 
     Eigen::MatrixXd operator_matrix;  // W
-    Eigen::MatrixXd jacobian;         // of the active contacts
+    Eigen::MatrixXd jacobian;         // matrix for the active contacts
     Eigen::VectorXd rest, change;
     std::vector<Contact> contact;
     std::vector<Index> active;  // contacts that are not open

@@ -1,5 +1,5 @@
-// A region without friction: one row a contact (docs/methods/region_solver.md 4). The same iteration on the normal
-// impulses alone, with a third of the data and no projection onto a cone.
+// Region without friction: one scalar row per contact (docs/methods/region_solver.md 4). The iteration runs on the
+// normal impulses only, with a third of the data and no projection onto a cone.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 
 namespace skerry {
 
-/// Normal impulses, by contact, N s.
+/// Normal impulses by contact [N s]
 struct NormalMemory {
     std::span<Real> impulse, previous;
 };
 
-/// Starts from region.impulse, which must be along the normals; keep() writes there.
+/// Starts from region.impulse, which must be along the normals; keep() writes back to it.
 class NormalRows {
 public:
     using Number = Real;
@@ -42,7 +42,7 @@ public:
         return sum;
     }
 
-    /// e_nat.
+    /// The error e_nat (docs/methods/errors.md 2).
     Real error() const {
         Real sum = 0;
         for (std::size_t i = 0; i < region_.contact.size(); ++i) {
@@ -52,7 +52,7 @@ public:
         }
         return sum == 0 ? 0 : std::sqrt(sum) / scale_;
     }
-    /// As LumpedOperator.
+    /// True if the error is worth measuring, as in LumpedOperator.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
 
     void remember() {
@@ -64,18 +64,18 @@ public:
         // velocities are affine in the impulses
         extrapolate_range(0, region_.velocity.size(), factor, region_.velocity, region_.scratch);
     }
-    /// Velocities again from the impulses, so that the rounding of the extrapolations does not add up.
+    /// Recomputes the velocities from the impulses, so that rounding errors of the extrapolations do not accumulate.
     void refresh_all() {
         refresh(memory_.impulse, region_.velocity);
         refresh(memory_.previous, region_.scratch);
     }
 
-    /// The present impulses into the region's, where the best stay.
+    /// Copies the present impulses to the region's impulses, which hold the best ones.
     void keep() {
         for (std::size_t i = 0; i < region_.contact.size(); ++i)
             region_.impulse[i] = memory_.impulse[i] * region_.contact[i].normal;
     }
-    /// The impulses that were kept, and their velocities.
+    /// Returns to the impulses stored by keep(), and their velocities.
     void restore() {
         read_impulses();
         refresh(memory_.impulse, region_.velocity);
@@ -85,7 +85,7 @@ private:
     static Real wanted(const LumpedContact& contact, Real impulse, Real relaxation, const Vec4* velocity) {
         const Real approach = contact.normal.dot(contact_velocity(contact, velocity));
         const Real next = impulse - relaxation * contact.inverse_diagonal * approach;
-        return next <= 0 ? 0 : next;  // asked this way round, not-a-number stays
+        return next <= 0 ? 0 : next;  // this form of the comparison keeps NaN
     }
     void read_impulses() {
         for (std::size_t i = 0; i < region_.contact.size(); ++i)

@@ -1,4 +1,4 @@
-// The walk of a region whose contacts touch clusters: an impulse on a node of a cluster moves all of them
+// Walk of a region whose contacts touch clusters: an impulse on a node moves all nodes of its cluster
 // (docs/methods/clusters.md 4).
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace skerry {
 
-/// One thread, in the order of the contacts. The nodes of a cluster must be rows of the region one after the other, in
-/// the order of the cluster, whether contacts name them or not.
+/// One thread, in the order of the contacts. All nodes of a cluster must be consecutive rows of the region, in the
+/// order of the cluster, even if no contact has them.
 class ThroughClusters : public InOrder {
 public:
     static constexpr bool own_masses = false;
 
-    /// `node`: of the region, rows of NodeTable.
+    /// `node`: rows of NodeTable of the region's nodes.
     ThroughClusters(const NodeClusters& clusters, std::span<const Index> node) : clusters_(&clusters), node_(node) {}
 
     bool in_cluster(Index n) const { return clusters_->cluster(node_[static_cast<std::size_t>(n)]) != no_index; }
@@ -31,7 +31,7 @@ public:
         return sum;
     }
 
-    /// The share of one node.
+    /// Applies the share of one node.
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         const Index n = contact.node[a], global = node_[static_cast<std::size_t>(n)];
         const Index cluster = clusters_->cluster(global);

@@ -1,6 +1,6 @@
-// The walk of a region whose contacts touch rigid bodies: beside nodes of their own mass and of clusters, nodes of
-// bodies that deform in the frame that moves with them (docs/methods/implicit_bodies.md 4). Their velocities are what
-// they have beside the motion of the frame.
+// Walk of a region whose contacts touch rigid bodies. Besides nodes with their own mass and nodes of clusters it
+// supports nodes of implicit bodies, which deform in a moving frame (docs/methods/implicit_bodies.md 4). Their
+// velocities are relative to the motion of the frame.
 #pragma once
 
 #include <span>
@@ -11,18 +11,18 @@
 
 namespace skerry {
 
-/// One thread, in the order of the contacts. The touched nodes of an implicit body must be rows of the region one after
-/// the other, in the order of ImplicitCoupling, as those of a cluster.
+/// One thread, in the order of the contacts. The touched nodes of an implicit body must be consecutive rows of the
+/// region, in the order of ImplicitCoupling.
 class ThroughGroups {
 public:
-    /// `node`: of the region, rows of NodeTable.
+    /// `node`: rows of NodeTable of the region's nodes.
     ThroughGroups(const NodeClusters& clusters, const ImplicitInputs& implicit, const RigidInputs& rigid,
                   std::span<const Index> node)
         : clusters_(clusters, node), implicit_(&implicit), rigid_(&rigid), node_(node) {}
 
     bool any_deforms() const { return implicit_->any(); }
-    /// What an impulse of a contact does but for nodes that deform a body, whose shares are added to `sum`, by node of
-    /// the region, for SpreadImpulses.
+    /// Applies an impulse of a contact except to nodes of implicit bodies. Adds their shares to `sum`, by node of the
+    /// region, for SpreadImpulses.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
             if (deforming_place(contact.node[a]) == no_index)
@@ -31,17 +31,17 @@ public:
                 sum[contact.node[a]] += contact.weight[a] * impulse;
         }
     }
-    /// The share of one node, which deforms no body.
+    /// Applies the share of one node that is on no implicit body.
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// Where bodies do not deform: for what moves positions alone.
+    /// Applies an impulse without deforming implicit bodies; for corrections of positions alone.
     [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
                                                  Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
             if (deforming_place(contact.node[a]) == no_index) clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// 1/kg, the share of nodes in the block of W of two contacts.
+    /// Share of the nodes in the block of W of two contacts [1/kg]
     Mat3 coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b, true); }
     Mat3 undeformed_coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b, false); }
 
@@ -53,16 +53,16 @@ public:
     }
     bool moves_with_rigid(Index n) const { return rigid_->nodes.row(node_[static_cast<std::size_t>(n)]) != no_index; }
     Index rigid_row(Index n) const { return rigid_->nodes.row(node_[static_cast<std::size_t>(n)]); }
-    /// m, of a node of a rigid body, from its centre.
+    /// Vector from the centre of a rigid body to one of its nodes [m]
     Vec3 arm(Index n) const {
         return rigid_->position[static_cast<std::size_t>(node_[static_cast<std::size_t>(n)])] -
                rigid_->center[body_of(n)];
     }
-    /// Whether a body, by row of RigidBodyTable, has nodes that contacts see deform.
+    /// True if the body at a row of RigidBodyTable has touched nodes that deform.
     bool deforms(Index body) const {
         return implicit_->any() && !implicit_->coupling->nodes[static_cast<std::size_t>(body)].empty();
     }
-    /// 1/kg, what an impulse on node `m` of an implicit body gives its node `n` in all.
+    /// Total response of node `n` of an implicit body to an impulse on its node `m` [1/kg]
     Mat3 response(Index n, Index m) const {
         const std::size_t r = body_of(m);
         const Mat3 turned = rigid_->spins.inverse_inertia[r] * cross_matrix(arm(m));
@@ -70,14 +70,14 @@ public:
                rigid_->inverse_mass(r) * Mat3::Identity() - cross_matrix(arm(n)) * turned;
     }
     const ImplicitCoupling& deforming() const { return *implicit_->coupling; }
-    /// Of a node of the region among the touched ones of an implicit body, or no_index.
+    /// Number of a node among the touched nodes of its implicit body, or no_index.
     Index deforming_place(Index n) const {
         const Index row = node_[static_cast<std::size_t>(n)] == no_index
                               ? no_index
                               : implicit_->row(node_[static_cast<std::size_t>(n)], rigid_->nodes);
         return row == no_index ? no_index : implicit_->coupling->place[static_cast<std::size_t>(row)];
     }
-    /// Row of RigidBodyTable of a node of a rigid body.
+    /// Row of RigidBodyTable of a node on a rigid body.
     std::size_t body_of(Index n) const {
         return static_cast<std::size_t>(rigid_->nodes.row(node_[static_cast<std::size_t>(n)]));
     }

@@ -1,27 +1,28 @@
-// Rows of joints in a region: as contacts whose law is another (docs/methods/joints.md 2).
+// Rows of joints in a region. They are treated as contacts with a different law (docs/methods/joints.md 2).
 #pragma once
 
 #include "systems/solver/regions/life_cycle.h"
 
 namespace skerry {
 
-/// A place in the memory of a region.
+/// References to the data of one joint block in the memory of a region.
 struct JointPlaceInRegion {
     LumpedContact& contact;
     RigidPart& part;
     JointLaw& law;
 };
 
-/// Fills it. `rigid`: the rigid bodies of the region, two velocities each, in this order.
+/// Fills `place` from `block`. `rigid` lists the rigid bodies of the region; each has two velocities, in this order.
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
                 const JointPlaceInRegion& place);
 
-/// kg (m/s)^2, or the same of spins: changes its offset by what it would be off by at the end of the step with these
-/// velocities of the region, beyond what is left for later steps: a step of Newton's to where it holds there.
+/// One Newton step towards a joint that holds at the end of the step. Predicts the error of the block at the end of the
+/// step from the velocities of the region. Adds to the offset the part of this error, divided by h, that is not left
+/// for later steps. Returns this correction in the mass-weighted norm [kg (m/s)^2, or the same for rows of spins]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const JointPlaceInRegion& place);
 
-/// Adds it to what the error of a region is measured against. `u`: its velocity without impulses.
+/// Adds the joint to the sums for the error scale of a region. `u`: velocity of the rows without impulses.
 void add_joint(const JointPlaceInRegion& place, const Vec4& u, LoadSums& sums);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Regions that wait for a full batch of their size.
+// Queue of regions that wait until a SIMD batch of their size is full.
 #pragma once
 
 #include "systems/solver/lanes/solve_lane_batch.h"
@@ -6,19 +6,19 @@
 
 namespace skerry {
 
-/// Whether the settings let regions into lanes at all.
+/// True if the settings allow solving regions in lanes.
 bool lanes_allowed(const SolverSettings& settings);
 
-/// Takes loaded and started regions, solves eight of a size at a time, finishes them and writes their rows of the
-/// table. One worker's.
+/// Takes loaded and started regions, solves eight of one size class at a time, finishes them and writes their rows of
+/// RegionTable. A queue belongs to one task, and so to one worker.
 class LaneQueue {
 public:
     LaneQueue(const RegionStage& stage, RegionTable& regions) : stage_(stage), regions_(regions) {}
 
-    /// Whether this region may wait here.
+    /// True if the queue can solve this region.
     bool takes(const RegionInOrder& region) const;
     void push(Index number, const RegionInOrder& region);
-    /// Solves what still waits.
+    /// Solves the regions that still wait.
     void flush();
 
 private:

@@ -39,7 +39,7 @@ Real tolerance_of(const RegionStage& stage, std::span<const Index> row) {
     const RegionInputs& inputs = stage.inputs;
     const SolverSettings& settings = stage.settings;
     if (!(settings.still_tolerance < settings.tolerance) || inputs.still_time.empty()) return settings.tolerance;
-    // nobody counts for how long a mesh collider has been still: what it carries along is not
+    // Mesh colliders have no still time and count as still; the bodies that they carry along do not.
     const auto is_still = [&](Index body) {
         return body == no_index || inputs.body_kind[body] == BodyKind::kinematic || inputs.still_time[body] > 0;
     };

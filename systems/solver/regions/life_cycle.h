@@ -1,5 +1,5 @@
-// What happens to every region of a step, whatever its size and in whichever order its contacts are passed over: load,
-// start, sweep (by a method, in lanes or on normal rows), write back, push out. Walk: InOrder or ByColour.
+// The steps that every region goes through, for any size and order of contacts: load, start, sweep (by a method, in
+// lanes or on normal rows), write back, push out. Walk: InOrder, ByColour or ThroughClusters.
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 
 namespace skerry {
 
-/// What all regions of a step share.
+/// Data that all regions of a step share.
 struct RegionStage {
     const RegionInputs& inputs;
     const SolverSettings& settings;
-    Real h;  // s
+    Real h;  // length of the step [s]
     const RegionOutputs& out;
     RegionMemory& memory;
 };
@@ -31,53 +31,54 @@ struct RegionOutcome {
     Real error = 0;
     RegionStatus status = RegionStatus::converged;
     RegionShortcut shortcut = shortcut_none;
-    Real dissipated = 0;  // J
-    Real push_work = 0;   // J
+    Real dissipated = 0;  // [J]
+    Real push_work = 0;   // [J]
 };
 
-/// Of what a method came to: whoever ends within settings.tolerance has converged.
+/// Converts the result of a method: an error within settings.tolerance counts as converged.
 RegionOutcome outcome_of(const SolveResult& result, const SolverSettings& settings);
-/// Puts an outcome into the region's row.
+/// Writes an outcome to the region's row.
 void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regions);
 
 SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
 
-/// What a region with these contacts is solved to: closer where all that it touches is still, so that what the solver
-/// leaves does not keep it from rest (docs/methods/errors.md 7).
+/// Tolerance of a region with these contacts. It is smaller if all touched bodies are still; otherwise the remaining
+/// solver error would keep them from coming to rest (docs/methods/errors.md 7).
 Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
 
-/// One region, with its part of the memory in the order of the walk.
+/// One region and its part of the memory, in the order of the walk.
 template <RegionWalk Walk>
 struct LoadedRegion {
-    std::span<const Index> row;  // of its contacts, by number in the region
-    Index base = 0;              // place of the first in the memory by contact
+    std::span<const Index> row;  // rows of ContactTable, by number of the contact in the region
+    Index base = 0;              // place of its first contact in the columns by contact
     Walk walk{};
     LumpedMemory memory{};
     LoadSums sums{};
-    Real scale = 0;      // sqrt(J), of e_nat
-    Real tolerance = 0;  // of this region
+    Real scale = 0;      // scale of e_nat [sqrt(J)]
+    Real tolerance = 0;  // tolerance of this region
 
     Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
 };
 
-/// The memory of `count` contacts from `base` on, and of their nodes: `node` are rows of NodeTable.
+/// Memory of `count` contacts starting at `base`, and of their nodes. `node` holds rows of NodeTable.
 LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node);
-/// The same where nodes are not kept four by contact: `first_node` is the place of the first.
+/// Overload for regions that do not reserve four nodes per contact. `first_node` is the place of the first node.
 LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node,
                          std::size_t first_node);
-/// `velocity`: by node of the region, for the result.
+/// Memory of the split impulse. `velocity` receives the result, by node of the region.
 PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::span<Vec4> velocity);
 
-/// J, taken out by a contact whose impulse and velocities are written (docs/methods/time_stepping.md 2.6).
+/// Energy that a contact dissipates; its impulse and velocities must be written already (docs/methods/time_stepping.md
+/// 2.6) [J]
 Real dissipated_by(const RegionStage& stage, Index row);
 
-/// Load: writes the contacts in the order of the walk, and zero impulses. `numbering(k)` gives what turns a moving node
-/// of the region's contact k into the region's own row; velocities must be there when it has.
+/// Load: writes the contacts in the order of the walk, and zero impulses. `numbering(k)` returns a function from a
+/// moving node of the region's contact k to the region's own row. The velocity of that row must be set by then.
 template <RegionWalk Walk, class Numbering>
 void load_contacts(const RegionStage& stage, LoadedRegion<Walk>& region, Numbering&& numbering) {
     RegionMemory& data = stage.memory;
     const std::size_t first = static_cast<std::size_t>(region.base);
-    const bool keep_free_velocity = Walk::one_thread && workspace_slots(stage.settings.method) > 1;  // for lanes
+    const bool keep_free_velocity = Walk::one_thread && workspace_slots(stage.settings.method) > 1;  // lanes need it
     const Vec4* velocity = region.memory.velocity.data();
     region.sums = region.walk.template sum<LoadSums>(region.row.size(), [&](std::size_t begin, std::size_t end) {
         LoadSums sums;
@@ -108,7 +109,7 @@ LumpedOperatorBy<Walk> operator_of(const RegionStage& stage, const LoadedRegion<
     return {region.memory, stage.settings.friction, region.scale, region.walk};
 }
 
-/// The impulses of the last step, and the velocities that they make. Rows without friction move along the normal alone.
+/// Takes the impulses of the last step and applies them to the velocities. Frictionless contacts keep the normal part.
 template <RegionWalk Walk>
 void take_warm_start(const RegionStage& stage, const LoadedRegion<Walk>& region) {
     const LumpedMemory& memory = region.memory;
@@ -123,8 +124,8 @@ void take_warm_start(const RegionStage& stage, const LoadedRegion<Walk>& region)
     });
 }
 
-/// A warm start within the tolerance needs no sweep: true, with the outcome. One that is so far off that zero is nearer
-/// gives way to zero.
+/// Evaluates the warm start. Returns true, with the outcome, if its error is within the tolerance: no sweep is needed.
+/// If its error is large and zero impulses have a smaller one, starts from zero.
 template <ContactOperator Op>
 bool start_from_warm_impulse(Op& op, const SolverSettings& settings, Real tolerance, RegionOutcome& outcome) {
     const Real error = op.error();
@@ -133,7 +134,7 @@ bool start_from_warm_impulse(Op& op, const SolverSettings& settings, Real tolera
         return true;
     }
     if (error <= suspicious_start) return false;
-    // workspace 0 keeps the warm start while zero is looked at
+    // workspace 0 keeps the warm start while zero impulses are evaluated
     BestIterate<Op> better(op);
     better.offer(error);
     std::ranges::fill(op.impulse(), Vec4::Zero());
@@ -142,14 +143,15 @@ bool start_from_warm_impulse(Op& op, const SolverSettings& settings, Real tolera
     return false;
 }
 
-/// Start: takes the warm start unless zero is nearer. Returns true, with the outcome, when nothing is left to do.
+/// Start: takes the warm start, or zero impulses if those are clearly better. Returns true, with the outcome, if the
+/// region is solved.
 template <RegionWalk Walk>
 bool start_region(const RegionStage& stage, const LoadedRegion<Walk>& region, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
-        // Where nothing moves zero is the solution, and what sweeps leave of another start has no scale to be compared
-        // with. What only separates starts from its impulses, too: what a sweep does must not depend on how regions are
-        // cut.
+        // If nothing moves, zero is the solution and no scale exists to judge the remainder of another start.
+        // Separating regions also start from their impulses: a sweep must not depend on how contacts are split into
+        // regions.
         if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region);
         return false;
     }
@@ -163,8 +165,8 @@ bool start_region(const RegionStage& stage, const LoadedRegion<Walk>& region, Re
     return start_from_warm_impulse(op, settings, region.tolerance, outcome);
 }
 
-/// Write back: velocities and impulses. Returns what the region dissipated, J. Inlined by order, as is finish_region:
-/// most regions are of one contact, for which the loops dissolve.
+/// Write back: stores velocities and impulses. Returns the energy that the region dissipated [J]. This function and
+/// finish_region are always inlined: most regions have one contact, and the compiler then removes the loops.
 template <RegionWalk Walk>
 [[gnu::always_inline]] inline Real write_back(const RegionStage& stage, const LoadedRegion<Walk>& region) {
     const LumpedMemory& memory = region.memory;
@@ -183,7 +185,7 @@ template <RegionWalk Walk>
     });
 }
 
-/// What a push is solved on: contacts by place in the walk, `row` by number in the region, solved velocities by node.
+/// Data for the split impulse: contacts by place in the walk, `row` by number in the region, solved velocities by node.
 struct PushedRegion {
     std::span<const Index> row;
     std::span<const LumpedContact> contact;
@@ -191,9 +193,9 @@ struct PushedRegion {
     Real tolerance;
 };
 
-/// Frictionless pseudo velocities p with u_n + p_n >= min(recovery |gap| / h, recovery_speed) where the gap is below
-/// the slop, and elsewhere no approach that the velocity solve would not allow. Returns false, and writes nothing, when
-/// no contact is pressed in.
+/// Finds frictionless pseudo velocities p with u_n + p_n >= min(recovery |gap| / h, recovery_speed), further limited by
+/// push_speed, where the gap is below the slop. Elsewhere they allow no approach that the velocity solve would not
+/// allow. Returns false and writes nothing if no contact is pressed in.
 template <RegionWalk Walk>
 bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region, const PushMemory& memory) {
     const SolverSettings& settings = stage.settings;
@@ -204,7 +206,7 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
     walk.nodes(memory.velocity.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) memory.velocity[n].setZero();
     });
-    // J, of the push asked for
+    // scale of the requested push [J]
     const Real asked = walk.template sum<Real>(contact.size(), [&](std::size_t begin, std::size_t end) {
         Real size = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -234,15 +236,15 @@ bool solve_push(const RegionStage& stage, Walk walk, const PushedRegion& region,
     return true;
 }
 
-/// J, that moving positions by h p takes against the forces of the step but for those of contacts: h times the force on
-/// a node is its momentum after the step, less that before and less what its contacts gave. To first order in h p.
+/// Work of moving positions by h p against the forces of the step without contacts. h times the force on a node is its
+/// change of momentum minus the impulses of its contacts. First order in h p [J]
 Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<const Vec4> push_velocity);
-/// The same where nodes of clusters are not moved by their own masses: what forces gave them is known. Rows of
-/// velocities before `first_node` are of no node.
+/// Variant for nodes whose mass is coupled in clusters: it uses their known force impulses. Rows of velocities before
+/// `first_node` belong to no node.
 Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& memory,
                                 std::span<const Vec4> push_velocity, std::size_t first_node = 0);
 
-/// Finish: writes back, pushes out, and notes what was dissipated.
+/// Finish: writes back, pushes out, and records the dissipated energy.
 template <RegionWalk Walk>
 [[gnu::always_inline]] inline void finish_region(const RegionStage& stage, const LoadedRegion<Walk>& region,
                                                  const PushMemory& push, RegionOutcome& outcome) {

@@ -1,14 +1,14 @@
-// Loading of a region that one thread walks: its contacts, and the list of its nodes.
+// Loading of a region that one thread solves: its contacts and the list of its nodes.
 #pragma once
 
 #include "systems/solver/regions/life_cycle.h"
 
 namespace skerry {
 
-/// Lists nodes in the order in which they are first named, `list_first(local)` before the contacts, and loads contacts.
-/// `node` and the velocities of the region have room for all. A node's place in the list is remembered by node; regions
-/// share no moving node, so none overwrites what another needs, and an entry left from elsewhere shows by the list not
-/// agreeing.
+/// Lists nodes in the order of their first appearance and loads the contacts. `list_first(local)` can list nodes before
+/// the contacts do. `node` and the velocities of the region must have room for all nodes. `place` caches a node's place
+/// in the list, by row of NodeTable. Regions share no moving node, so they do not overwrite each other's entries. A
+/// stale entry is detected because the list holds a different node at that place.
 template <RegionWalk Walk, class ListFirst>
 void load_nodes_and_contacts(const RegionStage& stage, std::span<Index> node, LoadedRegion<Walk>& region,
                              ListFirst&& list_first) {

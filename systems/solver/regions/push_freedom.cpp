@@ -7,8 +7,8 @@
 namespace skerry {
 namespace {
 
-/// Joints while overlaps are pushed out: they hold, and what their axes do in that and in the step stays within their
-/// limits. Keeps the impulses of the push in a workspace that the method has done with.
+/// Joints during the push: locked rows hold, and axes stay within their limits for push and step together. The impulses
+/// of the push use a workspace that the method no longer needs.
 class PushedJoints {
 public:
     PushedJoints(const FreedomRegion& region, const FreedomOperator& op)
@@ -16,7 +16,7 @@ public:
         for (std::size_t k = 0; k < region.joint.size(); ++k) impulse_[region.row.size() + k].setZero();
     }
 
-    /// One sweep. Returns what has changed, J.
+    /// One sweep. Returns the size of the change [J]
     Real sweep(std::span<Vec4> velocity) const {
         Real size = 0;
         for (std::size_t k = 0; k < region_.joint.size(); ++k) {
@@ -51,7 +51,7 @@ private:
     std::span<Vec4> impulse_;
 };
 
-/// The push of a region.
+/// Push of one region.
 class Push {
 public:
     Push(const RegionStage& stage, const FreedomRegion& region, const FreedomOperator& op)
@@ -71,7 +71,7 @@ public:
         if (!pressed && !asked.by_turns) return false;
         const PushedJoints joints(region_, op_);
         sweep(joints, asked.size);
-        // what the push turns turns them, too
+        // The push rotates the axes, too, so the loss is evaluated again.
         for (int round = 0; round < turn_rounds && axes_.any(); ++round) sweep(joints, ask().size);
         return true;
     }
@@ -80,7 +80,7 @@ private:
     static constexpr int turn_rounds = 2;
 
     struct Asked {
-        Real size = 0;  // J
+        Real size = 0;  // [J]
         bool by_turns = false;
     };
 
@@ -114,7 +114,7 @@ private:
         }
     }
 
-    /// Returns what has changed, J.
+    /// Returns the size of the change [J]
     [[gnu::always_inline]] Real push_at(std::size_t at) {
         const auto i = static_cast<Index>(at);
         const Real mobility = region_.memory.part[at].along_normal;

@@ -3,7 +3,7 @@
 namespace skerry {
 namespace {
 
-/// Each once a region: `region_of` says which one named it last.
+/// Lists a block at most once per region; `region_of` holds the last region that listed it.
 void note(Index block, Index region, Column<Index>& region_of, Ragged<Index>& list) {
     if (block == no_index || region_of[static_cast<std::size_t>(block)] == region) return;
     region_of[static_cast<std::size_t>(block)] = region;
@@ -17,7 +17,7 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
     std::size_t room = 4 * contacts;
     for (const Index body : memory.region_rigid[r]) {
         room += 2;
-        // all touched nodes of the body: each impulse moves them all
+        // All touched nodes of the body: each impulse moves all of them.
         if (inputs.implicit.any()) room += inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)].size();
     }
     for (const Index c : memory.region_clusters[r]) room += inputs.clusters->nodes[static_cast<std::size_t>(c)].size();
@@ -25,7 +25,7 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
 }
 
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
-    // first the places of regions without any, four by contact, then those of the others
+    // Four places by contact for regions without clusters and rigid bodies come first, then the others.
     std::size_t end = 4 * regions.contacts.item.size();
     memory.rows = memory.contact_rows = regions.contacts.item.size();
     memory.region_clusters.clear();
@@ -47,7 +47,7 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
                 if (inputs.clustered())
                     note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster,
                          memory.region_clusters);
-                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // else its body is held
+                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // otherwise its body is held
                     note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
             }
         }

@@ -1,5 +1,5 @@
-// Working memory of solve_regions, kept between steps. Rows "by contact" are in the order of RegionTable::contacts, so
-// that a region's rows are consecutive.
+// Working memory of solve_regions, kept between steps. Columns "by contact" follow the order of RegionTable::contacts,
+// so the rows of a region are consecutive.
 #pragma once
 
 #include <array>
@@ -26,22 +26,22 @@ struct RegionTask {
     Index begin, end;
 };
 
-/// Regions that are worth all workers each.
+/// Regions large enough to be solved by all workers together, and the team that solves them.
 struct LargeRegions {
     Team team;
-    std::vector<std::unique_ptr<ColouredRegion>> region;  // the first large region of the step, the second, ...
+    std::vector<std::unique_ptr<ColouredRegion>> region;  // by number among the large regions of the step
 };
 
-/// Longer if need be, never shorter: a column that shrinks and grows again would be cleared each time.
+/// Grows a column if necessary. It never shrinks: a column that shrinks and grows again would be cleared each time.
 template <class T>
 void make_room(Column<T>& column, std::size_t count) {
     if (column.size() < count) column.resize(count);
 }
 
-/// Where loading leaves the velocities of the contacts without impulses, until the method uses the place itself.
+/// Workspace slot in which loading stores the contact velocities without impulses. The method may overwrite it.
 inline constexpr std::size_t free_velocity_slot = 1;
 
-/// How many vectors by contact a method works with; the first keeps the best iterate.
+/// Number of workspace vectors by contact that a method needs. The first one keeps the best iterate.
 inline std::size_t workspace_slots(SolverMethod method) {
     switch (method) {
         case SolverMethod::pgs:
@@ -54,7 +54,7 @@ inline std::size_t workspace_slots(SolverMethod method) {
     }
 }
 
-/// The same of regions that touch rigid bodies, whose default takes Newton steps.
+/// Number of workspace vectors for regions with rigid bodies, whose default method takes Newton steps.
 inline std::size_t freedom_workspace_slots(SolverMethod method) {
     return workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method);
 }
@@ -62,40 +62,40 @@ inline std::size_t freedom_workspace_slots(SolverMethod method) {
 struct RegionMemory {
     // by contact
     Column<LumpedContact> contact;
-    Column<Vec4> impulse;  // N s
+    Column<Vec4> impulse;  // [N s]
     std::array<Column<Vec4>, workspace_limit> workspace;
-    Column<Real> push_impulse;  // N s, of the split impulse; before that the normal impulses of frictionless regions
-    Column<Real> push_bias;     // m/s; likewise the previous ones
-    // four places by contact: a region never has more nodes, but for those of clusters
+    Column<Real> push_impulse;  // split impulses, before that the normal impulses of frictionless regions [N s]
+    Column<Real> push_bias;     // biases of the split impulse [m/s]; before that the previous normal impulses [N s]
+    // four places by contact: only regions that touch clusters or implicit bodies can have more nodes
     Column<Index> node;     // rows of NodeTable
-    Column<Vec4> velocity;  // m/s
-    Column<Vec4> scratch;   // m/s
-    // of regions that touch clusters of nodes or rigid bodies
-    Ragged<Index> region_clusters, region_rigid;       // by region; no rows without either
+    Column<Vec4> velocity;  // [m/s]
+    Column<Vec4> scratch;   // [m/s]
+    // for regions that touch clusters of nodes or rigid bodies
+    Ragged<Index> region_clusters, region_rigid;       // by region; no rows if there are none of them
     Column<std::size_t> node_base;                     // by region: place of its first node
-    Column<Index> region_of_cluster, region_of_rigid;  // that touched it last
+    Column<Index> region_of_cluster, region_of_rigid;  // last region that touched the cluster or body
     Column<RigidPart> rigid_part;                      // by contact; no rows without rigid bodies
-    Column<JointLaw> joint_law;                        // by row behind those of all contacts
-    // of regions with joints, whose rows come behind those of all contacts: the place of the first, contacts first
+    Column<JointLaw> joint_law;                        // by row minus contact_rows
+    // by region, used if it has joints: place of its first row. Its contacts come first, then its joints.
     Column<std::size_t> joint_base;
-    std::size_t contact_rows = 0, rows = 0;  // of all contacts, and with those
-    Column<Vec4> free_velocity;              // m/s, as `velocity`; no rows without rigid bodies
+    std::size_t contact_rows = 0, rows = 0;  // number of contact rows, and total with the rows of regions with joints
+    Column<Vec4> free_velocity;              // places as in `velocity`; no rows without rigid bodies [m/s]
     // by row of NodeTable
-    Column<Index> place;  // in its region's list of nodes, if that list agrees
+    Column<Index> place;  // number in its region's list of nodes; stale if that list disagrees
     // by region
-    Column<Real> cost;           // microseconds, predicted
-    Column<Real> cost_parts;     // working memory
-    RegionHistoryTable history;  // of the last step; then
-    RegionHistoryTable present;  // of this one
+    Column<Real> cost;           // predicted [microseconds]
+    Column<Real> cost_parts;     // partial sums of the costs
+    RegionHistoryTable history;  // of the last step
+    RegionHistoryTable present;  // of this step
     // by task
     Column<RegionTask> task;
     LargeRegions large;
-    // of regions that touch rigid bodies
+    // for regions that touch rigid bodies
     Pool<NewtonEquations> newton;
     Pool<ContactRuns> runs;
     std::atomic<bool> pushed = false;  // some region wrote push_out in this step
 
-    /// Of the columns by contact and by node.
+    /// Makes room in the columns by contact and by node.
     void make_room_for(std::size_t contacts, std::size_t region_nodes, std::size_t nodes,
                        const SolverSettings& settings);
     void make_room_for_rigid(std::size_t contacts, std::size_t region_nodes, SolverMethod method) {

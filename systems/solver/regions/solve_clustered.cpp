@@ -9,7 +9,7 @@ namespace {
 
 using ClusteredRegion = LoadedRegion<ThroughClusters>;
 
-/// As load_region; first come the nodes of the clusters, then those that contacts name beside them.
+/// Variant of load_region: nodes of the clusters come first, then the other nodes of the contacts.
 ClusteredRegion load_clustered(const RegionStage& stage, std::span<const Index> row, Index number, Index base) {
     RegionMemory& data = stage.memory;
     const NodeClusters& clusters = *stage.inputs.clusters;

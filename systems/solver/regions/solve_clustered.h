@@ -1,4 +1,4 @@
-// Regions whose contacts touch clusters of nodes, and no rigid body (docs/methods/clusters.md 4).
+// Solver of regions whose contacts touch clusters of nodes but no rigid body (docs/methods/clusters.md 4).
 #pragma once
 
 #include "systems/solver/operators/through_clusters.h"
@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Solves one such region, by one thread.
+/// Solves one such region in one thread.
 RegionOutcome solve_clustered(const RegionStage& stage, std::span<const Index> row, Index number, Index base);
 
 }  // namespace skerry

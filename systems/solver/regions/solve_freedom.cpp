@@ -13,7 +13,7 @@ namespace {
 
 const NodeClusters no_clusters;
 
-/// Fills one region.
+/// Loads one region.
 class Loading {
 public:
     Loading(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint, Index number,
@@ -33,7 +33,7 @@ public:
                                         stage.inputs.implicit, stage.inputs.rigid, node_),
                   .sums = {},
                   .scale = 0,
-                  // what joints lead is not looked at
+                  // Joints are not checked for motion, so their regions never use the tolerance of still ones.
                   .tolerance = joint.empty() ? tolerance_of(stage, row) : stage.settings.tolerance,
                   .base = base},
           number_(number) {}
@@ -76,7 +76,7 @@ private:
             for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) place_of(n);
     }
 
-    /// The region's own row of a node.
+    /// Returns the region's own row of a node.
     Index place_of(Index global) {
         Index& place = data_.place[static_cast<std::size_t>(global)];
         if (static_cast<std::size_t>(place) < count_ && node_[static_cast<std::size_t>(place)] == global) return place;
@@ -137,7 +137,7 @@ private:
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            // a round body touches beside its core
+            // A round body touches beside its core.
             const Vec3 beside = rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
                                                         contact_normal(i), stage_.inputs.touch);
             term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};
@@ -202,10 +202,10 @@ private:
     std::span<Index> node_;
     FreedomRegion region_;
     Index number_;
-    std::size_t count_ = 0;  // rows of velocities so far
+    std::size_t count_ = 0;  // number of velocity rows so far
 };
 
-/// The impulses of the last step, and the velocities that they make.
+/// Takes the impulses of the last step and the velocities that they make.
 void take_warm_impulses(const RegionStage& stage, const FreedomRegion& region, FreedomOperator& op) {
     for (std::size_t i = 0; i < region.row.size(); ++i) {
         const LumpedContact& contact = region.memory.contact[i];
@@ -221,7 +221,7 @@ void take_warm_impulses(const RegionStage& stage, const FreedomRegion& region, F
     op.refresh();
 }
 
-/// As start_region.
+/// Variant of start_region.
 bool start(const RegionStage& stage, const FreedomRegion& region, FreedomOperator& op, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
@@ -237,11 +237,11 @@ bool start(const RegionStage& stage, const FreedomRegion& region, FreedomOperato
     return start_from_warm_impulse(op, settings, region.tolerance, outcome);
 }
 
-/// Solves again with what joints would be off by at the end of the step, where that is more than the tolerance
+/// Corrects the joints to hold at the end of the step, and solves again if the correction exceeds the tolerance
 /// (docs/methods/joints.md 2).
 void hold_joints_at_end(const RegionStage& stage, const FreedomRegion& region, FreedomOperator& op,
                         RegionOutcome& outcome) {
-    Real off = 0;  // J
+    Real off = 0;  // size of the correction [J]
     for (std::size_t k = 0; k < region.joint.size(); ++k) {
         const std::size_t at = static_cast<std::size_t>(region.base) + region.row.size() + k;
         RegionMemory& data = stage.memory;
@@ -257,7 +257,7 @@ void hold_joints_at_end(const RegionStage& stage, const FreedomRegion& region, F
     outcome.iterations += before;
 }
 
-/// The nodes of a contact that deform a body get their shares of its impulse.
+/// Adds the impulse of a contact to its nodes on implicit bodies, by their weights.
 void write_deforming(const RegionStage& stage, const FreedomRegion& region, std::size_t i) {
     if (!stage.inputs.implicit.any()) return;
     const LumpedContact& contact = region.memory.contact[i];
@@ -270,7 +270,7 @@ void write_deforming(const RegionStage& stage, const FreedomRegion& region, std:
     }
 }
 
-/// What a contact or a joint gave to rigid bodies.
+/// Adds the impulse and moment of a contact or a joint to its rigid bodies.
 void write_to_bodies(const RegionStage& stage, const RigidPart& part, const Vec4& impulse) {
     for (Index k = 0; k < part.term_count; ++k) {
         const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
@@ -290,12 +290,12 @@ void write_joints(const RegionStage& stage, const FreedomRegion& region) {
     }
 }
 
-/// Velocities of nodes, also of those of rigid bodies that contacts name, and what rigid bodies got.
+/// Writes impulses, the velocities of all nodes of contacts, and the impulses on rigid bodies.
 void write_solution(const RegionStage& stage, const FreedomRegion& region, RegionOutcome& outcome) {
     const FreedomMemory& memory = region.memory;
     const RigidInputs& rigid = stage.inputs.rigid;
     for (std::size_t n = 2 * region.rigid.size(); n < region.node.size(); ++n)
-        if (stage.inputs.implicit.row(region.node[n], rigid.nodes) == no_index)  // else it moves with its frame, too
+        if (stage.inputs.implicit.row(region.node[n], rigid.nodes) == no_index)  // else its frame moves it, too
             stage.out.velocity_next[static_cast<std::size_t>(region.node[n])] = memory.velocity[n].head<3>();
     for (std::size_t i = 0; i < region.row.size(); ++i) {
         const auto row = static_cast<std::size_t>(region.row[i]);
@@ -323,11 +323,11 @@ void write_solution(const RegionStage& stage, const FreedomRegion& region, Regio
     write_joints(stage, region);
 }
 
-/// J: as push_work, with what forces gave rigid bodies in this step.
+/// Variant of push_work that includes the force impulses on rigid bodies [J]
 Real push_work_of(const RegionStage& stage, const FreedomRegion& region, std::span<const Vec4> push_velocity) {
     const RigidInputs& rigid = stage.inputs.rigid;
     const std::size_t first_node = 2 * region.rigid.size();
-    // of the nodes: as if there were no rigid bodies
+    // The share of the nodes, as if there were no rigid bodies.
     LumpedMemory nodes;
     nodes.contact = region.memory.contact;
     nodes.impulse = region.memory.impulse;

@@ -33,7 +33,7 @@ RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> r
             region.memory.velocity[n] = padded(stage.out.velocity_next[kept.node[n]]);
     });
     load_contacts(stage, region, [&](std::size_t number) {
-        // in the order in which load_contact asks
+        // in the order of the calls by load_contact
         return [next = kept.local[number].data()](Index) mutable { return *next++; };
     });
     return region;

@@ -7,12 +7,12 @@
 namespace skerry {
 namespace {
 
-/// Sweeps on the normal impulses alone.
+/// Sweeps on the normal impulses only.
 SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& region, const SolveLimits& limits) {
     const PushMemory memory = push_memory(stage, region.base, region.row.size(), {});
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits);
-    if (result.converged || !std::isfinite(result.error)) rows.keep();  // else the best ones are there
+    if (result.converged || !std::isfinite(result.error)) rows.keep();  // otherwise the best ones are there
     return result;
 }
 
@@ -44,7 +44,7 @@ RegionOutcome solve_single(const RegionStage& stage, Index row) {
     std::size_t node_count = 0;
     const LumpedContact contact =
         load_contact(stage.inputs, row, stage.out.velocity_next, stage.settings, stage.h, [&](Index global) {
-            // a stencil may name a node twice
+            // A stencil may contain a node twice.
             for (std::size_t n = 0; n < node_count; ++n)
                 if (node[n] == global) return static_cast<Index>(n);
             node[node_count] = global;

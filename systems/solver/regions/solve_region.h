@@ -1,4 +1,4 @@
-// Regions that one thread solves in the order of their contacts.
+// Solver of regions that one thread sweeps in the order of their contacts.
 #pragma once
 
 #include "systems/solver/regions/life_cycle.h"
@@ -11,10 +11,10 @@ using RegionInOrder = LoadedRegion<InOrder>;
 /// Impulses are zero.
 RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, Index base);
 
-/// The method of the settings on its own, from the present impulse.
+/// Runs the method of the settings from the present impulse.
 RegionOutcome sweep_region(const RegionStage& stage, RegionInOrder& region);
 
-/// Closed form of a region of one contact: one contact step from zero.
+/// Closed-form solution of a region with one contact: one contact step from zero.
 RegionOutcome solve_single(const RegionStage& stage, Index row);
 
 extern template bool start_region(const RegionStage&, const RegionInOrder&, RegionOutcome&);

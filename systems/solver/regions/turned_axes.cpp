@@ -10,10 +10,11 @@ namespace skerry {
 
 namespace {
 
-/// m, along the normal: where a place on a cylinder is once its axis has turned, whatever turn about it there is. The
-/// lowest place of a rim goes around it as it turns: of that, the place that is lowest then.
+/// Height along the normal of a point on a cylinder after the axis has turned, without rotation about the axis. For the
+/// lowest point of a rim: the height of the point that is lowest then, because the lowest point moves around the rim
+/// [m]
 Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
-    constexpr Real lowest = 1e-9, least_tilt = 1e-4;  // of the radius; rad, below it the rim stands on many places
+    constexpr Real lowest = 1e-9, least_tilt = 1e-4;  // of the radius; [rad], below it many rim points are lowest
     const Real up = axis.dot(place), radius = (place - up * axis).norm();
     const auto lowest_of_rim = [&](const Vec3& of) { return up * of.dot(normal) - radius * of.cross(normal).norm(); };
     if (axis.cross(normal).norm() > least_tilt && normal.dot(place) <= lowest_of_rim(axis) + lowest * radius)
@@ -27,15 +28,15 @@ Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, co
 }  // namespace
 
 Real TurnedAxes::loss(Index row, const RigidPart& part, std::span<const Vec4> push) const {
-    constexpr Real rounding = 1e-12;  // m, as of push_slop
+    constexpr Real rounding = 1e-12;  // as in push_slop [m]
     const RigidInputs& rigid = stage_.inputs.rigid;
     const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row)];
-    Real along = 0;  // m
+    Real along = 0;  // [m]
     for (const RigidTerm& term : part.terms()) {
         const auto r = static_cast<std::size_t>(term.row);
         const bool cylinder = rigid.is_cylinder(term.row);
         if (!cylinder && !rigid.is_capsule(term.row)) continue;
-        // the place, from the centre; of a capsule on its axis
+        // Point relative to the centre; for a capsule on its axis.
         const Vec3 place =
             cylinder ? Vec3(term.arm.head<3>()) : Vec3(term.arm.head<3>() + rigid.radius(term.row) * normal);
         const Vec3 angular_momentum =
