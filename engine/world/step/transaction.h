@@ -1,4 +1,4 @@
-// All or nothing: how a step is tried, what becomes of a try, and how what it overwrote is put back.
+// All or nothing: how a step is tried, how a try ends, and how overwritten data are restored.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace skerry {
 struct StepPlan;
 struct WorldState;
 
-/// What becomes of one try of a step. After all but `committed` the world is as it was before the try.
+/// Outcome of one try of a step. After all but `committed` the world is in its state before the try.
 ///
 ///     try -- good ---------------------------------------------------------------> committed
 ///      |---- features cross, fewer than 4 tries of this length ------------------> again_with_crossings --> try
@@ -28,33 +28,34 @@ struct WorldState;
 ///      '---- not finite, too far, too fast at the shortest length ---------------> refused
 enum class StepOutcome {
     committed,
-    again_with_longer_lists,  // the same try: what was near enough to cross was not known
-    again_with_crossings,     // what crossed is a contact of the next try, which is as long
-    again_shorter,            // the next try is half as long, or as long as speed allows
-    again_letting_through,    // the next try takes what crosses, and reports it
-    refused,                  // world.scratch.findings say who is to blame
+    again_with_longer_lists,  // repeat the same try: features near enough to cross were not in the lists
+    again_with_crossings,     // crossing features are contacts of the next try, which has the same length
+    again_shorter,            // the next try is half as long, or as long as the speed limit allows
+    again_letting_through,    // the next try accepts crossings and inversions, and reports them
+    refused,                  // world.scratch.findings name the cause
 };
 
-/// What is left of the tries of the present step, and of those before it, for the next one.
+/// Results of the tries of the present and earlier steps that matter for the next try.
 struct Tries {
-    Real longest = std::numeric_limits<Real>::infinity();      // s; grows again step by step
-    Real slow_enough = std::numeric_limits<Real>::infinity();  // s; of what deforms as it did in the last try
-    Index fastest = no_index;                                  // row of BodyTable: whose elements do
-    int with_longer_lists = 0;                                 // of this step, that could not be judged
-    int with_crossings = 0;                                    // tries of this step at its present length
-    bool letting_through = false;                              // the next is the last
-    // why `longest` is what it is: of the last try that was given up for a shorter one, but not for speed
+    Real longest = std::numeric_limits<Real>::infinity();  // grows again step by step [s]
+    Real slow_enough =
+        std::numeric_limits<Real>::infinity();  // bound for bodies that deform as fast as in the last try [s]
+    Index fastest = no_index;                   // row of BodyTable: the body that deforms fastest
+    int with_longer_lists = 0;                  // tries of this step that could not be judged
+    int with_crossings = 0;                     // tries of this step at its present length
+    bool letting_through = false;               // the next try is the last
+    // cause of `longest`: that of the last try that was given up for a shorter one for a reason other than speed
     StepLimit limit = StepLimit::inversion;
     Index body = no_index;  // row of BodyTable
 
     Real at_most() const { return std::min(longest, slow_enough); }
 };
 
-/// s, how long steps may be while elements deform so fast, but for the shortest length that is tried. `stable`: s, what
-/// else bounds steps.
+/// Longest step at this rate of deformation, but never less than the shortest length that is tried [s]. `stable`: the
+/// other bounds of the step [s].
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
-/// Takes the step that is planned as far as the tries allow, and says what became of it.
+/// Takes the planned step as far as the tries allow, and returns its outcome.
 StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 
 /// What a try, or a call of advance, overwrites before it is known to be good. Listed here, once:
