@@ -58,23 +58,24 @@ Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 /// Takes the planned step as far as the tries allow, and returns its outcome.
 StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 
-/// What a try, or a call of advance, overwrites before it is known to be good. Listed here, once:
+/// Restores data that a try, or a call of advance, overwrites before it is known to be good. Listed here, once:
 ///
-///     what                                      written by             undone by
-///     nodes.velocity of held and led nodes      drive_nodes            a copy, of the start of the try
-///     bodies.max_speed, bodies.frame_speed      check_state            a copy, of the start of the try
-///     nodes.velocity_next of bodies at rest     solve_regions          zero, which it is as long as they rest
+///     data                                      written by             undone by
+///     nodes.velocity of held and led nodes      drive_nodes            a copy from the start of the try
+///     bodies.max_speed, bodies.frame_speed      check_state            a copy from the start of the try
+///     nodes.velocity_next of sleeping bodies    solve_regions          zero, its value as long as they sleep
 ///     nodes.position, nodes.velocity, time,
 ///     rigid_bodies.center, rotation, moments
-///     and axes                                  drift_to (leapfrog)    a copy, of the start of the call
+///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
 ///     clusters.inverse                          stiffen_clusters       nothing: they follow the shapes at the start of
 ///                                                                      the try, as they do at the end of a call; with
-///                                                                      leapfrog, whose shapes drift before, a copy, of
-///                                                                      the start of the call
-///     pairs, their search                       find_candidates        nothing: what a search found of the positions
-///                                                                      at the start of the step stays true of them;
-///     search.memory.body_unmeasured                                    what only velocities told is told again
+///                                                                      leapfrog, whose shapes drift before, a copy
+///                                                                      from the start of the call
+///     pairs, their search                       find_candidates        nothing: results of a search for the positions
+///                                                                      at the start of the step stay valid;
+///     search.memory.body_unmeasured                                    bodies that no committed step has measured
+///                                                                      are searched again
 ///
 /// All other state is written only by stages that run in a step that is good, and by commit.
 /// tests/scene/transaction_test.cpp compares this list with what the stages declare.
@@ -82,27 +83,27 @@ class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
-    /// By body, whether it was at rest when the try began; until `rested` is asked.
+    /// Marks by body: asleep when the try began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// Which bodies took no part in the try, or not in its end: at rest when it began, or now.
+    /// Marks by body: took no part in the try or in its end, since it was asleep when the try began or is asleep now.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
-    /// Only leapfrog drifts before its first kick.
+    /// Both do nothing unless the integrator is leapfrog, which alone drifts before its first kick.
     void begin_call(const Model& model, const Clock& clock);
     void roll_back_call(Model& model, Clock& clock) const;
 
 private:
     Column<std::uint8_t> asleep_;           // bodies.asleep
-    Column<Real> max_speed_, frame_speed_;  // m/s, bodies.max_speed, bodies.frame_speed
-    Column<Vec3> driven_velocity_;          // m/s, of attachments.node
-    Real time_ = 0;                         // s
-    Column<Vec3> position_, velocity_;      // m, m/s, of all nodes
-    Column<Vec3> center_;                   // m, of rigid bodies
-    Column<Vec3> moments_;                  // kg m^2, of rigid bodies
+    Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
+    Column<Vec3> driven_velocity_;          // of attachments.node [m/s]
+    Real time_ = 0;                         // [s]
+    Column<Vec3> position_, velocity_;      // of all nodes [m, m/s]
+    Column<Vec3> center_;                   // of rigid bodies [m]
+    Column<Vec3> moments_;                  // of rigid bodies [kg m^2]
     Column<Mat3> rotation_, axes_;          // of rigid bodies
-    Column<Vec3> displacement_;             // m, of implicit bodies
-    Column<ElementLane> modulus_;           // Pa, elements.implicit_modulus
-    Column<Real> inverse_;                  // 1/kg, clusters.inverse
+    Column<Vec3> displacement_;             // of implicit bodies [m]
+    Column<ElementLane> modulus_;           // elements.implicit_modulus [Pa]
+    Column<Real> inverse_;                  // clusters.inverse [1/kg]
 };
 
 }  // namespace skerry
