@@ -23,8 +23,7 @@ namespace {
 // initial bound of find_inversions: nothing has been checked [m]
 constexpr Real not_looked_at = -std::numeric_limits<Real>::infinity();
 
-constexpr Real default_contact_distance =
-    0.02;  // fraction of the mean surface edge: small against the resolution of the mesh
+constexpr Real default_contact_distance = 0.02;  // times the mean surface edge: small against the mesh resolution
 
 Range appended(std::size_t before, std::size_t after) {
     return {static_cast<Index>(before), static_cast<Index>(after)};

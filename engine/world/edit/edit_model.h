@@ -19,8 +19,8 @@ struct NewBody {
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;
     CollisionFilter filter = {};
     ElementKind element = ElementKind::linear;
-    Index material = no_index;                         // of the surface and of all tetrahedra without another
-    std::span<const Index> tetrahedron_material = {};  // by tetrahedron; empty: `material`
+    Index material = no_index;                         // material of the surface and of all tetrahedra without another
+    std::span<const Index> tetrahedron_material = {};  // row by tetrahedron; empty: `material`
     Index collider = no_index;
     Real contact_distance = -1;  // < 0: 2 % of the mean edge [m]
     Index core_nodes = 0;        // > 0: round body given by its first nodes, see BodyTable; the mesh only draws it

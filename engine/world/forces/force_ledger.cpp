@@ -282,8 +282,7 @@ void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scrat
     // In reverse order of attachments, as in measure_reactions.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a])))
-            continue;  // a rigid body has momenta of its own
+        if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;  // has momenta of its own
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);
             const Vec3 impulse = model.nodes.mass[n] * (model.nodes.velocity[n] - scratch.forces.held_velocity[n]);

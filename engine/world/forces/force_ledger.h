@@ -32,7 +32,7 @@ public:
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
-        // of the present step
+        // sums of the present step
         Vec3 impulse = Vec3::Zero();  // [N s]
         Index step_contacts = 0;
         void add(const Vec3& more, Index of_contacts) {
@@ -63,7 +63,8 @@ public:
     /// Time for which forces have acted in the call on the body in `row` of BodyTable [s]; no_index: on anything that
     /// is not an implicit body.
     Real seconds_on(const Model& model, Index row) const;
-    /// The same time for a pair [s]. The implicit interval counts only if all its bodies are implicit.
+    /// Time for which forces have acted in the call on a pair [s]. The implicit interval counts only if all its bodies
+    /// are implicit.
     Real seconds_of(const Model& model, const PairKey& key) const;
 
     /// Starts measuring. Supports of bodies already at rest count with the forces of the time when they came to rest.

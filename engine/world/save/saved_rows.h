@@ -32,14 +32,14 @@ struct SavedStart {
 };
 
 struct SavedRows {
-    Real step_size = 0;  // of the settings; 0: none [s]
+    Real step_size = 0;  // Settings::step_size; 0: none [s]
     SavedMeshes meshes;
     std::uint32_t world = 0;  // number of the world in its handles
     Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
     Column<DynamicsReason> choice_reason;           // reason of BodyRecord::choice
     Column<std::array<Real, 7>> choice_estimate;    // other members of BodyRecord::choice in their order
-    Ragged<Index> tetrahedron_material;             // of BodyRecord
+    Ragged<Index> tetrahedron_material;             // BodyRecord::tetrahedron_material
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // alternative of Shape
     Column<std::array<Real, 6>> shape_size;         // members of the shape in their order, then zeros [m]
@@ -51,7 +51,7 @@ struct SavedRows {
     Column<std::uint64_t> limit_steps, limit_tries;
     Column<Real> limit_seconds;
     SavedStart start;
-    ContactTable contacts;  // of the last step; empty if it was refused
+    ContactTable contacts;  // those of the last step; empty if it was refused
 };
 
 SavedRows rows_to_save(const WorldState& world);

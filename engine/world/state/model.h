@@ -57,7 +57,7 @@ struct BodyRecord {
 struct ColliderRecord {
     std::string name;
     Shape shape;
-    bool settled = false;  // as BodyRecord::settled
+    bool settled = false;  // it was checked for overlaps
 };
 
 struct Model {

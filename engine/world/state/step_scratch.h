@@ -64,7 +64,7 @@ struct StepFindings {
     Real damped = 0;       // energy dissipated by damping in this step [J]
     // energy brought in before this try by clusters that follow stiffened elements [J]
     Real stiffened = 0;
-    StrainFindings strained;  // of the implicit steps of bodies
+    StrainFindings strained;  // results of the implicit steps of bodies
 };
 
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
@@ -80,10 +80,10 @@ inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inve
 struct KeptVelocities {
     Column<Vec3> velocity;          // at the start of the step [m/s]
     Column<Vec3> velocity_next;     // predicted [m/s]
-    Column<Vec3> position, center;  // of nodes and rigid bodies at the start of the step; only if any is rigid [m]
-    Column<Mat3> rotation;          // of rigid bodies, at the start of the step
-    Column<Vec3> angular_momentum;  // of rigid bodies, at the start of the step [kg m^2/s]
-    Column<Vec3> deforming, deforming_before;  // of implicit bodies: after the kick, at the start of the step [m/s]
+    Column<Vec3> position, center;  // places of nodes and rigid bodies at the start; only if any is rigid [m]
+    Column<Mat3> rotation;          // orientation of rigid bodies at the start of the step
+    Column<Vec3> angular_momentum;  // of rigid bodies at the start of the step [kg m^2/s]
+    Column<Vec3> deforming, deforming_before;  // implicit bodies: after the kick, at the start of the step [m/s]
 };
 
 /// Impulses of contacts and attachments in one step.

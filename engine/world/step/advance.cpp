@@ -197,7 +197,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     const Real end = clock.time + dt;
     Real left = dt;
     Tries tries = first_tries(world);
-    world.cache.crossings.row.clear();  // of an abandoned step: bodies may have changed since
+    world.cache.crossings.row.clear();  // rows of an abandoned step: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
     world.scratch.parameters.draws_late = !model.loaded;  // loads need all nodes in every step

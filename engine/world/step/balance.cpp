@@ -30,9 +30,8 @@ Present measure(const Model& model, Real lag) {
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
     }
-    Real implicit = 0;  // [J]
-    Vec3 kicked =
-        now.momentum;  // of bodies that forces act on; nodes in held frames are stepped by the theta method [kg m/s]
+    Real implicit = 0;           // [J]
+    Vec3 kicked = now.momentum;  // momentum of kicked bodies; nodes in held frames take theta steps [kg m/s]
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
         if (model.is_held(b) && model.is_rigid(b)) continue;

@@ -18,13 +18,12 @@ struct Balance {
     bool momentum_known = true;
     std::uint64_t steps = 0;  // since the opening
     // at the opening
-    Real energy = 0;               // of moving nodes, elements and weights [J]
-    Real potential = 0;            // [J]
-    Vec3 momentum = Vec3::Zero();  // of moving nodes [kg m/s]
-    Vec3 impulse = Vec3::Zero();   // external impulse since the opening [N s]
-    Real work = 0;                 // external work minus dissipation since the opening [J]
-    Real energy_flow = 0,
-         momentum_flow = 0;  // sums over steps of magnitudes; momentum: of each kind of impulse [J, N s]
+    Real energy = 0;                          // sum over moving nodes, elements and weights [J]
+    Real potential = 0;                       // [J]
+    Vec3 momentum = Vec3::Zero();             // sum over moving nodes [kg m/s]
+    Vec3 impulse = Vec3::Zero();              // external impulse since the opening [N s]
+    Real work = 0;                            // external work minus dissipation since the opening [J]
+    Real energy_flow = 0, momentum_flow = 0;  // sums of magnitudes over steps, for each kind of impulse [J, N s]
     // the worst over the run
     Real energy_error = 0, energy_scale = 0;      // the scale is the largest energy available for exchange [J]
     Real momentum_error = 0, momentum_scale = 0;  // [kg m/s]

@@ -28,8 +28,7 @@ Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
 
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan) {
     const LongStepTimes times{clock.length, clock.left == clock.length, plan.steps == 1};
-    return times.starts && times.ends ? LongStepTimes{}
-                                      : times;  // both long step and step: as long as those of all other bodies
+    return times.starts && times.ends ? LongStepTimes{} : times;  // as long as the steps of all others
 }
 
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock) {

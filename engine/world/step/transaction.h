@@ -37,13 +37,12 @@ enum class StepOutcome {
 
 /// Results of the tries of the present and earlier steps that matter for the next try.
 struct Tries {
-    Real longest = std::numeric_limits<Real>::infinity();  // grows again step by step [s]
-    Real slow_enough =
-        std::numeric_limits<Real>::infinity();  // bound for bodies that deform as fast as in the last try [s]
-    Index fastest = no_index;                   // row of BodyTable: the body that deforms fastest
-    int with_longer_lists = 0;                  // tries of this step that could not be judged
-    int with_crossings = 0;                     // tries of this step at its present length
-    bool letting_through = false;               // the next try is the last
+    Real longest = std::numeric_limits<Real>::infinity();      // grows again step by step [s]
+    Real slow_enough = std::numeric_limits<Real>::infinity();  // bound at the last rate of deformation [s]
+    Index fastest = no_index;                                  // row of BodyTable: the body that deforms fastest
+    int with_longer_lists = 0;                                 // tries of this step that could not be judged
+    int with_crossings = 0;                                    // tries of this step at its present length
+    bool letting_through = false;                              // the next try is the last
     // cause of `longest`: that of the last try that was given up for a shorter one for a reason other than speed
     StepLimit limit = StepLimit::inversion;
     Index body = no_index;  // row of BodyTable
@@ -95,13 +94,13 @@ public:
 private:
     Column<std::uint8_t> asleep_;           // bodies.asleep
     Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
-    Column<Vec3> driven_velocity_;          // of attachments.node [m/s]
-    Real time_ = 0;                         // [s]
-    Column<Vec3> position_, velocity_;      // of all nodes [m, m/s]
-    Column<Vec3> center_;                   // of rigid bodies [m]
-    Column<Vec3> moments_;                  // of rigid bodies [kg m^2]
-    Column<Mat3> rotation_, axes_;          // of rigid bodies
-    Column<Vec3> displacement_;             // of implicit bodies [m]
+    Column<Vec3> driven_velocity_;          // velocities of attachments.node [m/s]
+    Real time_ = 0;                         // start of the call [s]
+    Column<Vec3> position_, velocity_;      // all nodes [m, m/s]
+    Column<Vec3> center_;                   // rigid bodies [m]
+    Column<Vec3> moments_;                  // rigid bodies [kg m^2]
+    Column<Mat3> rotation_, axes_;          // rigid bodies
+    Column<Vec3> displacement_;             // implicit bodies [m]
     Column<ElementLane> modulus_;           // elements.implicit_modulus [Pa]
     Column<Real> inverse_;                  // clusters.inverse [1/kg]
 };

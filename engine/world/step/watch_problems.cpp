@@ -68,8 +68,7 @@ void show_contact_problem(const WorldState& world, Real time) {
     problem.time = time;
     problem.step_size = scratch.parameters.h;
     problem.problem.name = "step " + std::to_string(problem.step);
-    const std::function<void(const StepProblem&)> take =
-        record.problem_watch.take;  // a copy, since the callback may stop the watch
+    const std::function<void(const StepProblem&)> take = record.problem_watch.take;  // a copy: it may stop the watch
     take(problem);
 }
 
