@@ -301,7 +301,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
         follow_attachments(model, b);
     }
     model.wake(b);
-    state_->cache.forget_body(model, b);  // its nodes have stopped
+    state_->cache.forget_body(model, b);  // its held nodes have stopped
     state_->edits.rows = state_->edits.elements = true;
     return handle;
 }

@@ -131,7 +131,7 @@ private:
     /// a pair stays in place.
     void satisfy() {
         constexpr int most_sweeps = 1000;
-        constexpr Real slack = 0.1;  // of the margin
+        constexpr Real slack = 0.1;  // fraction of the margin
         bool moving = true;
         for (int sweep = 0; sweep < most_sweeps && moving; ++sweep) {
             moving = false;

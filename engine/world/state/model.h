@@ -118,7 +118,7 @@ struct Model {
     /// Number of a tetrahedron in the mesh that the user gave. `place`: its place in the table.
     Index user_tetrahedron(std::size_t body, Index place) const;
 
-    /// Ends the rest of one body, or of all.
+    /// Wakes one body, or all.
     void wake(std::size_t body);
     void wake_all();
     /// Before a step: notes whether any body is asleep. Returns the mass of all others [kg].

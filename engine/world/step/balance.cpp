@@ -16,7 +16,7 @@ namespace {
 struct Present {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    Real momentum_size = 0;                        // kg m/s, sum of m |v|
+    Real momentum_size = 0;                        // sum of m |v| [kg m/s]
 };
 
 Present measure(const Model& model, Real lag) {
@@ -67,7 +67,7 @@ bool damps_held_body(const Model& model) {
     return false;
 }
 
-/// Moving nodes pull at held ones through the inertia of the implicit elements between them.
+/// Whether an implicit element has a held node: its inertia lets moving nodes pull at the held one.
 bool holds_implicit_element(const Model& model) {
     if (model.clusters.empty()) return false;
     const ElementInputs elements = model.all_elements();

@@ -6,7 +6,7 @@
 namespace skerry {
 
 // build_step.cpp
-/// Lists the stages of the step; the graph takes its edges from what they read and write.
+/// Lists the stages of the step; the graph derives its edges from the data that they read and write.
 void build_step(WorldState& world);
 
 // count_step.cpp

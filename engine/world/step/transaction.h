@@ -22,10 +22,10 @@ struct WorldState;
 ///     try -- good ---------------------------------------------------------------> committed
 ///      |---- features cross, fewer than 4 tries of this length ------------------> again_with_crossings --> try
 ///      |---- features cross; h > stable step / 128 ------------------------------> again_shorter ---------> try
-///      |---- a body is too fast; h > stable step / 1024 -------------------------> again_shorter ---------> try
+///      |---- a body is too fast or unsolved; h > stable step / 1024 -------------> again_shorter ---------> try
 ///      |---- an element turns inside out; h > stable step / 4 -------------------> again_shorter ---------> try
 ///      |---- features cross at the shortest length ------------------------------> again_letting_through -> try
-///      '---- not finite, too far, too fast at the shortest length ---------------> refused
+///      '---- not finite, too far; too fast or unsolved at the shortest length ---> refused
 enum class StepOutcome {
     committed,
     again_with_longer_lists,  // repeat the same try: features near enough to cross were not in the lists
@@ -76,8 +76,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 ///     search.memory.body_unmeasured                                    bodies that no committed step has measured
 ///                                                                      are searched again
 ///
-/// All other state is written only by stages that run in a step that is good, and by commit.
-/// tests/scene/transaction_test.cpp compares this list with what the stages declare.
+/// All other state is written only by stages that run in a good step, and by commit.
+/// tests/scene/transaction_test.cpp compares this list with the writes that the stages declare.
 class StepTransaction {
 public:
     void begin_try(const Model& model);
