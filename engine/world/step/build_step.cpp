@@ -1,6 +1,6 @@
-// The step: one list of stages. Each is named folder/function. The graph derives their order from what they read and
-// write, so the force and the contact branch run side by side (docs/step_graph.dot shows the result). The bind() of a
-// struct of inputs lists the columns that it reads.
+// The step: one list of stages. Each is named folder/function. The graph derives their order from the data that they
+// read and write, so the force and the contact branch run side by side (docs/step_graph.dot shows the result). The
+// bind() of a struct of inputs lists the columns that it reads.
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "systems/collision/find_candidates.h"
